@@ -4,7 +4,10 @@
 use std::{
     any::Any,
     panic::{AssertUnwindSafe, catch_unwind},
-    sync::atomic::{AtomicUsize, Ordering},
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 static COUNT: AtomicUsize = AtomicUsize::new(0);
@@ -22,6 +25,11 @@ pub fn catch<T>(call: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
 #[must_use]
 pub fn count() -> usize {
     COUNT.load(Ordering::SeqCst)
+}
+
+/// Locks a value that is consistent even if a thread panicked while it held the lock.
+pub fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
+    value.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The message of a panic.

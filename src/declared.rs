@@ -1,4 +1,4 @@
-//! Enums whose values are declared in a file each.
+//! Enums whose values are declared in a file each, lists of types that are, and choices, which take a line each.
 
 /// An enum with the static that declares each of its values. The declaration has an `id`.
 macro_rules! declared {
@@ -36,4 +36,57 @@ macro_rules! declared {
     };
 }
 
-pub(crate) use declared;
+/// Hands types to a receiver, one after the other.
+macro_rules! take_each {
+    ($to:ident: $($Type:ident)+) => {
+        $($to.take::<$Type>();)+
+    };
+}
+
+/// An enum of choices, each with an id for files, a name for people, and one sentence.
+macro_rules! choice {
+    ($(#[$doc:meta])* $name:ident { $($(#[$default:ident])? $variant:ident $id:literal $label:literal $help:literal,)+ }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+        pub enum $name {
+            $(#[doc = $help] $(#[$default])? $variant,)+
+        }
+
+        impl $name {
+            /// Every choice, in the order of presentation.
+            pub const ALL: &[Self] = &[$(Self::$variant),+];
+
+            /// The id in files and on the command line.
+            #[must_use]
+            pub const fn id(self) -> &'static str {
+                match self { $(Self::$variant => $id,)+ }
+            }
+
+            /// The name for people.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $label,)+ }
+            }
+
+            /// One sentence of explanation.
+            #[must_use]
+            pub const fn summary(self) -> &'static str {
+                match self { $(Self::$variant => $help,)+ }
+            }
+
+            /// The choice with this id.
+            #[must_use]
+            pub fn from_id(id: &str) -> Option<Self> {
+                Self::ALL.iter().copied().find(|choice| choice.id() == id)
+            }
+
+            /// The next choice, in a cycle.
+            #[must_use]
+            pub const fn next(self) -> Self {
+                Self::ALL[(self as usize + 1) % Self::ALL.len()]
+            }
+        }
+    };
+}
+
+pub(crate) use {choice, declared, take_each};

@@ -8,12 +8,12 @@
 //! and remembered with the state of its files, so that nothing is lost if folders appear, vanish and return,
 //! if links lead elsewhere, or if the system drops events.
 
-use crate::files::Shown as _;
+use crate::{caught::lock, files::Shown as _};
 use std::{
     collections::{BTreeSet, HashMap},
     path::{Path, PathBuf},
     sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
+        Arc, Mutex,
         mpsc::{self, Receiver, RecvTimeoutError, Sender},
     },
     thread,
@@ -188,11 +188,6 @@ impl Drop for Watcher {
     fn drop(&mut self) {
         let _ = self.orders.send(Order::Stop);
     }
-}
-
-/// Locks the reports: a thread that panicked leaves them consistent.
-fn lock(reported: &Mutex<Reported>) -> MutexGuard<'_, Reported> {
-    reported.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A watched file or folder.

@@ -48,31 +48,31 @@ pub(super) fn parts_of(scene: &Scene, view: usize, said: &Said, registry: &Regis
         [(id, _)] => model(id),
         several => format!("{} models", several.len()),
     };
-    if said.model {
+    if said.over.reflection_model.is_some() {
         say(models());
     }
-    if said.shading
+    if said.over.shading_model.is_some()
         && let Some(names) = shadings(&seen, registry)
     {
         say(format!("{names} shading"));
     }
     parts.extend(values(&seen, said, registry));
     let mut say = |text: String| parts.push(Part::new(0, text).continued());
-    if said.terms {
+    if said.over.terms.is_some() {
         say(terms_alone(terms).map_or_else(|| "all terms".to_owned(), |part| part.text));
     }
-    if said.tone_mapping {
+    if said.over.tone_mapping.is_some() {
         let none = seen.display.tone_mapping == ToneMapping::None;
         say(if none { "no tone mapping" } else { seen.display.tone_mapping.name() }.to_owned());
     }
-    if said.exposure {
+    if said.over.exposure.is_some() {
         say(exposure(seen.display.exposure));
     }
-    if said.encoding {
+    if said.over.encoding.is_some() {
         let naive = seen.display.encoding == Encoding::Off;
         say(if naive { "gamma-naive" } else { "gamma-correct" }.to_owned());
     }
-    if said.tessellation
+    if said.over.tessellation.is_some()
         && let Some(counts) = tessellation(&seen, registry)
     {
         say(format!("tessellation {counts}"));
@@ -94,14 +94,14 @@ fn values(seen: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
     for (id, objects) in groups(seen) {
         let Some(model) = registry.model(id) else { continue };
         let own: Vec<_> = if said.values {
-            let colour = |kind: &ParameterKind| matches!(kind, ParameterKind::Colour { .. });
+            let colour = |kind: &ParameterKind| matches!(kind, ParameterKind::Colour(_));
             let own = differing(model, &objects).filter(|(p, _)| said.colours || !colour(&p.kind));
             own.map(|(p, _)| p.name).collect()
         } else {
             Vec::new()
         };
         for parameter in model.parameters {
-            if !said.material.contains(parameter.name) && !own.contains(&parameter.name) {
+            if !said.over.material.0.contains_key(parameter.name) && !own.contains(&parameter.name) {
                 continue;
             }
             let part = spread(model, parameter, &objects).and_then(|spread| spread.part(parameter, ""));

@@ -85,15 +85,15 @@ pub fn of_views(
     let usual = Display::default();
     let Display { tone_mapping, exposure, encoding } = scene.display;
     facts.extend(display(Display {
-        tone_mapping: if said.tone_mapping { usual.tone_mapping } else { tone_mapping },
-        exposure: if said.exposure { usual.exposure } else { exposure },
-        encoding: if said.encoding { usual.encoding } else { encoding },
+        tone_mapping: if said.over.tone_mapping.is_some() { usual.tone_mapping } else { tone_mapping },
+        exposure: if said.over.exposure.is_some() { usual.exposure } else { exposure },
+        encoding: if said.over.encoding.is_some() { usual.encoding } else { encoding },
     }));
     for view in views {
         let mut of_view = Said::of(scene, *view);
-        of_view.terms &= terms.is_none();
+        of_view.over.terms.take_if(|_| terms.is_some());
         // The values are given nowhere else.
-        (of_view.values, of_view.colours) = (said.model, true);
+        (of_view.values, of_view.colours) = (said.over.reflection_model.is_some(), true);
         let parts = heading::parts_of(scene, *view, &of_view, registry);
         let letter = LETTERS.get(*view).copied().unwrap_or_default();
         facts.push(Part::new(0, format!("{letter}:")));

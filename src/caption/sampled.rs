@@ -9,7 +9,7 @@ const RANK: u8 = 1;
 /// The sampling of a view that is lit by lights with extent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
-    /// Number of samples taken of each light.
+    /// Number of samples taken of each light; 0 without light with extent.
     pub samples: u32,
     /// Noise reached, as a fraction of the mean luminance, if known.
     pub noise: Option<f32>,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::{part::Part, said::Said};
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    parameter::{Parameter, ParameterKind, Value},
+    parameter::{Parameter, Value},
     reflection::{ModelEntry, usage},
     registry::Registry,
     scene::{Display, Object, Scene, limits::number},
@@ -23,10 +23,11 @@ const FURTHER_MODELS: u8 = 2;
 /// models are given once, at the end; facts `said` elsewhere are omitted.
 pub(super) fn surfaces(scene: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
     // Other models have other values.
-    let groups = if said.model { Vec::new() } else { groups(scene) };
+    let is_said = said.over.reflection_model.is_some();
+    let groups = if is_said { Vec::new() } else { groups(scene) };
     let values = |(id, objects): &(&str, Vec<&Object>)| -> Vec<Part> {
         let Some(model) = registry.model(id) else { return Vec::new() };
-        let values = differing(model, objects).filter(|(p, _)| !said.material.contains(p.name));
+        let values = differing(model, objects).filter(|(p, _)| !said.over.material.0.contains_key(p.name));
         values.filter_map(|(p, spread)| spread.part(p, "= ")).collect()
     };
     let mut values: Vec<_> = groups.iter().map(values).collect();
@@ -43,10 +44,10 @@ pub(super) fn surfaces(scene: &Scene, said: &Said, registry: &Registry) -> Vec<P
         values.retain(|part| !common.contains(part));
         parts.extend(values.drain(..).map(Part::continued));
     }
-    if groups.is_empty() && !said.model {
+    if groups.is_empty() && !is_said {
         parts.push(Part::new(0, "nothing visible"));
     }
-    let shading = shadings(scene, registry).filter(|_| !said.shading);
+    let shading = shadings(scene, registry).filter(|_| said.over.shading_model.is_none());
     parts.extend(shading.map(|names| Part::new(1, format!("{names} shading"))));
     common.iter_mut().skip(1).for_each(|part| part.continues = true);
     parts.extend(common);
@@ -81,18 +82,10 @@ pub(super) fn shadings(scene: &Scene, registry: &Registry) -> Option<String> {
 
 /// The names of objects, if all have one and they are short.
 fn names(objects: &[&Object]) -> Option<String> {
-    let mut all = String::new();
-    for object in objects {
-        let name = object.name.as_deref().filter(|name| !name.trim().is_empty())?;
-        if !all.is_empty() {
-            all.push_str(", ");
-        }
-        all.push_str(name);
-        if all.chars().count() > NAMES {
-            return None;
-        }
-    }
-    Some(all)
+    let name = |object: &&Object| object.name.clone().filter(|name| !name.trim().is_empty());
+    // More names would be longer than that.
+    let names: Option<Vec<_>> = objects.iter().take(NAMES).map(name).collect();
+    names.map(|names| names.join(", ")).filter(|all| objects.len() < NAMES && all.chars().count() <= NAMES)
 }
 
 /// The values of a parameter on several objects.
@@ -118,17 +111,13 @@ impl Spread {
                 (symbol, format!("{from} to {}", value(parameter, to)?.1))
             }
         };
-        let unit = match (parameter.unit, &parameter.kind) {
-            ("", _) | (_, ParameterKind::Choice { .. } | ParameterKind::Colour { .. }) => String::new(),
-            ("°", _) => "°".to_owned(),
-            (unit, _) => format!(" {unit}"),
-        };
-        let text = match (&parameter.kind, symbol) {
+        let unit = parameter.suffix();
+        let text = match (parameter.kind.options(), symbol) {
+            ([], "") => format!("{} {before}{text}{unit}", parameter.label),
+            ([], _) => format!("{before}{text}{unit}"),
             // A name with a comma would look like two.
-            (ParameterKind::Choice { .. }, _) if text.contains(',') => format!("“{text}”"),
-            (ParameterKind::Choice { .. }, _) => text,
-            (_, "") => format!("{} {before}{text}{unit}", parameter.label),
-            _ => format!("{before}{text}{unit}"),
+            _ if text.contains(',') => format!("“{text}”"),
+            _ => text,
         };
         Some(Part { symbol, ..Part::new(VALUES, text) })
     }
@@ -137,11 +126,7 @@ impl Spread {
 /// The values of a parameter on the objects that use it; `None` if none does.
 pub(super) fn spread(model: &ModelEntry, parameter: &Parameter, objects: &[&Object]) -> Option<Spread> {
     let used = |object: &&&Object| usage::unused(model.parameters, parameter, &object.material).is_none();
-    let size = |value: &Value| match value {
-        Value::Number(v) => Some(f64::from(*v)),
-        Value::Integer(v) => Some(*v as f64),
-        _ => None,
-    };
+    let size = |value: &Value| parameter.kind.number_of(value);
     let mut values = objects.iter().filter(used).map(|object| object.material.get(parameter));
     let first = values.next()?;
     let (mut least, mut most, mut same) = (first.clone(), first.clone(), true);
@@ -173,29 +158,9 @@ pub(super) fn differing<'a>(
 
 /// The symbol of a parameter and its value in words.
 pub(crate) fn value(parameter: &'static Parameter, value: &Value) -> Option<(&'static str, String)> {
-    let numbers = |all: [String; 3]| match &all {
-        [a, b, c] if a == b && b == c => a.clone(),
-        _ => format!("({})", all.join(", ")),
-    };
-    Some(match (value, &parameter.kind) {
-        (Value::Number(v), _) => (parameter.symbol, number(f64::from(*v))),
-        (Value::Integer(v), _) => (parameter.symbol, v.to_string()),
-        (Value::Colour(rgb), _) => (parameter.symbol, format!("({}, {}, {})", rgb[0], rgb[1], rgb[2])),
-        (Value::Triple(v), _) => (parameter.symbol, numbers(v.map(|v| number(f64::from(v))))),
-        // A distribution's name needs no symbol; “None” and “yes” alone mean nothing.
-        (Value::Choice(id), ParameterKind::Choice { options, .. }) => {
-            let name = options.iter().find(|(o, _)| **o == **id).map_or(&**id, |(_, name)| *name);
-            let name = name.split(" (").next().unwrap_or(name);
-            let none = name.eq_ignore_ascii_case("none");
-            let text = match name {
-                _ if parameter.is_flag() => format!("{}: {name}", parameter.label),
-                _ if none => format!("no {}", parameter.label),
-                _ => name.to_owned(),
-            };
-            ("", text)
-        }
-        _ => return None,
-    })
+    let text = parameter.kind.caption(parameter.label, value)?;
+    // The names of choices need no symbol.
+    Some((if parameter.kind.options().is_empty() { parameter.symbol } else { "" }, text))
 }
 
 /// The term, if a single one is shown.

@@ -45,7 +45,7 @@ pub(super) fn stream<const N: usize>(
     columns: &[Column; N],
     mut answer: impl FnMut(&[Row<N>]) -> Outcome,
 ) -> Outcome {
-    let mut table = Table::new(input, columns);
+    let mut table = Table { input, columns, lines: 0, bytes: 0, problems: Problems::default() };
     table.header()?;
     let mut batch = Vec::new();
     let mut bytes = 0;
@@ -114,11 +114,7 @@ struct Table<'a, R, const N: usize> {
     problems: Problems,
 }
 
-impl<'a, R: BufRead, const N: usize> Table<'a, R, N> {
-    fn new(input: R, columns: &'a [Column; N]) -> Self {
-        Self { input, columns, lines: 0, bytes: 0, problems: Problems::default() }
-    }
-
+impl<R: BufRead, const N: usize> Table<'_, R, N> {
     /// Ends reading with a problem, reported after those before it.
     fn give_up(&mut self, problem: String) -> Failure {
         self.problems.add(problem);

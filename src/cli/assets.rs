@@ -26,11 +26,8 @@ pub(super) fn run(command: &Command, options: Options, registry: &Registry) -> O
     for path in &exported.kept {
         complain(format_args!("{} differs from the built-in file and was kept", path.shown()));
     }
-    options.tell(format_args!(
-        "wrote {} files, {} already existed; run lcm view --assets {} and edit them",
-        exported.written.len(),
-        exported.same + exported.kept.len(),
-        folder.shown()
-    ));
+    let (new, old) = (exported.written.len(), exported.same + exported.kept.len());
+    let remedy = format!("run lcm view --assets {} and edit them", folder.shown());
+    options.tell(format_args!("wrote {new} files, {old} already existed; {remedy}"));
     Ok(())
 }

@@ -3,16 +3,14 @@
 use std::{collections::BTreeSet, fmt::Write as _, path::PathBuf};
 
 use clap::Args;
-use serde::Serialize;
 
 use super::{
-    Options, Outcome, complain, print_json, print_text,
+    Checked, Options, Outcome, complain,
     scenes::Source,
     workshop::{Workshop, on_disk, shader_problems},
 };
 use crate::{
     explain::finite::{Scope, Tried, probe},
-    failure::Failure,
     reflection::ModelEntry,
     registry::Registry,
     scene::{
@@ -21,6 +19,7 @@ use crate::{
         load::Defaults,
     },
     shader::{check::ShaderProblem, report::annotated},
+    text::plural,
 };
 
 /// The problems of a legal scene that appear when it is drawn, for people and for programs: invalid shaders,
@@ -89,23 +88,13 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// The result for one scene, as JSON.
-#[derive(Serialize)]
-struct Report {
-    file: String,
-    valid: bool,
-    problems: Vec<Problem>,
-}
-
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
     // Checking does not ask questions: missing parts are problems, unless `--use-defaults` is given.
     let defaults = match options.defaults() {
         Defaults::Ask => Defaults::Refuse,
         answered => answered,
     };
-    let mut reports = Vec::new();
-    let mut listed = String::new();
-    let mut invalid = 0;
+    let mut checked = Checked::new();
     for path in &arguments.scenes {
         let source = Source::named(path);
         let mut problems = Vec::new();
@@ -116,55 +105,34 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             read => read,
         };
         let read = read.map_err(|error| (error.to_string(), error.problems()));
-        let checked =
-            read.and_then(|loaded| match drawn(&loaded.scene, &source.name(), &workshop.registry) {
-                (_, problems) if problems.is_empty() => Ok(loaded),
-                wrong => Err(wrong),
-            });
-        match checked {
+        let read = read.and_then(|loaded| match drawn(&loaded.scene, &source.name(), &workshop.registry) {
+            (_, problems) if problems.is_empty() => Ok(loaded),
+            wrong => Err(wrong),
+        });
+        match read {
             Ok(loaded) => {
                 for line in only_on_gpu(&loaded.scene, &source.name(), &workshop.registry) {
                     options.tell(line);
                 }
-                let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+                let Scene { lights, objects, variants, .. } = &loaded.scene;
+                let mut counts = vec![plural(lights.len(), "light"), plural(objects.len(), "object")];
+                counts.extend((!variants.is_empty()).then(|| plural(variants.len(), "variant")));
                 // Writing to a String cannot fail.
-                let mut counts = vec![
-                    counted(loaded.scene.lights.len(), "light"),
-                    counted(loaded.scene.objects.len(), "object"),
-                ];
-                if !loaded.scene.variants.is_empty() {
-                    counts.push(counted(loaded.scene.variants.len(), "variant"));
-                }
-                let _ = writeln!(listed, "{}: valid: {}", source.name(), counts.join(", "));
+                let _ = writeln!(checked.listed, "{}: valid: {}", source.name(), counts.join(", "));
                 for said in loaded.scene.beyond_the_range_of_views(&workshop.registry) {
-                    let _ = writeln!(listed, "{}: {said}", source.name());
+                    let _ = writeln!(checked.listed, "{}: {said}", source.name());
                 }
             }
             Err((said, found)) => {
-                invalid += 1;
                 problems = found;
                 if !arguments.json {
                     complain(&said);
                 }
             }
         }
-        reports.push(Report { file: source.plain_name(), valid: problems.is_empty(), problems });
+        checked.add(source.plain_name(), problems);
     }
-    if arguments.json {
-        let json = serde_json::to_string_pretty(&reports).unwrap_or_default();
-        print_json(&format!("{json}\n"))?;
-    } else if !options.quiet {
-        print_text(&listed)?;
-    }
-    match invalid {
-        0 => Ok(()),
-        _ if arguments.json || reports.len() == 1 => Err(Failure::Invalid(String::new())),
-        n => Err(Failure::Invalid(format!(
-            "{n} of {} scenes {} invalid",
-            arguments.scenes.len(),
-            if n == 1 { "is" } else { "are" }
-        ))),
-    }
+    checked.print(arguments.json, options, "scenes")
 }
 
 #[cfg(test)]

@@ -9,9 +9,9 @@ use clap::Args;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use super::{
-    Options, Outcome, gauged,
+    Options, Outcome, collected, gauged,
     light_samples::{self, Sampling},
-    outputs, pictures, print_json,
+    one_of, outputs, pictures, print_json,
     render::{self, Size, cpu_can_draw, samples},
     scenes::Source,
     views::{Choice, find},
@@ -28,7 +28,7 @@ use crate::{
     registry::Registry,
     render::capture::png::About,
     scene::{Comparison, Scene, comparison::Compared, variant::LETTERS},
-    text::{listed, nearest},
+    text::listed,
 };
 
 #[derive(Args, Debug)]
@@ -90,9 +90,7 @@ fn limit(text: &str, of_likeness: bool) -> Result<Limit, String> {
     };
     let metric = Metric::from_id(id).ok_or_else(|| {
         let known: Vec<_> = Metric::ids(false).chain(Metric::ids(true)).collect();
-        let hint = nearest(id, known.iter().map(|k| (*k, *k)))
-            .map_or_else(String::new, |k| format!("; did you mean {k}?"));
-        format!("the metric must be {}{hint}", listed(&known, "or"))
+        one_of("the metric", id, &known)
     })?;
     if metric.of_likeness != of_likeness {
         let flag = if of_likeness { "above" } else { "below" };
@@ -239,7 +237,7 @@ struct Report {
     channel: &'static str,
     all: Numbers,
     covered: Option<Numbers>,
-    largest: Option<Place>,
+    largest: Option<Largest>,
 }
 
 /// One side of the comparison.
@@ -269,21 +267,6 @@ impl Serialize for Numbers {
     }
 }
 
-#[derive(Serialize)]
-struct Place {
-    x: u32,
-    y: u32,
-    difference: f32,
-    a: [u8; 3],
-    b: [u8; 3],
-}
-
-impl From<Largest> for Place {
-    fn from(Largest { x, y, difference, a, b }: Largest) -> Self {
-        Self { x, y, difference, a, b }
-    }
-}
-
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
     let paths: Vec<_> = [Some(&arguments.a), arguments.b.as_ref()].into_iter().flatten().collect();
     if paths.iter().filter(|path| path.as_path() == Path::new("-")).count() > 1 {
@@ -295,18 +278,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if let Some(output) = &arguments.output {
         render::one_picture(output)?;
     }
-    let mut read = Vec::new();
-    let mut problems = Vec::new();
-    for path in &paths {
-        match Input::read(path, workshop, options) {
-            Ok(input) => read.push(input),
-            Err(Failure::Invalid(problem)) => problems.push(problem),
-            Err(other) => return Err(other),
-        }
-    }
-    if !problems.is_empty() {
-        return Err(Failure::Invalid(problems.join("\n")));
-    }
+    let read = collected(paths.iter().map(|path| Input::read(path, workshop, options)))?;
     let registry = &workshop.registry;
     if let Some(output) = &arguments.output {
         let named = paths.iter().map(|path| Source::named(path)).collect::<Vec<_>>();
@@ -374,14 +346,14 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         channel: comparison.channel.id(),
         all: Numbers(measured.all.clone()),
         covered: measured.covered.clone().map(Numbers),
-        largest: differences.largest.map(Place::from),
+        largest: differences.largest,
     };
-    let printed = print_json(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()));
+    let printed = print_json(&report);
     let broken = broken(arguments, &measured, differences.largest)?;
     // The numbers matter even if the picture cannot be written.
     if let (Some(output), Some((size, rgb8))) = (&arguments.output, drawn) {
         let about = about(&read, comparison, registry);
-        let rests_on: Vec<_> = [reached_a, reached_b].into_iter().flatten().map(Sampled::from).collect();
+        let rests_on: Vec<Sampled> = [reached_a, reached_b].into_iter().flatten().collect();
         let light = caption::line(&caption::sampled(&rests_on));
         let about = light_samples::noted(about, &light);
         write(output, size, &rgb8, &about)?;
@@ -409,37 +381,28 @@ fn write(output: &Path, size: [u32; 2], rgb8: &[u8], about: &About) -> Outcome {
 fn views<'a>(arguments: &Arguments, read: &'a [Input]) -> Result<(Comparison, Vec<View<'a>>), Failure> {
     let of_file = read.iter().find_map(Input::scene).map(|scene| scene.comparison).unwrap_or_default();
     let mut comparison = arguments.choice.applied(of_file);
-    let pictures = read.iter().find(|input| input.scene().is_none());
-    if comparison.values == Compared::Light
-        && let Some(picture) = pictures
-    {
-        return Err(Failure::Invalid(format!(
-            "{}: the linear light of a picture file is unknown; --values codes compares the display codes",
-            picture.name()
-        )));
+    let of_light = comparison.values == Compared::Light;
+    if let Some(picture) = read.iter().find(|input| of_light && input.scene().is_none()) {
+        let why = "the linear light of a picture file is unknown; --values codes compares the display codes";
+        return Err(Failure::Invalid(format!("{}: {why}", picture.name())));
     }
     let [input] = read else {
         comparison.with = 1;
         return Ok((comparison, read.iter().map(|input| View { input, view: 0 }).collect()));
     };
+    let file = input.name();
     let Some(scene) = input.scene() else {
-        return Err(Failure::Usage(format!(
-            "{} is a picture; name another file to compare it with",
-            input.name()
-        )));
+        return Err(Failure::Usage(format!("{file} is a picture; name another file to compare it with")));
     };
     if scene.variants.is_empty() {
-        return Err(Failure::Invalid(format!(
-            "{} has no variants to compare with; add one, or name another file",
-            input.name()
-        )));
+        let rule = "add one, or name another file";
+        return Err(Failure::Invalid(format!("{file} has no variants to compare with; {rule}")));
     }
     if let Some(name) = &arguments.choice.with {
-        let view = find(scene, name).map_err(|why| Failure::Invalid(format!("{}: {why}", input.name())))?;
+        let view = find(scene, name).map_err(|why| Failure::Invalid(format!("{file}: {why}")))?;
         if view == 0 {
-            return Err(Failure::Usage(
-                "--with must be a view other than A, which it is compared with".to_owned(),
-            ));
+            let rule = "--with must be a view other than A, which it is compared with";
+            return Err(Failure::Usage(rule.to_owned()));
         }
         comparison.with = view;
     }
@@ -450,9 +413,8 @@ fn views<'a>(arguments: &Arguments, read: &'a [Input]) -> Result<(Comparison, Ve
 /// The view with which A is compared.
 fn other<'a>(comparison: &Comparison, views: &[View<'a>]) -> View<'a> {
     match views {
-        // For a layout with a single view, or for view A of two files.
-        [a] => View { input: a.input, view: comparison.with },
         [_, b] => *b,
+        // For a layout with a single view, or for view A of two files, or for more views.
         [a, ..] => View { input: a.input, view: comparison.with },
         [] => unreachable!("there is always view A"),
     }
@@ -466,14 +428,9 @@ fn size(asked: Option<Size>, read: &[Input]) -> Result<[u32; 2], Failure> {
         let Some(size) = input.size() else { continue };
         match &found {
             Some((name, other)) if *other != size => {
-                return Err(Failure::Invalid(format!(
-                    "{name} is {}x{} pixels, but {} is {}x{}; pictures must have the same size",
-                    other[0],
-                    other[1],
-                    input.name(),
-                    size[0],
-                    size[1]
-                )));
+                let ([w, h], [width, height], input) = (*other, size, input.name());
+                let sizes = format!("{name} is {w}x{h} pixels, but {input} is {width}x{height}");
+                return Err(Failure::Invalid(format!("{sizes}; pictures must have the same size")));
             }
             _ => found = Some((input.name(), size)),
         }
@@ -492,16 +449,11 @@ fn side_by_side(
     progress: &Progress,
 ) -> Result<([u32; 2], Vec<u8>), Failure> {
     let variants = views.len() - 1;
-    let places = |size| cells(comparison, variants, size);
-    let whole = if views.iter().any(|view| view.input.scene().is_none()) {
-        Some(size_around(comparison, variants, size))
-    } else {
-        Some(size)
-    };
+    let is_picture = |view: &View| view.input.scene().is_none();
+    let whole = if views.iter().any(is_picture) { size_around(comparison, variants, size) } else { size };
     let no_room =
         || Failure::Usage(format!("{}x{} pixels are too few for the views side by side", size[0], size[1]));
-    let whole = whole.ok_or_else(no_room)?;
-    let places = places(whole).ok_or_else(no_room)?;
+    let places = cells(comparison, variants, whole).ok_or_else(no_room)?;
     let shown = views.iter().zip(&places).enumerate().map(|(i, (view, cell))| {
         Ok::<_, Failure>(view.shown([cell.width, cell.height], drawing, (2 + i, progress))?.0)
     });

@@ -20,7 +20,7 @@ use crate::{
     },
     registry::Registry,
     render::capture::evaluate::Evaluator,
-    text::quoted,
+    text::{listed, quoted},
 };
 
 /// `lcm models new NAME`.
@@ -105,7 +105,7 @@ pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Wo
     bar.finish_and_clear();
     let report = LawReport::new(model, &findings);
     if as_json {
-        print_json(&format!("{}\n", serde_json::to_string_pretty(&report).unwrap_or_default()))?;
+        print_json(&report)?;
     } else {
         print_text(&report.to_string())?;
     }
@@ -115,9 +115,6 @@ pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Wo
     match report.broken().as_slice() {
         [] if report.is_finite() => Ok(()),
         [] => Err(Failure::Invalid(String::new())),
-        laws => Err(Failure::Invalid(format!(
-            "{id} claims to be {}, but is not",
-            crate::text::listed(laws, "and")
-        ))),
+        laws => Err(Failure::Invalid(format!("{id} claims to be {}, but is not", listed(laws, "and")))),
     }
 }

@@ -3,7 +3,6 @@
 use std::{
     io::{self, BufWriter, Write as _},
     str::FromStr,
-    sync::Arc,
 };
 
 use clap::{Args, ValueEnum};
@@ -16,13 +15,13 @@ use super::{
 };
 use crate::{
     failure::Failure,
-    optics::{Frame, colour::Encoding, geometry::direction},
+    optics::{Frame, Terms, colour::Encoding, geometry::direction},
     parameter::{Value, Values},
     reflection::{ModelEntry, Surface, brdf, brdf_of},
     registry::Registry,
-    render::capture::evaluate::Evaluator,
+    render::capture::{evaluate::Evaluator, gpu::GpuError},
     scene::field::Ids,
-    text::{nearest, quoted},
+    text::{listed, nearest, quoted},
 };
 
 /// A model with its parameters, and the machine that evaluates it.
@@ -35,6 +34,22 @@ pub(super) struct Arguments {
     /// Evaluate on the CPU or on the GPU
     #[arg(long, value_enum, default_value_t = Machine::Cpu)]
     pub on: Machine,
+}
+
+impl Arguments {
+    /// The model and the values of its parameters, if the machine can run it.
+    pub(super) fn open<'a>(
+        &self,
+        workshop: &'a mut Workshop,
+    ) -> Result<(&'a Registry, &'a ModelEntry, Values), Failure> {
+        workshop.need(&self.model);
+        let registry = &workshop.registry;
+        let model = find(registry, &self.model)?;
+        let values = self.set.values(model)?;
+        valid(registry, model)?;
+        self.on.can_run(model)?;
+        Ok((registry, model, values))
+    }
 }
 
 #[cfg(target_os = "linux")]
@@ -72,51 +87,6 @@ impl Machine {
     }
 }
 
-/// A device ready to evaluate a model with its parameters.
-pub(super) enum Started<'a> {
-    /// The CPU, with the surface to evaluate.
-    Cpu(Arc<dyn Surface>),
-    /// The GPU, with everything needed to start it.
-    Gpu(Box<Gpu<'a>>),
-}
-
-/// A GPU that starts at the first evaluation.
-pub(super) struct Gpu<'a> {
-    registry: &'a Registry,
-    model: &'a ModelEntry,
-    values: &'a Values,
-    evaluator: Option<Evaluator>,
-}
-
-impl Gpu<'_> {
-    pub(super) fn evaluator(&mut self) -> Result<&Evaluator, Failure> {
-        let evaluator = match self.evaluator.take() {
-            Some(evaluator) => evaluator,
-            None => {
-                let mut evaluator = Evaluator::new(self.registry.sources(), self.model)?;
-                evaluator.set(self.values, Encoding::Srgb);
-                evaluator
-            }
-        };
-        Ok(self.evaluator.insert(evaluator))
-    }
-}
-
-impl Machine {
-    /// Prepares the device.
-    pub(super) fn start<'a>(
-        self,
-        registry: &'a Registry,
-        model: &'a ModelEntry,
-        values: &'a Values,
-    ) -> Started<'a> {
-        match self {
-            Self::Cpu => Started::Cpu(model.instantiate(values, Encoding::Srgb)),
-            Self::Gpu => Started::Gpu(Box::new(Gpu { registry, model, values, evaluator: None })),
-        }
-    }
-}
-
 /// One `NAME=VALUE`.
 #[derive(Clone, Debug)]
 pub(super) struct Setting {
@@ -133,76 +103,66 @@ impl FromStr for Setting {
     }
 }
 
-/// The input columns. Angles beyond 90° are below the surface, where the BRDF is 0.
-const COLUMNS: [Column; 4] = [
-    Column { name: "theta_i", range: Some((0.0, 180.0)) },
-    Column { name: "phi_i", range: None },
-    Column { name: "theta_o", range: Some((0.0, 180.0)) },
-    Column { name: "phi_o", range: None },
-];
+/// A quantity of models that is printed for each row of a table.
+pub(super) struct Quantity<const N: usize, I> {
+    pub columns: [Column; N],
+    /// The columns and those of the results.
+    pub header: &'static str,
+    pub input: fn([f64; N]) -> I,
+    pub on_cpu: fn(&dyn Surface, &[I]) -> Vec<Vec3>,
+    pub on_gpu: fn(&Evaluator, &[I]) -> Result<Vec<Vec3>, GpuError>,
+}
 
-pub(super) fn run(arguments: &Arguments, workshop: &mut Workshop) -> Outcome {
-    workshop.need(&arguments.model);
-    let registry = &workshop.registry;
-    let model = find(registry, &arguments.model)?;
-    let values = arguments.set.values(model)?;
-    valid(registry, model)?;
-    arguments.on.can_run(model)?;
-    let frame = Frame::LOCAL;
-    let mut answers = Answers::new("theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b");
-    let mut machine = arguments.on.start(registry, model, &values);
-    angles::stream(io::stdin().lock(), &COLUMNS, |rows| {
-        let pairs: Vec<_> = rows
-            .iter()
-            .map(|row| {
-                let [theta_i, phi_i, theta_o, phi_o] = row.numbers;
-                (direction(theta_i, phi_i), direction(theta_o, phi_o))
-            })
-            .collect();
-        let brdfs: Vec<Vec3> = match &mut machine {
-            Started::Cpu(surface) => {
-                pairs.iter().map(|(l, v)| brdf(surface.as_ref(), *l, *v, &frame)).collect()
+impl<const N: usize, I> Quantity<N, I> {
+    /// Answers the rows on standard input: each as it was, with the results behind it.
+    pub(super) fn print(&self, arguments: &Arguments, workshop: &mut Workshop) -> Outcome {
+        let (registry, model, values) = arguments.open(workshop)?;
+        let surface = model.instantiate(&values, Encoding::Srgb);
+        // The GPU starts at the first row.
+        let mut gpu: Option<Evaluator> = None;
+        let mut header = Some(self.header);
+        let mut out = BufWriter::new(io::stdout().lock());
+        angles::stream(io::stdin().lock(), &self.columns, |rows| {
+            let inputs: Vec<_> = rows.iter().map(|row| (self.input)(row.numbers)).collect();
+            let results = match (arguments.on, &mut gpu) {
+                (Machine::Cpu, _) => (self.on_cpu)(surface.as_ref(), &inputs),
+                (Machine::Gpu, _) if rows.is_empty() => Vec::new(),
+                (Machine::Gpu, Some(gpu)) => (self.on_gpu)(gpu, &inputs)?,
+                (Machine::Gpu, none) => {
+                    let gpu = none.insert(Evaluator::new(registry.sources(), model)?);
+                    gpu.set(&values, Encoding::Srgb);
+                    (self.on_gpu)(gpu, &inputs)?
+                }
+            };
+            arguments.on.can_run(model)?;
+            if let Some(header) = header.take() {
+                writeln!(out, "{header}")?;
             }
-            Started::Gpu(gpu) if !rows.is_empty() => {
-                let terms = gpu.evaluator()?.evaluate(&pairs)?;
-                terms.into_iter().zip(&pairs).map(|(terms, (l, v))| brdf_of(terms, *l, *v, &frame)).collect()
+            for (row, result) in rows.iter().zip(results) {
+                writeln!(out, "{},{},{},{}", row.text.join(","), result.x, result.y, result.z)?;
             }
-            Started::Gpu(_) => Vec::new(),
-        };
-        arguments.on.can_run(model)?;
-        answers.write(rows.iter().map(|row| row.text.join(",")).zip(brdfs))
-    })?;
-    answers.finish()
-}
-
-/// The results as CSV on standard output, with a header before the first.
-pub(super) struct Answers {
-    out: BufWriter<io::StdoutLock<'static>>,
-    header: Option<&'static str>,
-}
-
-impl Answers {
-    pub(super) fn new(header: &'static str) -> Self {
-        Self { out: BufWriter::new(io::stdout().lock()), header: Some(header) }
-    }
-
-    /// Adds rows: input and result.
-    pub(super) fn write(&mut self, rows: impl Iterator<Item = (String, Vec3)>) -> Outcome {
-        if let Some(header) = self.header.take() {
-            writeln!(self.out, "{header}")?;
-        }
-        for (asked, answer) in rows {
-            writeln!(self.out, "{asked},{},{},{}", answer.x, answer.y, answer.z)?;
-        }
-        // A reader may be waiting for the batch.
-        Ok(self.out.flush()?)
-    }
-
-    /// Finishes the output.
-    pub(super) fn finish(mut self) -> Outcome {
-        self.write(std::iter::empty())
+            // A reader may be waiting for the batch.
+            Ok(out.flush()?)
+        })
     }
 }
+
+/// The BRDF for pairs of directions. Angles beyond 90° are below the surface, where it is 0.
+pub(super) const BRDF: Quantity<4, (Vec3, Vec3)> = Quantity {
+    columns: [
+        Column { name: "theta_i", range: Some((0.0, 180.0)) },
+        Column { name: "phi_i", range: None },
+        Column { name: "theta_o", range: Some((0.0, 180.0)) },
+        Column { name: "phi_o", range: None },
+    ],
+    header: "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b",
+    input: |[theta_i, phi_i, theta_o, phi_o]| (direction(theta_i, phi_i), direction(theta_o, phi_o)),
+    on_cpu: |surface, pairs| pairs.iter().map(|(l, v)| brdf(surface, *l, *v, &Frame::LOCAL)).collect(),
+    on_gpu: |gpu, pairs| {
+        let of = |(terms, (l, v)): (Terms, &(Vec3, Vec3))| brdf_of(terms, *l, *v, &Frame::LOCAL);
+        Ok(gpu.evaluate(pairs)?.into_iter().zip(pairs).map(of).collect())
+    },
+};
 
 /// The model with this id.
 pub(super) fn find<'a>(registry: &'a Registry, id: &str) -> Result<&'a ModelEntry, Failure> {
@@ -226,13 +186,19 @@ impl Settings {
     pub(super) fn values(&self, model: &ModelEntry) -> Result<Values, Failure> {
         let mut values = Values::default();
         let mut problems = Vec::new();
-        for Setting { name, value } in &self.settings {
-            match setting(model, name, value) {
-                Ok((name, value)) => values.set(name, value),
-                Err(problem) => problems.push(format!("--set {name}={value}: {problem}")),
-            }
-        }
+        self.settings.iter().for_each(|given| given.put(model, &mut values, &mut problems));
         if problems.is_empty() { Ok(values) } else { Err(Failure::Usage(problems.join("\nerror: "))) }
+    }
+}
+
+impl Setting {
+    /// Sets the value for a model, or adds a problem.
+    pub(super) fn put(&self, model: &ModelEntry, values: &mut Values, problems: &mut Vec<String>) {
+        let Self { name, value } = self;
+        match setting(model, name, value) {
+            Ok((name, value)) => values.set(name, value),
+            Err(problem) => problems.push(format!("--set {name}={value}: {problem}")),
+        }
     }
 }
 
@@ -246,10 +212,8 @@ pub(super) fn setting(
     let Some(parameter) = model.parameter(&spelling) else {
         let names: Vec<_> = model.parameters.iter().map(|p| p.name).collect();
         let known = model.parameters.iter().flat_map(|p| [p.name, p.label, p.symbol].map(|s| (s, p.name)));
-        let hint = nearest(&spelling, known).map_or_else(
-            || format!("it has {}", crate::text::listed(&names, "and")),
-            |n| format!("did you mean {n}?"),
-        );
+        let hint = nearest(&spelling, known)
+            .map_or_else(|| format!("it has {}", listed(&names, "and")), |n| format!("did you mean {n}?"));
         return Err(format!("{} has no parameter {name}; {hint}", model.declaration.id));
     };
     match parameter.parse(written) {

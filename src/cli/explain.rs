@@ -89,14 +89,10 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if let Some(file) = &arguments.hemisphere {
         hemisphere(file, &first, registry)?;
     }
-    let influences = match arguments.derivatives {
-        true => Some(influences(arguments, &first, registry)?),
-        false => None,
-    };
-    let other = match &arguments.beside {
-        Some(name) => Some(explained(arguments, &source, &scene, name, options, registry)?),
-        None => None,
-    };
+    let influences = arguments.derivatives.then(|| influences(arguments, &first, registry)).transpose()?;
+    let beside = arguments.beside.as_ref();
+    let other =
+        beside.map(|name| explained(arguments, &source, &scene, name, options, registry)).transpose()?;
     if arguments.json {
         let mut json = first.explanation.to_json();
         if let Some(influences) = &influences {
@@ -106,7 +102,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         if let Some(other) = &other {
             json["beside"] = other.explanation.to_json();
         }
-        return print_json(&format!("{json:#}\n"));
+        return print_json(&json);
     }
     let markdown = arguments.markdown;
     let mut text = match markdown {
@@ -149,11 +145,8 @@ fn explained(
     cpu_can_draw(&part.scene, registry)?;
     let passed = ignored_edits(registry, &part.scene);
     if !passed.is_empty() {
-        let passed: Vec<_> = passed.iter().map(String::as_str).collect();
-        options.tell(format_args!(
-            "explanations follow the CPU renderer, which ignores the edited {}",
-            listed(&passed, "and")
-        ));
+        let passed = listed(&passed.iter().map(String::as_str).collect::<Vec<_>>(), "and");
+        options.tell(format!("explanations follow the CPU renderer, which ignores the edited {passed}"));
     }
     let settings = Settings { width, height, samples: 1, terms: part.terms };
     let explanation = explain::pixel(&part.scene, registry, &settings, arguments.at.0)

@@ -60,10 +60,8 @@ fn help() -> String {
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
     let Some(form) = export::form(&arguments.form) else {
-        return Err(Failure::Usage(format!(
-            "unknown form {}; lcm export --help lists the forms",
-            quoted(&arguments.form)
-        )));
+        let form = quoted(&arguments.form);
+        return Err(Failure::Usage(format!("unknown form {form}; lcm export --help lists the forms")));
     };
     let size = [arguments.size.width, arguments.size.height];
     let point = match arguments.explain {

@@ -6,13 +6,12 @@ use std::{
 };
 
 use clap::Subcommand;
-use serde::Serialize;
 
-use super::{Options, Outcome, Reach, complain, print_json, print_text};
+use super::{Checked, Options, Outcome, Reach, complain, print_text};
 use crate::files::Shown as _;
 use crate::{
     failure::Failure,
-    lesson::{Lesson, Problem, shipped::LESSONS},
+    lesson::{Lesson, shipped::LESSONS},
     registry::Registry,
     text::plural,
 };
@@ -51,14 +50,6 @@ impl Command {
     }
 }
 
-/// The result for one lesson, as JSON.
-#[derive(Serialize)]
-struct Report {
-    file: String,
-    valid: bool,
-    problems: Vec<Problem>,
-}
-
 /// The file to which the problems of a path belong.
 fn file_of(path: &Path) -> PathBuf {
     if path.is_dir() { path.join("lesson.md") } else { path.to_owned() }
@@ -68,7 +59,7 @@ pub(super) fn run(command: &Command, options: Options, registry: &Registry) -> O
     match command {
         Command::List => list(),
         Command::Check { files, json, .. } => check(files, *json, options, registry),
-        Command::Show { file, .. } => show(file, registry),
+        Command::Show { file, .. } => show(file, options, registry),
     }
 }
 
@@ -85,14 +76,14 @@ fn list() -> Outcome {
 }
 
 fn check(files: &[PathBuf], json: bool, options: Options, registry: &Registry) -> Outcome {
-    let (mut reports, mut listed) = (Vec::new(), String::new());
+    let mut checked = Checked::new();
     for path in files {
         let mut problems = Vec::new();
-        match Lesson::read(path, registry) {
+        match Lesson::read(path, registry, options.outside()) {
             Ok(lesson) => {
                 let tasks = lesson.steps.iter().filter(|step| step.task.is_some()).count();
                 let (steps, tasks) = (plural(lesson.steps.len(), "step"), plural(tasks, "task"));
-                let _ = writeln!(listed, "{}: valid: {steps}, {tasks}", path.shown());
+                let _ = writeln!(checked.listed, "{}: valid: {steps}, {tasks}", path.shown());
             }
             Err(found) => problems = found,
         }
@@ -102,32 +93,17 @@ fn check(files: &[PathBuf], json: bool, options: Options, registry: &Registry) -
                 complain(problem.annotated(&file.shown().to_string()));
             }
         }
-        let file = file.to_string_lossy().into_owned();
-        reports.push(Report { file, valid: problems.is_empty(), problems });
+        checked.add(file.to_string_lossy().into_owned(), problems);
     }
-    if json {
-        let json = serde_json::to_string_pretty(&reports).unwrap_or_default();
-        print_json(&format!("{json}\n"))?;
-    } else if !options.quiet {
-        print_text(&listed)?;
-    }
-    match reports.iter().filter(|report| !report.valid).count() {
-        0 => Ok(()),
-        _ if json || reports.len() == 1 => Err(Failure::Invalid(String::new())),
-        n => Err(Failure::Invalid(format!(
-            "{n} of {} lessons {} invalid",
-            reports.len(),
-            if n == 1 { "is" } else { "are" }
-        ))),
-    }
+    checked.print(json, options, "lessons")
 }
 
-fn show(file: &Path, registry: &Registry) -> Outcome {
+fn show(file: &Path, options: Options, registry: &Registry) -> Outcome {
     let shipped = LESSONS.iter().find(|lesson| Path::new(&lesson.id) == file && !file.exists());
     if let Some(lesson) = shipped {
         return print_text(&lesson.to_text());
     }
-    match Lesson::read(file, registry) {
+    match Lesson::read(file, registry, options.outside()) {
         Ok(lesson) => print_text(&lesson.to_text()),
         Err(problems) => {
             let name = file_of(file).shown().to_string();

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use serde_json::json;
+use serde_json::{Value as Json, json};
 
 use super::{
     Options, Outcome, outputs, print_json, print_text, progress,
@@ -24,7 +24,7 @@ use crate::{
         save::{self, Expected},
         variant::LETTERS,
     },
-    text::{listed, number},
+    text::listed,
 };
 
 #[derive(Args, Debug)]
@@ -87,10 +87,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let registry = &workshop.registry;
     drawable(registry, &scene)?;
     let invalid = |why: &dyn std::fmt::Display| Failure::Invalid(format!("{}: {why}", source.name()));
-    let view = view(&scene, &arguments.view).map_err(|failure| match failure {
-        Failure::Invalid(why) => invalid(&why),
-        other => other,
-    })?;
+    let view = view(&scene, &arguments.view, invalid)?;
     let free: Vec<&str> = match arguments.free.as_slice() {
         [] => {
             let all = matching::parameters(&scene, view, registry);
@@ -143,16 +140,19 @@ fn unwritten(error: &save::SaveError) -> Failure {
 }
 
 /// The view with a letter or a name, other than A.
-fn view(scene: &Scene, wanted: &str) -> Result<usize, Failure> {
+fn view(
+    scene: &Scene,
+    wanted: &str,
+    invalid: impl Fn(&dyn std::fmt::Display) -> Failure,
+) -> Result<usize, Failure> {
     if scene.variants.is_empty() {
-        let why = "the scene has no variants, so there is no view to match to view A";
-        return Err(Failure::Invalid(why.to_owned()));
+        return Err(invalid(&"the scene has no variants, so there is no view to match to view A"));
     }
     match find(scene, wanted) {
         Ok(0) => {
             Err(Failure::Usage("--view is A, but it must be another view, to be matched to A".to_owned()))
         }
-        found => found.map_err(|why| Failure::Invalid(format!("--view: {why}"))),
+        found => found.map_err(|why| invalid(&format!("--view: {why}"))),
     }
 }
 
@@ -169,11 +169,9 @@ fn now(scene: &Scene, view: usize, name: &str, registry: &Registry) -> Value {
 fn in_words(found: &Match, before: &[Value], view: usize, what: What) -> String {
     let letter = LETTERS[view];
     if found.values.is_empty() {
-        return format!(
-            "view {letter} stays as it is: no other values come nearer to view A\n{}: {}\n",
-            what.unit(),
-            digits(found.before)
-        );
+        let (unit, before) = (what.unit(), digits(found.before));
+        let stays = format!("view {letter} stays as it is: no other values come nearer to view A");
+        return format!("{stays}\n{unit}: {before}\n");
     }
     let mut text = format!("view {letter} matched to view A on the {}\n", what.id());
     for ((name, value), before) in found.values.iter().zip(before) {
@@ -185,15 +183,10 @@ fn in_words(found: &Match, before: &[Value], view: usize, what: What) -> String 
     text + &format!("{}: {} → {}\n", what.unit(), digits(found.before), digits(found.after))
 }
 
-fn as_json(found: &Match, view: usize, what: What) -> String {
-    let value = |value: &Value| match value {
-        Value::Number(v) => number(*v),
-        Value::Triple(v) => v.iter().map(|v| number(*v)).collect(),
-        other => json!(other),
-    };
+fn as_json(found: &Match, view: usize, what: What) -> Json {
     let values: serde_json::Map<_, _> =
-        found.values.iter().map(|(name, v)| ((*name).to_owned(), value(v))).collect();
-    let all = json!({
+        found.values.iter().map(|(name, v)| ((*name).to_owned(), v.json())).collect();
+    json!({
         "view": LETTERS[view],
         "on": what.id(),
         "unit": what.unit(),
@@ -201,6 +194,5 @@ fn as_json(found: &Match, view: usize, what: What) -> String {
         "after": found.after,
         "values": values,
         "unchanged": found.kept,
-    });
-    format!("{all:#}\n")
+    })
 }

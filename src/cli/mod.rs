@@ -8,12 +8,13 @@ use crate::{
     export::payload,
     failure::Failure,
     files::{self, printable, printable_json},
-    parameter::outside,
+    parameter::Outside,
     program::{self, in_own_words},
     progress::Progress,
     registry::Registry,
     scene::load::Defaults,
     signals::Interrupt,
+    text::{listed, nearest},
 };
 use std::{
     ffi::OsString,
@@ -30,6 +31,7 @@ use bevy::app::App;
 use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, error::ErrorKind};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use serde::Serialize;
 use workshop::Places;
 
 mod albedo;
@@ -202,6 +204,11 @@ impl Options {
         files::program().filter(|_| self.restarts)
     }
 
+    /// The files outside their folders that scenes may name.
+    fn outside(self) -> &'static Outside {
+        if self.scenes.reach.allow_outside { Outside::ALL } else { Outside::NONE }
+    }
+
     /// The answer given by flags to questions about missing parts, if any.
     fn defaults(self) -> Defaults {
         match (self.scenes.use_defaults, self.scenes.no_defaults) {
@@ -288,6 +295,13 @@ enum Command {
     TryShaders,
 }
 
+/// The rule that a word must be one of these, with the nearest.
+fn one_of(what: &str, word: &str, known: &[&str]) -> String {
+    let near = nearest(word, known.iter().map(|k| (*k, *k)));
+    let hint = near.map_or_else(String::new, |k| format!("; did you mean {k}?"));
+    format!("{what} must be {}{hint}", listed(known, "or"))
+}
+
 /// Parser of positive counts.
 fn above_zero(text: &str) -> Result<u32, String> {
     let parsed = text.trim().parse::<u32>().ok().filter(|number| *number > 0);
@@ -296,6 +310,61 @@ fn above_zero(text: &str) -> Result<u32, String> {
 
 /// The result of a command.
 type Outcome = Result<(), Failure>;
+
+/// Everything, or all problems of what is invalid; any other failure at once.
+fn collected<T>(all: impl Iterator<Item = Result<T, Failure>>) -> Result<Vec<T>, Failure> {
+    let (mut good, mut problems) = (Vec::new(), Vec::new());
+    for one in all {
+        match one {
+            Ok(one) => good.push(one),
+            Err(Failure::Invalid(problem)) => problems.push(problem),
+            Err(other) => return Err(other),
+        }
+    }
+    if problems.is_empty() { Ok(good) } else { Err(Failure::Invalid(problems.join("\n"))) }
+}
+
+/// The results of checking some files.
+struct Checked<P> {
+    reports: Vec<Report<P>>,
+    /// What is said of the valid ones.
+    listed: String,
+}
+
+/// The result for one file, as JSON.
+#[derive(Serialize)]
+struct Report<P> {
+    file: String,
+    valid: bool,
+    problems: Vec<P>,
+}
+
+impl<P: Serialize> Checked<P> {
+    fn new() -> Self {
+        Self { reports: Vec::new(), listed: String::new() }
+    }
+
+    fn add(&mut self, file: String, problems: Vec<P>) {
+        self.reports.push(Report { file, valid: problems.is_empty(), problems });
+    }
+
+    /// Prints the results. `what` is the plural of what was checked.
+    fn print(&self, json: bool, options: Options, what: &str) -> Outcome {
+        if json {
+            print_json(&self.reports)?;
+        } else if !options.quiet {
+            print_text(&self.listed)?;
+        }
+        match (self.reports.iter().filter(|report| !report.valid).count(), self.reports.len()) {
+            (0, _) => Ok(()),
+            (_, all) if json || all == 1 => Err(Failure::Invalid(String::new())),
+            (n, all) => {
+                let are = if n == 1 { "is" } else { "are" };
+                Err(Failure::Invalid(format!("{n} of {all} {what} {are} invalid")))
+            }
+        }
+    }
+}
 
 /// Runs the command line of this process.
 #[must_use]
@@ -392,9 +461,6 @@ fn run_as(
         Ok(scenes) => cli.options.scenes = scenes,
         Err(failure) => return ended(Err(failure)),
     }
-    if cli.options.scenes.reach.allow_outside {
-        outside::allow_all();
-    }
     // The window handles signals itself.
     if !matches!(cli.command, None | Some(Command::View(_) | Command::TryShaders)) {
         // Without it, temporary files may remain until the next tidying after a signal.
@@ -431,6 +497,7 @@ fn misunderstood(error: &clap::Error, arguments: &[OsString]) {
 
 /// Runs a command with all known types except custom models.
 fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
+    use Command::*;
     let options = cli.options;
     if let Some(stray) = cli.view.given().filter(|_| cli.command.is_some()) {
         return Err(Failure::Usage(format!("{stray} must come after the command")));
@@ -438,35 +505,23 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
     let places = &cli.places;
     match cli.command {
         None => view::run(cli.view, options, places, known, window),
-        Some(Command::View(arguments)) => view::run(arguments.own, options, places, known, window),
-        Some(Command::Render(arguments)) => {
-            render::run(&arguments.own, options, &mut places.open(options, known)?)
-        }
-        Some(Command::Compare(arguments)) => {
-            compare::run(&arguments.own, options, &mut places.open(options, known)?)
-        }
-        Some(Command::Check(arguments)) => {
-            check::run(&arguments.own, options, &mut places.open(options, known)?)
-        }
-        Some(Command::New { file }) => new::run(&file, options, &known),
-        Some(Command::Export(arguments)) => {
-            export::run(&arguments.own, options, &mut places.open(options, known)?)
-        }
-        Some(Command::Explain(arguments)) => {
-            explain::run(&arguments.own, options, &mut places.open(options, known)?)
-        }
-        Some(Command::Lesson(command)) => lesson::run(&command, options, places.open(options, known)?.list()),
-        Some(Command::Match(arguments)) => {
-            matching::run(&arguments.own, options, &mut places.open(options, known)?)
-        }
-        Some(Command::Models(arguments)) => models::run(arguments, options, places, known),
-        Some(Command::Assets(command)) => assets::run(&command, options, &known),
-        Some(Command::Evaluate(arguments)) => evaluate::run(&arguments, &mut places.open(options, known)?),
-        Some(Command::Study(arguments)) => study::run(&arguments, options, &known),
-        Some(Command::Albedo(arguments)) => albedo::run(&arguments, &mut places.open(options, known)?),
-        Some(Command::Plot(arguments)) => plot::run(&arguments, options, &mut places.open(options, known)?),
-        Some(Command::TryShaders) => trial::run(),
-        Some(Command::Schema) => print(&crate::scene::schema::text(places.open(options, known)?.list())),
+        Some(View(given)) => view::run(given.own, options, places, known, window),
+        Some(Render(given)) => render::run(&given.own, options, &mut places.open(options, known)?),
+        Some(Compare(given)) => compare::run(&given.own, options, &mut places.open(options, known)?),
+        Some(Check(given)) => check::run(&given.own, options, &mut places.open(options, known)?),
+        Some(New { file }) => new::run(&file, options, &known),
+        Some(Export(given)) => export::run(&given.own, options, &mut places.open(options, known)?),
+        Some(Explain(given)) => explain::run(&given.own, options, &mut places.open(options, known)?),
+        Some(Lesson(command)) => lesson::run(&command, options, places.open(options, known)?.list()),
+        Some(Match(given)) => matching::run(&given.own, options, &mut places.open(options, known)?),
+        Some(Models(given)) => models::run(given, options, places, known),
+        Some(Assets(command)) => assets::run(&command, options, &known),
+        Some(Evaluate(given)) => evaluate::BRDF.print(&given, &mut places.open(options, known)?),
+        Some(Study(given)) => study::run(&given, options, &known),
+        Some(Albedo(given)) => albedo::ALBEDO.print(&given, &mut places.open(options, known)?),
+        Some(Plot(given)) => plot::run(&given, options, &mut places.open(options, known)?),
+        Some(TryShaders) => trial::run(),
+        Some(Schema) => print(&crate::scene::schema::text(places.open(options, known)?.list())),
     }
 }
 
@@ -481,9 +536,10 @@ fn print_paths<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Outcome {
     if io::stdout().is_terminal() { print_text(&lines) } else { print(&lines) }
 }
 
-/// Prints JSON to standard output.
-fn print_json(text: &str) -> Outcome {
-    print(&printable_json(text))
+/// Prints a value as JSON to standard output.
+fn print_json(value: &impl Serialize) -> Outcome {
+    let json = serde_json::to_string_pretty(value).unwrap_or_default();
+    print(&printable_json(&format!("{json}\n")))
 }
 
 /// Prints a result for programs to standard output.

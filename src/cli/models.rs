@@ -4,10 +4,11 @@ use super::{Options, Outcome, custom, print_json, print_text, workshop::Places};
 use crate::files::Shown as _;
 use crate::{
     failure::Failure,
-    parameter::{ABOVE_ZERO, Parameter, ParameterKind, UsedWhen, json as value},
+    parameter::{Parameter, UsedWhen, json as value},
     reflection::ModelEntry,
     registry::Registry,
-    text::number,
+    scene::field::{Ids, Listed},
+    text::capitalised,
 };
 use std::fmt::Write as _;
 
@@ -81,36 +82,31 @@ fn list(as_json: bool, registry: &Registry) -> Outcome {
     if as_json {
         let models = registry.models().iter().map(|m| model(m, registry));
         let others = others(registry).map(|other| other.to_json());
-        return print_json(&format!("{:#}\n", models.chain(others).collect::<Json>()));
+        return print_json(&models.chain(others).collect::<Json>());
     }
     print_text(&table(registry))
 }
 
 /// A type other than a reflection model.
 struct Other {
-    kind: &'static str,
-    /// Heading in lists.
-    heading: &'static str,
-    id: &'static str,
-    name: &'static str,
-    summary: &'static str,
-    parameters: &'static [Parameter],
+    ids: Ids,
+    listed: Listed,
     /// Additional information specific to this kind, for people and for programs.
     note: String,
-    more: Vec<(&'static str, Json)>,
+    more: Json,
 }
 
 impl Other {
     fn to_json(&self) -> Json {
         let mut json = json!({
-            "kind": self.kind,
-            "id": self.id,
-            "name": self.name,
-            "summary": self.summary,
-            "parameters": self.parameters.iter().map(parameter).collect::<Vec<_>>(),
+            "kind": self.ids.name(),
+            "id": self.listed.id,
+            "name": self.listed.name,
+            "summary": self.listed.summary,
+            "parameters": self.listed.parameters.iter().map(parameter).collect::<Vec<_>>(),
         });
-        for (key, value) in &self.more {
-            json[*key] = value.clone();
+        for (key, value) in self.more.as_object().into_iter().flatten() {
+            json[key] = value.clone();
         }
         json
     }
@@ -118,58 +114,34 @@ impl Other {
 
 /// Shading models, light types and object types.
 fn others(registry: &Registry) -> impl Iterator<Item = Other> {
+    let of = |ids: Ids, about: Vec<(String, Json)>| {
+        let all = ids.all(registry).zip(about);
+        all.map(move |(listed, (note, more))| Other { ids, listed, note, more })
+    };
     let shading = registry.shading_models().iter().map(|entry| {
         let d = entry.declaration;
-        Other {
-            kind: "shading model",
-            heading: "Shading models",
-            id: d.id,
-            name: d.name,
-            summary: d.summary,
-            parameters: entry.parameters,
-            note: d.author.to_owned(),
-            more: vec![("author", d.author.into()), ("source", d.source.into())],
-        }
+        (d.author.to_owned(), json!({ "author": d.author, "source": d.source }))
     });
     let lights = registry.lights().iter().map(|entry| {
         let d = entry.declaration;
-        Other {
-            kind: "light type",
-            heading: "Light types",
-            id: d.id,
-            name: d.name,
-            summary: d.summary,
-            parameters: entry.parameters,
-            note: format!("intensity in {}", d.unit),
-            more: vec![
-                ("unit", d.unit.into()),
-                ("equation", d.equation.into()),
-                ("has_position", d.has_position.into()),
-                ("has_direction", d.has_direction.into()),
-            ],
-        }
+        let more = json!({
+            "unit": d.unit,
+            "equation": d.equation,
+            "has_position": d.has_position,
+            "has_direction": d.has_direction,
+        });
+        (format!("intensity in {}", d.unit), more)
     });
     let shapes = registry.shapes().iter().map(|entry| {
         let d = entry.declaration;
         let (least, most) = (*d.tessellation.start(), *d.tessellation.end());
-        Other {
-            kind: "object type",
-            heading: "Object types",
-            id: d.id,
-            name: d.name,
-            summary: d.summary,
-            parameters: entry.parameters,
-            note: match most {
-                _ if least == most => String::new(),
-                _ => format!("tessellation {least} to {most}"),
-            },
-            more: vec![(
-                "tessellation",
-                json!({ "min": least, "max": most, "default": d.default_tessellation }),
-            )],
-        }
+        let note = if least == most { String::new() } else { format!("tessellation {least} to {most}") };
+        let tessellation = json!({ "min": least, "max": most, "default": d.default_tessellation });
+        (note, json!({ "tessellation": tessellation }))
     });
-    shading.chain(lights).chain(shapes)
+    let shading = of(Ids::ShadingModel, shading.collect());
+    let lights = of(Ids::LightType, lights.collect());
+    shading.chain(lights).chain(of(Ids::ObjectType, shapes.collect()))
 }
 
 /// A model as JSON.
@@ -212,33 +184,11 @@ fn parameter(p: &Parameter) -> Json {
     if let Some(UsedWhen { parameter, choices }) = p.used_when {
         json["used_when"] = json!({ parameter: choices });
     }
-    match &p.kind {
-        ParameterKind::Number { min, max, .. } => {
-            json["type"] = "number".into();
-            if *min == ABOVE_ZERO {
-                json["above"] = 0.into();
-            } else {
-                json["min"] = number(*min);
-            }
-            json["max"] = number(*max);
+    json["type"] = p.kind.name().into();
+    for (key, value) in p.kind.keys() {
+        if key != "slider_max" {
+            json[key] = value;
         }
-        ParameterKind::Integer { min, max, .. } => {
-            json["type"] = "integer".into();
-            json["min"] = (*min).into();
-            json["max"] = (*max).into();
-        }
-        ParameterKind::Colour { .. } => json["type"] = "colour".into(),
-        ParameterKind::Triple { min, max, .. } => {
-            json["type"] = "triple".into();
-            json["min"] = number(*min);
-            json["max"] = number(*max);
-        }
-        ParameterKind::Choice { .. } if p.is_flag() => json["type"] = "flag".into(),
-        ParameterKind::Choice { options, .. } => {
-            json["type"] = "choice".into();
-            json["choices"] = options.iter().map(|(id, _)| *id).collect::<Vec<_>>().into();
-        }
-        ParameterKind::File { .. } => json["type"] = "file".into(),
     }
     json
 }
@@ -268,14 +218,14 @@ fn table(registry: &Registry) -> String {
         }
         parameters(&mut text, ids, m.parameters);
     }
-    let mut heading = "";
-    for other in others(registry) {
-        if std::mem::replace(&mut heading, other.heading) != other.heading {
-            let _ = writeln!(text, "\n{heading}");
+    let mut kind = None;
+    for Other { ids: of, listed, note, .. } in others(registry) {
+        if kind.replace(of) != Some(of) {
+            let _ = writeln!(text, "\n{}s", capitalised(of.name()));
         }
-        let line = format!("  {:ids$}  {:names$}  {}", other.id, other.name, other.note);
-        let _ = writeln!(text, "{}\n  {:ids$}  {}", line.trim_end(), "", other.summary);
-        parameters(&mut text, ids, other.parameters);
+        let line = format!("  {:ids$}  {:names$}  {note}", listed.id, listed.name);
+        let _ = writeln!(text, "{}\n  {:ids$}  {}", line.trim_end(), "", listed.summary);
+        parameters(&mut text, ids, listed.parameters);
     }
     text
 }
@@ -287,14 +237,7 @@ fn parameters(text: &mut String, ids: usize, all: &[Parameter]) {
         let used = p
             .used_when
             .map_or_else(String::new, |u| format!("; used with {} {}", u.parameter, u.choices.join(", ")));
-        let _ = writeln!(
-            text,
-            "  {:ids$}    {} ({}){unit}: {}, default {}{used}",
-            "",
-            p.name,
-            p.label,
-            p.rule(),
-            p.default_value()
-        );
+        let (Parameter { name, label, .. }, rule, default) = (p, p.rule(), p.default_value());
+        let _ = writeln!(text, "  {:ids$}    {name} ({label}){unit}: {rule}, default {default}{used}", "");
     }
 }

@@ -20,10 +20,8 @@ use crate::{
 pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|text: OsString| {
         if text == "-" {
-            return Err(
-                "results go to files; name one (./- for one called -). For pictures, /dev/stdout is standard \
-                        output",
-            );
+            let rule = "results go to files; name one (./- for one called -). For pictures, /dev/stdout is standard output";
+            return Err(rule);
         }
         Ok(PathBuf::from(text))
     })

@@ -39,9 +39,8 @@ fn decode(bytes: &[u8]) -> Result<Shown, String> {
     let mut reader = decoder.read_info().map_err(broken)?;
     let (width, height) = (reader.info().width, reader.info().height);
     if width.max(height) > MAX_SIDE {
-        return Err(format!(
-            "the picture has {width}×{height} pixels, but each side must have at most {MAX_SIDE}"
-        ));
+        let size = format!("{width}×{height} pixels");
+        return Err(format!("the picture has {size}, but each side must have at most {MAX_SIDE}"));
     }
     let size = reader.output_buffer_size().ok_or_else(|| "the picture is too large".to_owned())?;
     let mut codes = vec![0; size];

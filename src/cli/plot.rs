@@ -98,11 +98,10 @@ fn wanted(word: &str) -> Vec<Wanted<'_>> {
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
-    let format = arguments
-        .output
-        .as_deref()
-        .map(|file| Format::of(file).map_err(|rule| Failure::Usage(format!("-o {}: {rule}", file.shown()))));
-    let format = format.transpose()?;
+    let format = |file: &PathBuf| {
+        Format::of(file).map_err(|rule| Failure::Usage(format!("-o {}: {rule}", file.shown())))
+    };
+    let format = arguments.output.as_ref().map(format).transpose()?;
     let setup = Setup::new(arguments.kind, arguments.theta_i, arguments.phi_i).map_err(|error| {
         let option = match error {
             CurveError::Azimuth(_) => "--phi-i",
@@ -148,34 +147,29 @@ fn subjects(models: &[Wanted], set: &Settings, registry: &Registry) -> Result<Ve
     }
     for (wanted, model) in &entries {
         let mut values = Values::default();
-        let written = wanted.settings.iter().map(|text| {
-            let (name, value) = text.split_once('=').unwrap_or((text, ""));
-            (name.trim(), value.trim(), wanted.written.to_owned(), text.contains('='))
-        });
-        // Values given with the model take precedence over those given for all.
-        let common = set
-            .settings
-            .iter()
-            .map(|s| (s.name.as_str(), s.value.as_str(), format!("--set {}={}", s.name, s.value), true));
-        let alone = wanted.settings.len();
-        for (i, (name, value, place, is_setting)) in written.chain(common).enumerate() {
-            // A parameter of one of the other models is not an error.
-            let elsewhere = i >= alone && entries.iter().any(|(_, m)| m.parameter(name).is_some());
-            let given = wanted.settings.iter().any(|text| text.split('=').next() == Some(name));
-            if i >= alone && (given || elsewhere && model.parameter(name).is_none()) {
-                continue;
-            }
-            if !is_setting {
+        let place = wanted.written;
+        for text in &wanted.settings {
+            let Some((name, value)) = text.split_once('=') else {
                 problems
                     .push(format!("{place}: a colon must be followed by NAME=VALUE, e.g. phong:alpha=20"));
                 continue;
-            }
-            match setting(model, name, value) {
-                Ok((name, _)) if i < alone && values.0.contains_key(name) => {
+            };
+            match setting(model, name.trim(), value.trim()) {
+                Ok((name, _)) if values.0.contains_key(name) => {
                     problems.push(format!("{place}: {name} is given twice"));
                 }
                 Ok((name, value)) => values.set(name, value),
                 Err(problem) => problems.push(format!("{place}: {problem}")),
+            }
+        }
+        for of_all in &set.settings {
+            let name = of_all.name.as_str();
+            // Values given with the model take precedence over those given for all.
+            let given = wanted.settings.iter().any(|text| text.split('=').next() == Some(name));
+            // A parameter of one of the other models is not an error.
+            let elsewhere = entries.iter().any(|(_, other)| other.parameter(name).is_some());
+            if !given && (!elsewhere || model.parameter(name).is_some()) {
+                of_all.put(model, &mut values, &mut problems);
             }
         }
         subjects.push(Subject::model(model, &values, Encoding::Srgb));

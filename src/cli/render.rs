@@ -13,12 +13,12 @@ use bevy::app::App;
 use clap::{Args, ValueEnum};
 
 use super::{
-    FINE, Options, Outcome, finite, gauged,
+    FINE, Options, Outcome, collected, finite, gauged,
     light_samples::{self, Sampling},
-    outputs, progress,
+    one_of, outputs, progress,
     scenes::Source,
     style,
-    views::{self, Part, Plan},
+    views::{self, Part, Plan, word},
     workshop::{Workshop, drawable, invalid, not_on_cpu},
 };
 use crate::files::Shown as _;
@@ -29,7 +29,7 @@ use crate::{
     explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
-    files::{Kind, is_descriptor, kind as kind_on_disk, printable},
+    files::{Kind, is_descriptor, kind, printable},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     progress::Progress,
     reference::{self, LightSamples, Reached, Until},
@@ -45,8 +45,8 @@ use crate::{
             process::{Budget, TrialProcess},
         },
     },
-    scene::{Display, Scene, comparison::Layout, field::Ids, has_extent, variant::LETTERS},
-    text::quoted,
+    scene::{Comparison, Display, Scene, comparison::Layout, field::Ids, has_extent, variant::LETTERS},
+    text::{listed, quoted},
 };
 
 /// Maximum number of objects whose models are tried on the CPU before the GPU draws them.
@@ -84,7 +84,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "ID")]
     shading: Option<String>,
     #[arg(long, value_name = "NAME", help = format!(
-        "Use this tone mapping instead of the scene's: {}", crate::text::listed(&ToneMapping::ALL.map(ToneMapping::id), "or")
+        "Use this tone mapping instead of the scene's: {}", listed(&ToneMapping::ALL.map(ToneMapping::id), "or")
     ))]
     tone_mapping: Option<String>,
     /// Use this exposure in EV instead of the scene's; each step up doubles the light
@@ -95,7 +95,7 @@ pub(super) struct Arguments {
     term: TermSelection,
     #[arg(long, value_parser = channel, value_name = "NAME", help = format!(
         "Show a debug channel with its legend instead of the picture: {}",
-        crate::text::listed(&DebugChannel::ALL.map(DebugChannel::id), "or")
+        listed(&DebugChannel::ALL.map(DebugChannel::id), "or")
     ))]
     channel: Option<DebugChannel>,
     /// The light of the channel, by its name or its number in the scene; by default the brightest one
@@ -111,7 +111,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "VIEW", conflicts_with = "layout")]
     view: Option<String>,
     /// Arrange the views so, instead of as the scene says: single, side_by_side, wipe, difference or blink
-    #[arg(long, value_parser = views::layout)]
+    #[arg(long, value_parser = |text: &str| word::<Layout>(text, Comparison::layout))]
     layout: Option<Layout>,
     /// Leave the scene out of the picture's file: lcm cannot open the picture then
     #[arg(long)]
@@ -178,21 +178,11 @@ pub(super) fn samples(text: &str) -> Result<u32, String> {
 }
 
 pub(super) fn term(text: &str) -> Result<TermSelection, String> {
-    TermSelection::from_id(text).ok_or_else(|| {
-        let known = TermSelection::ALL.map(TermSelection::id);
-        let hint = crate::text::nearest(text, known.map(|k| (k, k)).into_iter())
-            .map_or_else(String::new, |k| format!("; did you mean {k}?"));
-        format!("it must be {}{hint}", crate::text::listed(&known, "or"))
-    })
+    TermSelection::from_id(text).ok_or_else(|| one_of("it", text, &TermSelection::ALL.map(TermSelection::id)))
 }
 
 fn channel(text: &str) -> Result<DebugChannel, String> {
-    DebugChannel::from_id(text).ok_or_else(|| {
-        let known = DebugChannel::ALL.map(DebugChannel::id);
-        let hint = crate::text::nearest(text, known.map(|k| (k, k)).into_iter())
-            .map_or_else(String::new, |k| format!("; did you mean {k}?"));
-        format!("it must be {}{hint}", crate::text::listed(&known, "or"))
-    })
+    DebugChannel::from_id(text).ok_or_else(|| one_of("it", text, &DebugChannel::ALL.map(DebugChannel::id)))
 }
 
 /// The index of a light in a scene, from its name or number.
@@ -209,7 +199,7 @@ fn light(scene: &Scene, name: &str) -> Result<usize, String> {
         let rule = match scene.lights.len() {
             0 => "the scene has no lights".to_owned(),
             count if count > MOST_LISTED => format!("it must be a name or a number from 1 to {count}"),
-            _ => format!("it must be {}", crate::text::listed(&known, "or")),
+            _ => format!("it must be {}", listed(&known, "or")),
         };
         return Err(format!("there is no light {}; {rule}", quoted(name)));
     };
@@ -221,25 +211,21 @@ fn light(scene: &Scene, name: &str) -> Result<usize, String> {
 
 /// One picture to render.
 struct Job<'a> {
+    arguments: &'a Arguments,
     /// The scene in the picture.
     scene: &'a Scene,
     plan: &'a Plan,
     source: &'a Source,
     file: &'a Path,
-    size: [u32; 2],
-    samples: u32,
-    /// A description of the sampling of lights with extent.
-    sampling: Sampling,
-    with_scene: bool,
-    with_caption: bool,
-    /// True if one view was requested.
-    alone: bool,
     /// The debug channel shown instead of the picture.
     channel: Option<Setting>,
-    with_legend: bool,
 }
 
 impl Job<'_> {
+    fn size(&self) -> [u32; 2] {
+        [self.arguments.size.width, self.arguments.size.height]
+    }
+
     /// True if what is shown of a scene depends on samples of lights with extent.
     fn converges(&self, scene: &Scene, registry: &Registry) -> bool {
         self.channel.is_none_or(|setting| rests_on_samples(setting.channel))
@@ -263,38 +249,22 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let renderer = renderer(arguments)?;
 
     // All scenes are read before the first is rendered, so that errors in the last one appear at once.
-    let mut scenes = Vec::with_capacity(sources.len());
-    let mut problems = Vec::new();
-    for source in &sources {
-        match source.open(workshop, options) {
-            Ok(scene) => {
-                let mut scene = changes.apply(scene);
-                let mut beyond = scene.bring_into_range(&workshop.registry);
-                beyond.extend(scene.beyond_the_range_of_views(&workshop.registry));
-                beyond.iter().for_each(|said| options.tell(format_args!("{}: {said}", source.name())));
-                scenes.push(scene);
-            }
-            Err(Failure::Invalid(problem)) => problems.push(problem),
-            Err(other) => return Err(other),
-        }
-    }
-    if !problems.is_empty() {
-        return Err(Failure::Invalid(problems.join("\n")));
-    }
+    let scenes = collected(sources.iter().map(|source| {
+        let mut scene = changes.apply(source.open(workshop, options)?);
+        let mut beyond = scene.bring_into_range(&workshop.registry);
+        beyond.extend(scene.beyond_the_range_of_views(&workshop.registry));
+        beyond.iter().for_each(|said| options.tell(format_args!("{}: {said}", source.name())));
+        Ok(scene)
+    }))?;
 
     let registry = &workshop.registry;
     let size = [arguments.size.width, arguments.size.height];
-    let mut plans = Vec::with_capacity(sources.len());
-    for (scene, source) in scenes.iter().zip(&sources) {
-        match plan(scene, arguments, size, registry) {
-            Ok(plan) => plans.push(plan),
-            Err(Failure::Invalid(why)) => problems.push(format!("{}: {why}", source.name())),
-            Err(other) => return Err(other),
-        }
-    }
-    if !problems.is_empty() {
-        return Err(Failure::Invalid(problems.join("\n")));
-    }
+    let plans = collected(scenes.iter().zip(&sources).map(|(scene, source)| {
+        plan(scene, arguments, size, registry).map_err(|failure| match failure {
+            Failure::Invalid(why) => Failure::Invalid(format!("{}: {why}", source.name())),
+            other => other,
+        })
+    }))?;
     // By now the registry knows the files of models and shaders.
     let read = inputs(sources.iter().filter_map(Source::path), &scenes, registry);
     files.iter().try_for_each(|file| outputs::picture(file, &read))?;
@@ -329,38 +299,16 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         .flat_map(|part| reference::ignored_edits(registry, &part.scene))
         .collect();
     if !passed.is_empty() {
-        let passed: Vec<_> = passed.iter().map(String::as_str).collect();
-        options.tell(format_args!(
-            "the CPU renderer ignores the edited {}; --renderer gpu uses the edits",
-            crate::text::listed(&passed, "and")
-        ));
+        let passed = listed(&passed.iter().map(String::as_str).collect::<Vec<_>>(), "and");
+        options.tell(format!("the CPU renderer ignores the edited {passed}; --renderer gpu uses the edits"));
     }
-    let mut channels = Vec::with_capacity(scenes.len());
-    for ((scene, plan), source) in scenes.iter().zip(&plans).zip(&sources) {
-        match setting(scene, plan, arguments, registry) {
-            Ok(channel) => channels.push(channel),
-            Err(why) => problems.push(format!("{}: {why}", source.name())),
-        }
-    }
-    if !problems.is_empty() {
-        return Err(Failure::Invalid(problems.join("\n")));
-    }
+    let channels = collected(scenes.iter().zip(&plans).zip(&sources).map(|((scene, plan), source)| {
+        let invalid = |why| Failure::Invalid(format!("{}: {why}", source.name()));
+        setting(scene, plan, arguments, registry).map_err(invalid)
+    }))?;
     let jobs = scenes.iter().zip(&plans).zip(channels).zip(&sources).zip(&files);
     for (done, ((((scene, plan), channel), source), file)) in (0u64..).zip(jobs) {
-        let job = Job {
-            scene,
-            plan,
-            source,
-            file,
-            size,
-            samples: arguments.samples,
-            sampling: arguments.sampling,
-            with_scene: !arguments.no_scene,
-            with_caption: arguments.caption,
-            alone: arguments.view.is_some(),
-            channel,
-            with_legend: !arguments.no_legend,
-        };
+        let job = Job { arguments, scene, plan, source, file, channel };
         let Painted { remarks, light } = if bar.is_hidden() {
             let what = format!("drawing {}", source.name());
             gauged(&what, options, |progress| painter.draw(&job, registry, progress))?
@@ -393,11 +341,9 @@ fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
     if let Some(channel) = arguments.channel.filter(|channel| !rests_on_samples(*channel)) {
         let known = DebugChannel::ALL.into_iter().filter(|known| rests_on_samples(*known));
         let known: Vec<_> = known.map(DebugChannel::id).collect();
-        return Err(Failure::Usage(format!(
-            "{given} cannot be used with --channel {}, which does not depend on light samples; channels that do are {}",
-            channel.id(),
-            crate::text::listed(&known, "and")
-        )));
+        let said = format!("{given} cannot be used with --channel {}", channel.id());
+        let rule = format!("channels that do are {}", listed(&known, "and"));
+        return Err(Failure::Usage(format!("{said}, which does not depend on light samples; {rule}")));
     }
     match arguments.renderer {
         Renderer::Gpu => Err(Failure::Usage(format!(
@@ -492,7 +438,7 @@ impl Painter {
             let outlined = all.is_empty() && job.plan.is_map();
             all.push(if outlined { shown.outlined(&part.scene, registry) } else { shown });
             remarks.extend(of_part);
-            rests_on.extend(reached.map(Sampled::from));
+            rests_on.extend(reached);
         }
         let mut shown = all;
         let light = caption::line(&caption::sampled(&rests_on));
@@ -500,13 +446,13 @@ impl Painter {
             Some(only) if shown.is_empty() => only.into_rgb8(),
             last => {
                 shown.extend(last);
-                compose(&job.plan.comparison, job.size, &shown)
+                compose(&job.plan.comparison, job.size(), &shown)
                     .map_err(|error| Failure::Invalid(format!("{}: {error}", job.source.name())))?
             }
         };
-        let rgb8 = match job.channel.filter(|_| job.with_legend) {
+        let rgb8 = match job.channel.filter(|_| !job.arguments.no_legend) {
             Some(channel) => {
-                with_legends(&job.plan.comparison, rgb8, job.size, &legends(job.plan, channel, registry))
+                with_legends(&job.plan.comparison, rgb8, job.size(), &legends(job.plan, channel, registry))
             }
             None => rgb8,
         };
@@ -514,12 +460,9 @@ impl Painter {
         let about = About::scene(&pictured(job), registry)
             .with("Source", job.source.name())
             .with("Renderer", renderer);
-        let about = match job.channel {
-            Some(setting) => about.with("Channel", setting.channel.id()),
-            None => about,
-        };
+        let about = job.channel.into_iter().fold(about, |about, s| about.with("Channel", s.channel.id()));
         let about = light_samples::noted(about, &light);
-        let about = if job.with_scene { about } else { about.without_scene() };
+        let about = if job.arguments.no_scene { about.without_scene() } else { about };
         let (rgb8, size) = captioned(job, registry, rgb8, &rests_on);
         outputs::write_picture(job.file, size, &rgb8, &about)?;
         Ok(Painted { remarks, light })
@@ -527,7 +470,7 @@ impl Painter {
 
     fn on_gpu(&mut self, job: &Job, part: &Part, registry: &Registry) -> Result<Drawn, Failure> {
         let Cell { width, height, .. } = part.cell;
-        let key = (width, height, job.samples);
+        let key = (width, height, job.arguments.samples);
         let failed = |e: GpuError| match e {
             GpuError::Invalid(_) | GpuError::Endless(_) => e.into(),
             e => Failure::NoRenderer(format!("{}: {e}", job.file.shown())),
@@ -541,7 +484,7 @@ impl Painter {
         let renderer = match &mut self.last {
             Some((last, renderer)) if *last == key => renderer,
             slot => {
-                let samples = if job.samples == 4 { 4 } else { 1 };
+                let samples = if job.arguments.samples == 4 { 4 } else { 1 };
                 let renderer = GpuRenderer::extended(width, height, samples, gpu::Output::Display, |app| {
                     try_apart(app, registry, self.trial_program.clone());
                     app.insert_resource(registry.clone());
@@ -590,12 +533,12 @@ fn legends(plan: &Plan, channel: Setting, registry: &Registry) -> Vec<Legend> {
 
 /// The picture and its size, with a caption if requested.
 fn captioned(job: &Job, registry: &Registry, rgb8: Vec<u8>, rests_on: &[Sampled]) -> (Vec<u8>, [u32; 2]) {
-    if !job.with_caption {
-        return (rgb8, job.size);
+    if !job.arguments.caption {
+        return (rgb8, job.size());
     }
     let shown: Vec<_> = job.plan.parts.iter().map(|part| (part.cell.view, &part.scene, part.terms)).collect();
     let caption = caption::of_picture(job.scene, &shown, registry).resting_on(rests_on);
-    caption::draw(&caption, rgb8, job.size)
+    caption::draw(&caption, rgb8, job.size())
 }
 
 /// True if something is drawn that this crate's tests do not cover.
@@ -615,19 +558,20 @@ fn try_apart(app: &mut App, registry: &Registry, program: Option<PathBuf>) {
 
 fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> Result<Drawn, Failure> {
     let can_draw = || {
-        let without = job.sampling.given().map_or_else(String::new, |given| format!(" without {given}"));
+        let without =
+            job.arguments.sampling.given().map_or_else(String::new, |given| format!(" without {given}"));
         cpu_can_draw_or(&part.scene, registry, &format!("--renderer gpu{without}"))
     };
     can_draw()?;
     let Cell { width, height, .. } = part.cell;
-    let settings = reference::Settings { width, height, samples: job.samples, terms: part.terms };
+    let settings = reference::Settings { width, height, samples: job.arguments.samples, terms: part.terms };
     // A channel does not record non-finite light.
     let odd = AtomicBool::new(job.channel.is_some() && has_untested(registry));
     let of_codes = |rgb8| Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()));
     let alone = job.channel.filter(|setting| setting.channel.is_picture());
     let lit =
         alone.map_or_else(|| Cow::Borrowed(&part.scene), |setting| Cow::Owned(setting.lit(&part.scene)));
-    let until = job.sampling.until();
+    let until = job.arguments.sampling.until();
     let converged = || {
         reference::render_until(&lit, registry, &settings, until, &odd, progress)
             .map_err(|cancelled| Failure::Invalid(cancelled.to_string()))
@@ -649,14 +593,15 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> R
         reached = Some(end);
         Shown::of_light(picture, &lit.display)
     } else if job.plan.needs_light() {
-        Shown::of_light(reference::render_noting(&lit, registry, &settings, &odd), &lit.display)
+        let picture = reference::render_samples(&lit, registry, &settings, LightSamples::default(), &odd);
+        Shown::of_light(picture, &lit.display)
     } else {
         of_codes(reference::render_rgb8_noting(&lit, registry, &settings, &odd))?
     };
     // An endless function is detected only when it runs.
     can_draw()?;
     let odd = odd.into_inner().then(|| finite::remark_on_cpu(part, registry)).flatten();
-    let noisy = reached.and_then(|reached| job.sampling.remark(reached));
+    let noisy = reached.and_then(|reached| job.arguments.sampling.remark(reached));
     Ok(Drawn { shown, reached, remarks: odd.into_iter().chain(noisy).collect() })
 }
 
@@ -679,7 +624,7 @@ fn plan(scene: &Scene, arguments: &Arguments, size: [u32; 2], registry: &Registr
 /// The scene stored in a picture: command-line options for views are included.
 fn pictured(job: &Job) -> Scene {
     match job.plan.parts.as_slice() {
-        [part] if job.alone => part.scene.clone().alone(),
+        [part] if job.arguments.view.is_some() => part.scene.clone().alone(),
         _ => Scene { comparison: job.plan.comparison, ..job.scene.clone() },
     }
 }
@@ -693,20 +638,15 @@ fn setting(
 ) -> Result<Option<Setting>, String> {
     let Some(channel) = arguments.channel else { return Ok(None) };
     if plan.needs_light() {
-        return Err(
-            "the difference in linear light has no channels; use another --layout, or compare display codes"
-                .to_owned(),
-        );
+        let remedy = "use another --layout, or compare display codes";
+        return Err(format!("the difference in linear light has no channels; {remedy}"));
     }
     let chosen = arguments.light.as_deref().map(|name| light(scene, name)).transpose()?;
     let setting = Setting::new(channel, scene, registry, scene.observer.position, chosen);
     let place = chosen.map(|chosen| scene.lights[..chosen].iter().filter(|light| light.enabled).count());
     if place.is_some() && channel.has_light() && setting.light != place {
-        return Err(format!(
-            "--light is {}, which has no direction, but {} needs one",
-            quoted(arguments.light.as_deref().unwrap_or_default()),
-            channel.name()
-        ));
+        let (light, channel) = (quoted(arguments.light.as_deref().unwrap_or_default()), channel.name());
+        return Err(format!("--light is {light}, which has no direction, but {channel} needs one"));
     }
     if place.is_some() && !channel.has_light() {
         return Err(format!("--light is for channels of one light, and {} is not one", channel.id()));
@@ -730,15 +670,13 @@ fn cpu_can_draw_or(scene: &Scene, registry: &Registry, instead: &str) -> Outcome
 }
 
 /// Changes from the command line, applied to every scene.
-struct Changes {
-    reflection: Option<String>,
-    shading: Option<String>,
+struct Changes<'a> {
+    arguments: &'a Arguments,
     tone_mapping: Option<ToneMapping>,
-    exposure: Option<f32>,
 }
 
-impl Changes {
-    fn new(arguments: &Arguments, registry: &Registry) -> Result<Self, Failure> {
+impl<'a> Changes<'a> {
+    fn new(arguments: &'a Arguments, registry: &Registry) -> Result<Self, Failure> {
         let usage = |flag: &str, value: &str, rule: String| {
             Failure::Usage(format!("--{flag} is {}, but {rule}", quoted(value)))
         };
@@ -753,39 +691,31 @@ impl Changes {
         if let Some(ev) = arguments.exposure {
             Display::exposure.check_number(ev).map_err(|rule| usage("exposure", &ev.to_string(), rule))?;
         }
-        let tone_mapping = match &arguments.tone_mapping {
-            None => None,
-            Some(id) => {
-                Display::tone_mapping.check_text(id).map_err(|rule| usage("tone-mapping", id, rule))?;
-                ToneMapping::from_id(id)
-            }
-        };
-        Ok(Self {
-            reflection: arguments.reflection.clone(),
-            shading: arguments.shading.clone(),
-            tone_mapping,
-            exposure: arguments.exposure,
-        })
+        if let Some(id) = &arguments.tone_mapping {
+            Display::tone_mapping.check_text(id).map_err(|rule| usage("tone-mapping", id, rule))?;
+        }
+        Ok(Self { arguments, tone_mapping: arguments.tone_mapping.as_deref().and_then(ToneMapping::from_id) })
     }
 
     /// The scene with the changes. A model from the command line also replaces the overrides of objects and
     /// views: the purpose is to see the whole scene with it.
     fn apply(&self, mut scene: Scene) -> Scene {
-        if let Some(id) = &self.reflection {
+        let Arguments { reflection, shading, exposure, .. } = self.arguments;
+        if let Some(id) = reflection {
             scene.reflection_model.clone_from(id);
             scene.objects.iter_mut().for_each(|o| o.reflection_model = None);
         }
-        if let Some(id) = &self.shading {
+        if let Some(id) = shading {
             scene.shading_model.clone_from(id);
             scene.objects.iter_mut().for_each(|o| o.shading_model = None);
         }
         scene.display.tone_mapping = self.tone_mapping.unwrap_or(scene.display.tone_mapping);
-        scene.display.exposure = self.exposure.unwrap_or(scene.display.exposure);
+        scene.display.exposure = exposure.unwrap_or(scene.display.exposure);
         for variant in &mut scene.variants {
-            variant.reflection_model.take_if(|_| self.reflection.is_some());
-            variant.shading_model.take_if(|_| self.shading.is_some());
+            variant.reflection_model.take_if(|_| reflection.is_some());
+            variant.shading_model.take_if(|_| shading.is_some());
             variant.tone_mapping.take_if(|_| self.tone_mapping.is_some());
-            variant.exposure.take_if(|_| self.exposure.is_some());
+            variant.exposure.take_if(|_| exposure.is_some());
         }
         scene
     }
@@ -795,16 +725,14 @@ impl Changes {
 fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
     let folder = match output {
         None => Path::new(RENDERS_DIR),
-        Some(path) => match (kind(path)?, sources) {
-            (Output::File, [_]) => return Ok(vec![path.to_owned()]),
-            (Output::File, _) => {
-                return Err(Failure::Usage(format!(
-                    "-o {} is one file, but there are {} scenes; name a folder",
-                    path.shown(),
-                    sources.len()
-                )));
+        Some(path) => match (is_file(path)?, sources) {
+            (true, [_]) => return Ok(vec![path.to_owned()]),
+            (true, _) => {
+                let (file, count) = (path.shown(), sources.len());
+                let said = format!("-o {file} is one file, but there are {count} scenes; name a folder");
+                return Err(Failure::Usage(said));
             }
-            (Output::Folder, _) => path,
+            (false, _) => path,
         },
     };
     let mut files = Vec::with_capacity(sources.len());
@@ -812,11 +740,8 @@ fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Fail
     for source in sources {
         let file = folder.join(format!("{}.png", source.stem()));
         if let Some(other) = taken.insert(file.clone(), source.name()) {
-            return Err(Failure::Usage(format!(
-                "{other} and {} would both be written to {}; render them one by one with -o FILE",
-                source.name(),
-                file.shown()
-            )));
+            let both = format!("{other} and {} would both be written to {}", source.name(), file.shown());
+            return Err(Failure::Usage(format!("{both}; render them one by one with -o FILE")));
         }
         files.push(file);
     }
@@ -830,47 +755,34 @@ pub(super) fn one_picture(path: &Path) -> Outcome {
     if stdout.iter().any(|name| path == Path::new(name)) {
         return Err(usage("standard output is for the numbers; name a PNG file"));
     }
-    match kind(path)? {
-        Output::File => Ok(()),
-        Output::Folder => Err(usage("name a PNG file")),
-    }
+    if is_file(path)? { Ok(()) } else { Err(usage("name a PNG file")) }
 }
 
-/// The meaning of `-o`.
-#[derive(Debug, PartialEq, Eq)]
-enum Output {
-    File,
-    Folder,
-}
-
-/// Classifies a path: one that ends in `.png` is a file, unless it is an existing folder; so is a device or a
-/// pipe. Other picture formats are refused; anything else is a folder.
-fn kind(path: &Path) -> Result<Output, Failure> {
-    match kind_on_disk(path) {
-        Ok(Kind::Folder) => return Ok(Output::Folder),
-        Ok(Kind::Device | Kind::Pipe) => return Ok(Output::File),
+/// True if `-o` is a file, and not a folder. A path that ends in `.png` is one, unless it is an existing folder; so
+/// is a device or a pipe. Other picture formats are refused; anything else is a folder.
+fn is_file(path: &Path) -> Result<bool, Failure> {
+    match kind(path) {
+        Ok(Kind::Folder) => return Ok(false),
+        Ok(Kind::Device | Kind::Pipe) => return Ok(true),
         Ok(Kind::Socket | Kind::Unknown) => {
             return Err(Failure::Write(format!("-o {} is neither a file nor a folder", path.shown())));
         }
-        Ok(Kind::File) if is_descriptor(path) => return Ok(Output::File),
+        Ok(Kind::File) if is_descriptor(path) => return Ok(true),
         Ok(Kind::File) | Err(_) => {}
     }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     match extension.as_str() {
-        "png" => Ok(Output::File),
+        "png" => Ok(true),
         "jpg" | "jpeg" | "gif" | "bmp" | "tif" | "tiff" | "webp" | "exr" | "hdr" | "ppm" | "tga" | "svg"
         | "pdf" => {
-            let png = path.with_extension("png");
-            Err(Failure::Usage(format!(
-                "-o {}: only PNG files can be written; did you mean {}?",
-                path.shown(),
-                png.shown()
-            )))
+            let (file, png) = (path.shown(), path.with_extension("png"));
+            let hint = format!("did you mean {}?", png.shown());
+            Err(Failure::Usage(format!("-o {file}: only PNG files can be written; {hint}")))
         }
         _ if path.is_file() => {
             Err(Failure::Write(format!("-o {} is not a PNG file; name a PNG file or a folder", path.shown())))
         }
-        _ => Ok(Output::Folder),
+        _ => Ok(false),
     }
 }
 

@@ -120,42 +120,50 @@ impl Source {
 
     /// Reads the scene, with questions where needed.
     pub(super) fn open(&self, workshop: &mut Workshop, options: Options) -> Result<Scene, Failure> {
-        let invalid = |e: LoadError| Failure::Invalid(self.with_remedy(e.to_string()));
         match self.read(workshop, options.defaults()) {
             Ok(Loaded { scene, missing, .. }) if missing.is_empty() => Ok(scene),
             Ok(Loaded { scene, missing, .. }) => {
                 let name = self.name();
-                let question = format!("{name}: missing: {}. Use the defaults?", parts(&missing));
-                match answer(options, &question) {
-                    None => return Err(invalid(LoadError::Missing { name, missing })),
-                    Some(false) => return Err(Failure::Invalid(format!("{name} was not loaded"))),
-                    Some(true) => {}
-                }
-                options.detail(format_args!("{name}: missing: {}; defaults used", parts(&missing)));
+                let said = format!("{name}: missing: {}", parts(&missing));
+                let refused = LoadError::Missing { name, missing };
+                self.agreed(options, &format!("{said}. Use the defaults?"), &refused)?;
+                options.detail(format_args!("{said}; defaults used"));
                 Ok(scene)
             }
             Err(error @ LoadError::Empty { .. }) => {
-                let name = self.name();
-                match answer(options, &format!("{name} is empty. Load the default scene?")) {
-                    None => Err(Failure::Invalid(error.to_string())),
-                    Some(false) => Err(Failure::Invalid(format!("{name} was not loaded"))),
-                    Some(true) => Ok(Scene::default()),
-                }
+                let question = format!("{} is empty. Load the default scene?", self.name());
+                self.agreed(options, &question, &error).map(|()| Scene::default())
             }
-            Err(error) => Err(invalid(error)),
+            Err(error) => Err(self.invalid(&error)),
         }
     }
 
-    /// A message, with a remedy if it concerns a file unpacked by this program.
-    fn with_remedy(&self, message: String) -> String {
+    /// Fails unless the flags or the user agree; with an error if there is nobody to ask, or the flags refuse.
+    fn agreed(&self, options: Options, question: &str, error: &LoadError) -> Result<(), Failure> {
+        let answer = match options.defaults() {
+            Defaults::Use => Some(true),
+            Defaults::Refuse => None,
+            Defaults::Ask => ask(question),
+        };
+        match answer {
+            Some(true) => Ok(()),
+            Some(false) => Err(Failure::Invalid(format!("{} was not loaded", self.name()))),
+            None => Err(self.invalid(error)),
+        }
+    }
+
+    /// The failure for an error, with a remedy if it concerns a file unpacked by this program.
+    fn invalid(&self, error: &LoadError) -> Failure {
+        let message = error.to_string();
         let folder = match self {
             Self::Inside(inside) => files_inside(inside).ok().flatten(),
             _ => None,
         };
-        match folder.filter(|folder| message.contains(&*folder.to_string_lossy())) {
+        let folder = folder.filter(|folder| message.contains(&*folder.to_string_lossy()));
+        Failure::Invalid(match folder {
             Some(folder) => format!("{message}; {}", unpacking(&folder)),
             None => message,
-        }
+        })
     }
 }
 
@@ -173,15 +181,6 @@ fn watched<T>(options: Options, work: impl FnOnce() -> T) -> T {
         bar.finish_and_clear();
     };
     attended(options, Duration::from_millis(500), watch, work)
-}
-
-/// The answer of the flags, or of the user; `None` if there is nobody to ask, or the flags refuse.
-fn answer(options: Options, question: &str) -> Option<bool> {
-    match options.defaults() {
-        Defaults::Use => Some(true),
-        Defaults::Refuse => None,
-        Defaults::Ask => ask(question),
-    }
 }
 
 /// The missing parts on one line.

@@ -85,17 +85,12 @@ fn report(arguments: &Arguments, options: Options, registry: &Registry) -> Outco
         .map_err(|e| Failure::Invalid(e.to_string()))?;
     bar.finish_and_clear();
     if !had_report && free(folder, false).is_err() {
-        return Err(Failure::Write(format!(
-            "another program wrote to {} in the meantime; its files were kept, and this report was not written",
-            folder.shown()
-        )));
+        let said = format!("another program wrote to {} in the meantime", folder.shown());
+        return Err(Failure::Write(format!("{said}; its files were kept, and this report was not written")));
     }
     study.write(folder).map_err(|error| unwritten(folder, &error.into()))?;
-    options.tell(format_args!(
-        "wrote {} ({:.0} s)",
-        folder.join("index.html").shown(),
-        start.elapsed().as_secs_f64()
-    ));
+    let (page, seconds) = (folder.join("index.html"), start.elapsed().as_secs_f64());
+    options.tell(format_args!("wrote {} ({seconds:.0} s)", page.shown()));
     Ok(())
 }
 
@@ -108,14 +103,11 @@ fn free(folder: &Path, overwrite: bool) -> Outcome {
     // A problem with an unreadable folder appears on writing.
     let Ok(mut entries) = fs::read_dir(folder) else { return Ok(()) };
     let name = folder.shown();
-    match (entries.next(), study::is_report(folder)) {
-        (None, _) => Ok(()),
-        (_, true) if overwrite => Ok(()),
-        (_, true) => Err(Failure::Write(format!(
-            "{name} already has a report; --overwrite replaces it, -o FOLDER writes to another folder"
-        ))),
-        (_, false) => Err(Failure::Write(format!(
-            "{name} has files that are not a report; use -o FOLDER to write to another folder"
-        ))),
-    }
+    let why = match (entries.next(), study::is_report(folder)) {
+        (None, _) => return Ok(()),
+        (_, true) if overwrite => return Ok(()),
+        (_, true) => "already has a report; --overwrite replaces it, -o FOLDER writes to another folder",
+        (_, false) => "has files that are not a report; use -o FOLDER to write to another folder",
+    };
+    Err(Failure::Write(format!("{name} {why}")))
 }

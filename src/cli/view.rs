@@ -15,8 +15,9 @@ use crate::{
     panel::state::LessonSource,
     program,
     registry::Registry,
-    scene::{Scene, error::LoadError, load::Defaults},
-    text::{did_you_mean, listed, quoted},
+    scene::{error::LoadError, load::Defaults},
+    text::{did_you_mean, listed, nearest, quoted},
+    window::ViewOptions,
 };
 
 #[derive(Args, Debug)]
@@ -80,13 +81,12 @@ pub(super) fn run(
         _ => None,
     };
     let Options { verbose, quiet, .. } = options;
-    let mut view = crate::window::ViewOptions {
-        scene: Scene::default(),
-        file: None,
-        stamp: None,
-        open: None,
-        late: None,
-        lesson: lesson.as_deref().map(|lesson| lesson_source(lesson, &workshop.registry)).transpose()?,
+    let mut view = ViewOptions {
+        lesson: lesson
+            .as_deref()
+            .map(|lesson| lesson_source(lesson, options, &workshop.registry))
+            .transpose()?,
+        outside: options.outside().clone(),
         step: step.map(|step| step as usize - 1),
         examples: source == Source::Default,
         use_defaults: options.defaults() == Defaults::Use,
@@ -94,20 +94,20 @@ pub(super) fn run(
         exit_after,
         capture,
         no_scene,
-        // The scene determines how much of it is read.
-        registry: None,
         trial_program: options.trial_program(),
         warnings,
         verbose,
         quiet,
+        ..ViewOptions::default()
     };
-    match source {
+    let file = match &source {
         // Input that can be read only once cannot be followed or saved to.
-        Source::File(ref path) if files::is_stream(path) => {
-            view.scene = source.open(&mut workshop, options)?;
-        }
-        Source::File(ref path) => {
-            let path = path.clone();
+        Source::File(path) if !files::is_stream(path) => Some(path.clone()),
+        _ => None,
+    };
+    match file {
+        None => view.scene = source.open(&mut workshop, options)?,
+        Some(path) => {
             meant_command(&path)?;
             match source.read(&mut workshop, options.defaults()) {
                 // The window asks in a dialog.
@@ -117,26 +117,18 @@ pub(super) fn run(
                 Err(error @ LoadError::Empty { .. }) => match options.defaults() {
                     Defaults::Ask => view.open = Some(path),
                     Defaults::Use => {}
-                    Defaults::Refuse => {
-                        return Err(Failure::Invalid(error.to_string()));
-                    }
+                    Defaults::Refuse => return Err(Failure::Invalid(error.to_string())),
                 },
                 Ok(loaded) => {
-                    view.scene = loaded.scene;
-                    view.stamp = Some(loaded.stamp);
-                    view.file = Some(path);
+                    (view.scene, view.stamp, view.file) = (loaded.scene, Some(loaded.stamp), Some(path));
                 }
                 // In an extended program, the window may know types that the command line does not.
-                Err(_) if program::name() != program::LAB => {
-                    view.late = Some((path, options.defaults()));
-                }
+                Err(_) if program::name() != program::LAB => view.late = Some((path, options.defaults())),
                 Err(error) => return Err(Failure::Invalid(error.to_string())),
             }
         }
-        Source::Default | Source::Inside(_) | Source::Stdin => {
-            view.scene = source.open(&mut workshop, options)?;
-        }
     }
+    // The scene determines how much of it is read.
     view.registry = Some(workshop.registry);
     crate::window::view(view, window)
 }
@@ -150,7 +142,7 @@ fn meant_command(path: &Path) -> Outcome {
     let program = super::Cli::command();
     let commands =
         program.get_subcommands().filter(|c| !c.is_hide_set()).map(|c| (c.get_name(), c.get_name()));
-    match crate::text::nearest(word, commands) {
+    match nearest(word, commands) {
         Some(command) if command == word => {
             Err(Failure::Usage(format!("there is no scene file {word}; the command is lcm {word}")))
         }
@@ -162,7 +154,7 @@ fn meant_command(path: &Path) -> Outcome {
 }
 
 /// The shipped lesson with this name, or else the file.
-fn lesson_source(lesson: &Path, registry: &Registry) -> Result<LessonSource, Failure> {
+fn lesson_source(lesson: &Path, options: Options, registry: &Registry) -> Result<LessonSource, Failure> {
     let shipped = lesson.to_str().and_then(|name| LESSONS.iter().position(|lesson| lesson.id == name));
     if let Some(i) = shipped {
         return Ok(LessonSource::Shipped(i));
@@ -171,17 +163,12 @@ fn lesson_source(lesson: &Path, registry: &Registry) -> Result<LessonSource, Fai
     if !lesson.exists() {
         let known: Vec<_> = LESSONS.iter().map(|lesson| lesson.id.as_str()).collect();
         let near = did_you_mean(&name, known.iter().map(|id| (*id, *id)));
-        let shipped = if known.is_empty() {
-            String::new()
-        } else {
-            format!("; the lessons are {}", listed(&known, "and"))
-        };
-        return Err(Failure::Invalid(format!(
-            "there is no lesson {}, and no file of that name{shipped}{near}",
-            quoted(&name)
-        )));
+        let all = format!("; the lessons are {}", listed(&known, "and"));
+        let shipped = if known.is_empty() { "" } else { &all };
+        let none = format!("there is no lesson {}, and no file of that name", quoted(&name));
+        return Err(Failure::Invalid(format!("{none}{shipped}{near}")));
     }
-    Lesson::read(lesson, registry).map_err(|problems| {
+    Lesson::read(lesson, registry, options.outside()).map_err(|problems| {
         let all: Vec<_> = problems.iter().map(|problem| problem.annotated(&name)).collect();
         Failure::Invalid(all.join("\n"))
     })?;

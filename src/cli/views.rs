@@ -20,68 +20,40 @@ use crate::{
 #[derive(Args, Debug)]
 pub(super) struct Choice {
     /// Arrange the views so: single, side_by_side, wipe, difference or blink
-    #[arg(long, value_parser = layout)]
+    #[arg(long, value_parser = |text: &str| word::<Layout>(text, Comparison::layout))]
     layout: Option<Layout>,
     /// Compare view A with this one: its letter, or the name of its variant
     #[arg(long, value_name = "VIEW")]
     pub(super) with: Option<String>,
     /// Show the size of differences, or with their sign: absolute or signed
-    #[arg(long, value_parser = sign)]
+    #[arg(long, value_parser = |text: &str| word::<Sign>(text, Comparison::sign))]
     sign: Option<Sign>,
     /// Compare this number of pixels: largest, luminance, red, green or blue
-    #[arg(long, value_parser = channel)]
+    #[arg(long, value_parser = |text: &str| word::<Channel>(text, Comparison::channel))]
     channel: Option<Channel>,
     /// Compare display codes, or linear light: codes or light
-    #[arg(long, value_parser = values)]
+    #[arg(long, value_parser = |text: &str| word::<Compared>(text, Comparison::values))]
     values: Option<Compared>,
     /// Multiply differences by this, 1 to 100, before they become colours; else by what fits the largest one
-    #[arg(long, value_name = "FACTOR", value_parser = amplification)]
+    #[arg(long, value_name = "FACTOR", value_parser = |text: &str| number(text, Comparison::amplification))]
     amplification: Option<f32>,
     /// Place the edge of a wipe here: 0 at the left or top, 1 at the right or bottom
-    #[arg(long, value_name = "PLACE", value_parser = split)]
+    #[arg(long, value_name = "PLACE", value_parser = |text: &str| number(text, Comparison::split))]
     split: Option<f32>,
     /// Direction of the edge of a wipe: vertical or horizontal
-    #[arg(long, value_parser = edge)]
+    #[arg(long, value_parser = |text: &str| word::<Edge>(text, Comparison::edge))]
     edge: Option<Edge>,
 }
 
 /// Reads the word of a field.
-fn word<T: Word>(text: &str, field: Field) -> Result<T, String> {
+pub(super) fn word<T: Word>(text: &str, field: Field) -> Result<T, String> {
     field.check_text(text).and_then(|()| T::of_word(text).ok_or_else(|| "it is unknown".to_owned()))
-}
-
-pub(super) fn layout(text: &str) -> Result<Layout, String> {
-    word(text, Comparison::layout)
-}
-
-fn sign(text: &str) -> Result<Sign, String> {
-    word(text, Comparison::sign)
-}
-
-fn channel(text: &str) -> Result<Channel, String> {
-    word(text, Comparison::channel)
-}
-
-fn values(text: &str) -> Result<Compared, String> {
-    word(text, Comparison::values)
-}
-
-fn edge(text: &str) -> Result<Edge, String> {
-    word(text, Comparison::edge)
 }
 
 /// Reads the number of a field.
 fn number(text: &str, field: Field) -> Result<f32, String> {
     let number = text.parse().unwrap_or(f32::NAN);
     field.check_number(number).map(|()| number)
-}
-
-fn amplification(text: &str) -> Result<f32, String> {
-    number(text, Comparison::amplification)
-}
-
-fn split(text: &str) -> Result<f32, String> {
-    number(text, Comparison::split)
 }
 
 impl Choice {
@@ -149,10 +121,8 @@ impl Plan {
         registry: &Registry,
     ) -> Result<Self, Failure> {
         let cells = cells(&comparison, scene.variants.len(), size).ok_or_else(|| {
-            Failure::Usage(format!(
-                "a picture of {}x{} pixels is too small for the views side by side",
-                size[0], size[1]
-            ))
+            let [w, h] = size;
+            Failure::Usage(format!("a picture of {w}x{h} pixels is too small for the views side by side"))
         })?;
         let part = |cell: Cell| {
             let (scene, own) = scene.seen(cell.view, registry)?;

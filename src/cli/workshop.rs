@@ -107,9 +107,7 @@ impl Workshop {
         let is_folder = |path: &Path| Some(path) == self.registry.custom_folder();
         let (of_folder, of_files): (Vec<_>, Vec<_>) =
             found.problems.into_iter().partition(|(path, _)| is_folder(path));
-        if !of_folder.is_empty() {
-            complain(all_annotated(&of_folder));
-        }
+        report(&of_folder);
         if found.files > 0 {
             self.options.detail(format_args!("looked for declarations in {} files", found.files));
         }
@@ -118,20 +116,13 @@ impl Workshop {
 
     /// Reads all declarations for a command that needs them, and reports their problems.
     pub(super) fn list(&mut self) -> &Registry {
-        let (_, problems) = self.declare_rest();
-        if !problems.is_empty() {
-            complain(all_annotated(&problems));
-        }
+        report(&self.declare_rest().1);
         &self.registry
     }
 
     /// Reads the declarations of all custom models, and reports their problems. True if there are any.
     pub(super) fn declare_all(&mut self) -> bool {
-        let problems = folder::declare_rest(&mut self.registry).problems;
-        if !problems.is_empty() {
-            complain(all_annotated(&problems));
-        }
-        !problems.is_empty()
+        report(&folder::declare_rest(&mut self.registry).problems)
     }
 
     /// Reads all custom models completely, and reports their problems; if there are very many, only their
@@ -168,7 +159,8 @@ impl Workshop {
         defaults: Defaults,
     ) -> Result<Loaded, LoadError> {
         loop {
-            let loaded = load::in_folder(bytes, (name, folder), &self.registry, defaults);
+            let how = defaults.allowing(self.options.outside());
+            let loaded = load::in_folder(bytes, (name, folder), &self.registry, how);
             let named: BTreeSet<String> = match &loaded {
                 Ok(loaded) => loaded.scene.models().into_iter().map(str::to_owned).collect(),
                 Err(LoadError::Invalid { .. } | LoadError::Missing { .. }) => {
@@ -240,10 +232,7 @@ impl Places {
         if let Some(shaders) = &folders.shaders {
             assets::read_shaders(shaders, &mut registry)
                 .map_err(|problems| Failure::Invalid(all_annotated(&problems)))?;
-            let problems = folder::import_for_shaders(&mut registry);
-            if !problems.is_empty() {
-                complain(all_annotated(&problems));
-            }
+            report(&folder::import_for_shaders(&mut registry));
         }
         assets::read_extensions(&mut registry)
             .map_err(|problems| Failure::Invalid(all_annotated(&problems)))?;
@@ -284,6 +273,14 @@ pub(super) fn files_inside(inside: &Payload) -> Result<Option<PathBuf>, Failure>
         }
         error => Failure::Invalid(error.to_string()),
     })
+}
+
+/// Prints problems. True if there are any.
+fn report(problems: &[(PathBuf, ShaderProblem)]) -> bool {
+    if !problems.is_empty() {
+        complain(all_annotated(problems));
+    }
+    !problems.is_empty()
 }
 
 /// Problems, one below the other.

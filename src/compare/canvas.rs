@@ -10,6 +10,18 @@ pub(super) const BRIGHT: [u8; 3] = [240, 240, 240];
 /// A rectangle of pixels: left, top, width, height.
 pub(super) type Rect = [u32; 4];
 
+/// A rectangle of a size in a corner of another one; the flags select right and bottom.
+pub(super) fn in_corner(
+    [left, top, across, down]: Rect,
+    [at_right, at_bottom]: [bool; 2],
+    [width, height]: [u32; 2],
+    margin: u32,
+) -> Rect {
+    let x = if at_right { left + across - width - margin } else { left + margin };
+    let y = if at_bottom { top + down - height - margin } else { top + margin };
+    [x, y, width, height]
+}
+
 /// A picture of RGB bytes.
 pub(super) struct Canvas {
     pub(super) size: [u32; 2],

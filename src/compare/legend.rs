@@ -1,26 +1,18 @@
 //! The legend of a map of differences, and the mark at the largest difference.
 
 use super::{
-    canvas::{BRIGHT, Canvas, DARK, Rect},
+    canvas::{BRIGHT, Canvas, DARK, Rect, in_corner},
     colours::Colours,
     pair::Largest,
 };
 use crate::{
+    channel::Legend,
     lettering::Lettering,
     scene::{
         comparison::{Channel, Compared, Comparison, Sign},
         variant::LETTERS,
     },
 };
-
-/// The texts of a legend.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Texts {
-    /// The quantity shown, and its unit.
-    pub(super) title: String,
-    /// The numbers at the left, in the middle and at the right of the bar.
-    pub(super) numbers: [String; 3],
-}
 
 /// The value at full scale.
 pub(super) fn full(values: Compared) -> f32 {
@@ -30,32 +22,30 @@ pub(super) fn full(values: Compared) -> f32 {
     }
 }
 
-impl Texts {
-    pub(super) fn new(comparison: &Comparison, amplification: f32) -> Self {
-        let Comparison { sign, channel, values, with, .. } = *comparison;
-        let other = LETTERS.get(with).copied().unwrap_or("B");
-        let difference = match (sign, amplification == 1.0) {
-            (Sign::Absolute, _) => format!("|{other} − A|"),
-            (Sign::Signed, true) => format!("{other} − A"),
-            (Sign::Signed, false) => format!("({other} − A)"),
-        };
-        let factor =
-            if amplification == 1.0 { String::new() } else { format!("{} × ", short(amplification)) };
-        let channel = match channel {
-            Channel::Largest => "largest channel",
-            channel => channel.name(),
-        };
-        let title = format!("{factor}{difference}: {channel}, {}", values.name());
-        let end = short(full(values) / amplification);
-        // As many decimals as the end has.
-        let digits = end.split_once('.').map_or(0, |(_, digits)| digits.len());
-        let middle = format!("{:.digits$}", 0.5 * full(values) / amplification);
-        let numbers = match sign {
-            Sign::Absolute => ["0".to_owned(), middle, end],
-            Sign::Signed => [format!("−{end}"), "0".to_owned(), format!("+{end}")],
-        };
-        Self { title, numbers }
-    }
+/// The texts of the legend of a map.
+fn legend_of(comparison: &Comparison, amplification: f32) -> Legend {
+    let Comparison { sign, channel, values, with, .. } = *comparison;
+    let other = LETTERS.get(with).copied().unwrap_or("B");
+    let difference = match (sign, amplification == 1.0) {
+        (Sign::Absolute, _) => format!("|{other} − A|"),
+        (Sign::Signed, true) => format!("{other} − A"),
+        (Sign::Signed, false) => format!("({other} − A)"),
+    };
+    let factor = if amplification == 1.0 { String::new() } else { format!("{} × ", short(amplification)) };
+    let channel = match channel {
+        Channel::Largest => "largest channel",
+        channel => channel.name(),
+    };
+    let title = format!("{factor}{difference}: {channel}, {}", values.name());
+    let end = short(full(values) / amplification);
+    // As many decimals as the end has.
+    let digits = end.split_once('.').map_or(0, |(_, digits)| digits.len());
+    let middle = format!("{:.digits$}", 0.5 * full(values) / amplification);
+    let numbers = match sign {
+        Sign::Absolute => ["0".to_owned(), middle, end],
+        Sign::Signed => [format!("−{end}"), "0".to_owned(), format!("+{end}")],
+    };
+    Legend { title, scale: Some(numbers), colours: Vec::new() }
 }
 
 /// The amplification at which a difference has nearly the last colour of a map: 1, 2, 5, 10, …, or 100.
@@ -73,58 +63,93 @@ pub fn short(number: f32) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// Draws the legend in a lower corner where it does not cover the largest difference: the bar, and the texts as far as
-/// there is room.
+/// The parts of a legend below each other on a plate: a title, a bar, and further colours with their meanings.
+pub(super) struct Plate<'a> {
+    legend: &'a Legend,
+    title: Vec<String>,
+    px: f32,
+    /// A small gap, and the heights of the bar and of a line.
+    heights: [u32; 3],
+    /// The distance of the parts from the sides of the plate, and of the plate from those of the picture.
+    pub(super) margin: u32,
+    pub(super) size: [u32; 2],
+}
+
+impl<'a> Plate<'a> {
+    /// Lays out a legend, with so many gaps above the bar and below its numbers; a title that is too wide is broken into
+    /// lines. `None` without room.
+    pub(super) fn new(
+        canvas: &Canvas,
+        [across, down]: [u32; 2],
+        legend: &'a Legend,
+        gaps: u32,
+    ) -> Option<Self> {
+        let Legend { title, scale, colours } = legend;
+        let (px, style) = (16.0 * canvas.scale(), Lettering::Regular);
+        let [margin, gap, bar] = [10.0, 4.0, 14.0].map(|v| (v * canvas.scale()).round() as u32);
+        let line = style.height(px);
+        let of_colours = colours.iter().map(|(_, text)| bar + 2 * gap + style.width(px, text));
+        let of_numbers =
+            |numbers: &[String; 3]| numbers.iter().map(|n| style.width(px, n)).sum::<u32>() + 4 * gap;
+        let least = of_colours.fold(scale.as_ref().map_or(0, of_numbers), u32::max);
+        let width = style.width(px, title).max(least).min(across.saturating_sub(4 * margin));
+        let title = style.lines(px, title, width, 3);
+        let of_scale = scale.as_ref().map_or(0, |_| gaps * gap + bar + line);
+        let height = line * (title.len() + colours.len()) as u32 + of_scale;
+        let is_wide = title.iter().any(|text| style.width(px, text) > width);
+        let fits = width > 0 && width >= least && !is_wide && height + 4 * margin <= down;
+        let size = [width + 2 * margin, height + 2 * margin];
+        fits.then_some(Self { legend, title, px, heights: [gap, bar, line], margin, size })
+    }
+
+    /// Draws the legend in a rectangle of its size, with the colours of the bar from 0 to 1.
+    pub(super) fn draw(&self, canvas: &mut Canvas, place: Rect, colour: impl Fn(f32) -> [u8; 3]) {
+        let (px, style, [gap, bar, line]) = (self.px, Lettering::Regular, self.heights);
+        let width = self.size[0] - 2 * self.margin;
+        canvas.fill(place, DARK, 0.88);
+        let (left, mut y) = (place[0] + self.margin, place[1] + self.margin);
+        for text in &self.title {
+            canvas.text(style, [left, y], px, text);
+            y += line;
+        }
+        if let Some(numbers) = &self.legend.scale {
+            y += gap;
+            canvas.fill([left - 1, y - 1, width + 2, bar + 2], BRIGHT, 0.5);
+            for x in 0..width {
+                canvas.fill([left + x, y, 1, bar], colour((x as f32 + 0.5) / width as f32), 1.0);
+            }
+            y += bar;
+            for (number, at) in numbers.iter().zip([0.0, 0.5, 1.0]) {
+                let free = width.saturating_sub(style.width(px, number));
+                canvas.text(style, [left + (at * free as f32) as u32, y], px, number);
+            }
+            y += line + gap;
+        }
+        for (colour, text) in &self.legend.colours {
+            let top = y + line.saturating_sub(bar) / 2;
+            canvas.fill([left - 1, top - 1, bar + 2, bar + 2], BRIGHT, 0.5);
+            canvas.fill([left, top, bar, bar], *colour, 1.0);
+            canvas.text(style, [left + bar + 2 * gap, y], px, text);
+            y += line;
+        }
+    }
+}
+
+/// Draws the legend in a lower corner where it does not cover the largest difference, if there is room.
 pub(super) fn draw(canvas: &mut Canvas, comparison: &Comparison, factor: f32, largest: Option<&Largest>) {
-    let texts = Texts::new(comparison, factor);
-    let scale = canvas.scale();
-    let px = 16.0 * scale;
-    let style = Lettering::Regular;
-    let [pad, gap, bar] = [10.0, 4.0, 14.0].map(|v| (v * scale).round() as u32);
-    let line = style.height(px);
-    let wanted = style.width(px, &texts.title);
-    let room = canvas.size[0].saturating_sub(4 * pad);
-    let least = texts.numbers.iter().map(|n| style.width(px, n)).sum::<u32>() + 4 * gap;
-    // A title that is too wide is broken into lines; without room for the numbers, no legend is drawn.
-    let width = wanted.min(room);
-    let lines = style.lines(px, &texts.title, width, 3);
-    let height = line * lines.len() as u32 + gap + bar + line;
-    if width < least || height + 4 * pad > canvas.size[1] {
-        return;
-    }
-    let plate_size = [width + 2 * pad, height + 2 * pad];
-    let top = canvas.size[1] - plate_size[1] - pad;
-    let at_left = [pad, top, plate_size[0], plate_size[1]];
-    let right = canvas.size[0] - plate_size[0] - pad;
-    let hides = |[left, top, width, height]: Rect| {
-        let margin = 2 * mark_radius(scale) as u32;
-        largest.is_some_and(|mark| {
-            mark.x + margin >= left
-                && mark.x <= left + width + margin
-                && mark.y + margin >= top
-                && mark.y <= top + height + margin
-        })
+    let legend = legend_of(comparison, factor);
+    let Some(plate) = Plate::new(canvas, canvas.size, &legend, 1) else { return };
+    let [across, down] = canvas.size;
+    let place = |at_right| in_corner([0, 0, across, down], [at_right, true], plate.size, plate.margin);
+    let hides = |[left, top, width, height]: Rect, mark: &Largest| {
+        let margin = 2 * mark_radius(canvas.scale()) as u32;
+        mark.x + margin >= left
+            && mark.x <= left + width + margin
+            && mark.y + margin >= top
+            && mark.y <= top + height + margin
     };
-    let left = if hides(at_left) { right } else { pad };
-    canvas.fill([left, top, plate_size[0], plate_size[1]], DARK, 0.88);
-    let left = left + pad;
-    let mut y = top + pad;
-    for text in &lines {
-        canvas.text(style, [left, y], px, text);
-        y += line;
-    }
-    y += gap;
-    canvas.fill([left - 1, y - 1, width + 2, bar + 2], BRIGHT, 0.5);
-    let colours = Colours::of(comparison.sign);
-    for x in 0..width {
-        let at = (x as f32 + 0.5) / width as f32;
-        canvas.fill([left + x, y, 1, bar], colours.at(at), 1.0);
-    }
-    y += bar;
-    for (number, at) in texts.numbers.iter().zip([0.0, 0.5, 1.0]) {
-        let free = width.saturating_sub(style.width(px, number));
-        canvas.text(style, [left + (at * free as f32) as u32, y], px, number);
-    }
+    let at_right = largest.is_some_and(|mark| hides(place(false), mark));
+    plate.draw(canvas, place(at_right), |at| Colours::of(comparison.sign).at(at));
 }
 
 fn mark_radius(scale: f32) -> f32 {
@@ -146,9 +171,9 @@ mod tests {
 
     #[test]
     fn the_legend_says_what_is_shown_in_which_unit() {
-        let plain = Texts::new(&Comparison::default(), 1.0);
+        let plain = legend_of(&Comparison::default(), 1.0);
         assert_eq!(plain.title, "|B − A|: largest channel, display codes");
-        assert_eq!(plain.numbers, ["0", "128", "255"]);
+        assert_eq!(plain.scale, Some(["0", "128", "255"].map(str::to_owned)));
         let light = Comparison {
             sign: Sign::Signed,
             channel: Channel::Luminance,
@@ -156,11 +181,11 @@ mod tests {
             with: 2,
             ..Comparison::default()
         };
-        let amplified = Texts::new(&light, 8.0);
+        let amplified = legend_of(&light, 8.0);
         assert_eq!(amplified.title, "8 × (C − A): luminance, linear light");
-        assert_eq!(amplified.numbers, ["−0.125", "0", "+0.125"]);
-        let codes = Texts::new(&Comparison::default(), 10.0);
-        assert_eq!(codes.numbers, ["0", "12.8", "25.5"]);
+        assert_eq!(amplified.scale, Some(["−0.125", "0", "+0.125"].map(str::to_owned)));
+        let codes = legend_of(&Comparison::default(), 10.0);
+        assert_eq!(codes.scale, Some(["0", "12.8", "25.5"].map(str::to_owned)));
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub struct Pair<'a> {
 }
 
 /// The largest difference between two pictures, and its position.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Largest {
     /// The distance from the left, pixels, counted from 0.
     pub x: u32,

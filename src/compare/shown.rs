@@ -74,8 +74,7 @@ impl Shown {
     /// A picture of light, as displayed.
     #[must_use]
     pub fn of_light(light: Picture, display: &Display) -> Self {
-        let (width, height) = (light.width, light.height);
-        let rgb8 = light.to_rgb8(display);
+        let (width, height, rgb8) = (light.width, light.height, light.to_rgb8(display));
         let covered = light.pixels.iter().map(|pixel| pixel.w > 0.0).collect();
         Self { width, height, rgb8, light: Some(light), covered: Some(covered), outlines: None }
     }

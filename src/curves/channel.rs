@@ -24,12 +24,7 @@ impl Channel {
     /// The name on the command line.
     #[must_use]
     pub fn id(self) -> &'static str {
-        match self {
-            Self::Luminance => "luminance",
-            Self::Red => "r",
-            Self::Green => "g",
-            Self::Blue => "b",
-        }
+        ["luminance", "r", "g", "b"][self as usize]
     }
 
     /// The channel with this name.
@@ -41,12 +36,7 @@ impl Channel {
     /// The name in words.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Luminance => "luminance",
-            Self::Red => "red",
-            Self::Green => "green",
-            Self::Blue => "blue",
-        }
+        ["luminance", "red", "green", "blue"][self as usize]
     }
 
     /// The value of a colour; not finite if one of its channels is not.

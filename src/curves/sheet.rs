@@ -78,13 +78,10 @@ impl Sheet {
             notes.push(format!("{}: {what} no place on a logarithmic axis.", curve.name));
         }
         for slice in &self.slices {
-            match slice.missing() {
-                0 => {}
-                n => notes.push(format!(
-                    "{}: {n} of {} values are not finite numbers (magenta and black).",
-                    slice.name,
-                    slice.values.len()
-                )),
+            let (n, all) = (slice.missing(), slice.values.len());
+            if n > 0 {
+                let what = format!("{n} of {all} values are not finite numbers (magenta and black).");
+                notes.push(format!("{}: {what}", slice.name));
             }
         }
         notes

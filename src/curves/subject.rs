@@ -11,7 +11,7 @@ use super::{
 use crate::{
     caption,
     optics::{Frame, Terms, colour::Encoding},
-    parameter::{Parameter, ParameterKind, Value, Values},
+    parameter::{Parameter, Value, Values},
     reflection::{Factor, ModelEntry, Surface, brdf, usage},
     text::did_you_mean,
 };
@@ -34,17 +34,12 @@ enum Source {
 /// A parameter with its value, in words; `None` if it cannot be put in words.
 fn setting(parameter: &'static Parameter, value: &Value) -> Option<String> {
     let (symbol, text) = caption::value(parameter, value)?;
-    if matches!(parameter.kind, ParameterKind::Choice { .. }) {
+    if !parameter.kind.options().is_empty() {
         return Some(text);
     }
     // A subscript would be lost.
     let name = if symbol.is_empty() || symbol.contains('_') { parameter.label } else { symbol };
-    let unit = match (parameter.unit, &parameter.kind) {
-        ("", _) | (_, ParameterKind::Colour { .. }) => String::new(),
-        ("°", _) => "°".to_owned(),
-        (unit, _) => format!(" {unit}"),
-    };
-    Some(format!("{name} = {text}{unit}"))
+    Some(format!("{name} = {text}{}", parameter.suffix()))
 }
 
 /// The suffix of the names of measured paints.
@@ -80,13 +75,10 @@ impl Subject {
         }
         let paints = PAINTS.map(|(id, _)| id);
         let known = paints.iter().chain(&names).map(|n| (*n, *n));
-        Err(format!(
-            "measured data must be one of the paints {}, or one of {} materials of the MERL database, such as {}{}",
-            crate::text::listed(&paints, "and"),
-            names.len(),
-            names.first().copied().unwrap_or_default(),
-            did_you_mean(id, known),
-        ))
+        let (count, first) = (names.len(), names.first().copied().unwrap_or_default());
+        let merl = format!("one of {count} materials of the MERL database, such as {first}");
+        let (paints, near) = (crate::text::listed(&paints, "and"), did_you_mean(id, known));
+        Err(format!("measured data must be one of the paints {paints}, or {merl}{near}"))
     }
 
     /// The id of a measured paint.

@@ -4,7 +4,7 @@
 //! `curve_coat(mu)`, the directional albedo of that material in rgb and the luminance of its specular term in w, and
 //! `mean_coat()`, their means over the hemisphere.
 
-use std::sync::Arc;
+use std::{mem::discriminant, sync::Arc};
 
 use glam::Vec4;
 use jsonc_parser::{ast::ObjectProp, common::Ranged as _};
@@ -21,7 +21,7 @@ use crate::{
         albedo::{AlbedoCurve, Albedos, LobeAlbedo, NamedCurve, Spacing},
         colour::{Encoding, luminance},
     },
-    parameter::{Parameter, ParameterKind, Value, Values},
+    parameter::{Parameter, Value, Values},
     reflection::ModelEntry,
     text::{
         did_you_mean,
@@ -162,57 +162,43 @@ impl Reader<'_> {
             return None;
         };
         let name = property.name.as_str();
+        let at = format!("curves: {}", quoted(name));
         let known: Vec<_> = self.built_in_models().map(|m| (m.declaration.id, m.declaration.id)).collect();
         let Some(model) = properties.iter().find(|p| p.name.as_str() == "model") else {
-            self.mistake(
-                property.start(),
-                format!(
-                    "curves: {}: it needs a \"model\": the built-in model whose albedo it is",
-                    quoted(name)
-                ),
-            );
+            let rule = "it needs a \"model\": the built-in model whose albedo it is";
+            self.mistake(property.start(), format!("{at}: {rule}"));
             return None;
         };
         let id = self.word(of.holding(&model.value), "the model of a curve", &known)?;
         let model = self.registry.model(id)?.clone();
         let mut settings: Vec<(&'static Parameter, Setting)> = Vec::new();
         if let Some(twice) = properties.iter().filter(|p| p.name.as_str() == "model").nth(1) {
-            self.mistake(twice.start(), format!("curves: {}: model is given twice", quoted(name)));
+            self.mistake(twice.start(), format!("{at}: model is given twice"));
         }
         for setting in properties.iter().filter(|p| p.name.as_str() != "model") {
             let written = setting.name.as_str();
             let Some(parameter) = model.parameter(&written.replace("color", "colour")) else {
                 let hint = did_you_mean(written, model.parameters.iter().map(|p| (p.name, p.name)));
-                let what =
-                    format!("curves: {}: {} is not a parameter of {id}{hint}", quoted(name), quoted(written));
+                let what = format!("{at}: {} is not a parameter of {id}{hint}", quoted(written));
                 self.mistake(setting.start(), what);
                 continue;
             };
-            if settings.iter().any(|(known, _)| known.name == parameter.name) {
-                let what = format!("curves: {}: {} is given twice", quoted(name), parameter.name);
-                self.mistake(setting.start(), what);
+            let name = parameter.name;
+            if settings.iter().any(|(known, _)| known.name == name) {
+                self.mistake(setting.start(), format!("{at}: {name} is given twice"));
                 continue;
             }
-            match meaning(parameter, &setting.value, parameters) {
-                Some(value) => settings.push((parameter, value)),
-                None => {
-                    let same: Vec<_> =
-                        parameters.iter().filter(|p| alike(p, parameter)).map(|p| quoted(p.name)).collect();
-                    let or = if same.is_empty() {
-                        String::new()
-                    } else {
-                        format!(", or one of the model's parameters {}", listed(&same, "and"))
-                    };
-                    let found = describe(&setting.value, self.text());
-                    let what = format!(
-                        "curves: {}: {} is {found}, but it must be {}{or}",
-                        quoted(name),
-                        parameter.name,
-                        parameter.rule()
-                    );
-                    self.mistake(setting.value.start(), what);
-                }
+            if let Some(value) = meaning(parameter, &setting.value, parameters) {
+                settings.push((parameter, value));
+                continue;
             }
+            let same: Vec<_> =
+                parameters.iter().filter(|p| alike(p, parameter)).map(|p| quoted(p.name)).collect();
+            let all = format!(", or one of the model's parameters {}", listed(&same, "and"));
+            let or = if same.is_empty() { "" } else { &all };
+            let (found, rule) = (describe(&setting.value, self.text()), parameter.rule());
+            let what = format!("{at}: {name} is {found}, but it must be {rule}{or}");
+            self.mistake(setting.value.start(), what);
         }
         Some(Curve { name: intern::text(name), model, settings })
     }
@@ -220,15 +206,7 @@ impl Reader<'_> {
 
 /// True if values of one parameter are valid for the other.
 fn alike(one: &Parameter, other: &Parameter) -> bool {
-    use ParameterKind::{Choice, Colour, Integer, Number, Triple};
-    match (&one.kind, &other.kind) {
-        (Number { .. }, Number { .. })
-        | (Integer { .. }, Integer { .. })
-        | (Colour { .. }, Colour { .. })
-        | (Triple { .. }, Triple { .. }) => true,
-        (Choice { options: a, .. }, Choice { options: b, .. }) => a == b,
-        _ => false,
-    }
+    discriminant(&one.kind) == discriminant(&other.kind) && one.kind.options() == other.kind.options()
 }
 
 /// A literal value, or the name of a parameter of the custom model.

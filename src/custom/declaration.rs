@@ -24,20 +24,8 @@ use crate::{
 /// JSON with comments and trailing commas.
 const OPTIONS: ParseOptions = ParseOptions { allow_comments: true, allow_trailing_commas: true, ..STRICT };
 /// The keys of a declaration.
-const MODEL_KEYS: &[&str] = &[
-    "name",
-    "author",
-    "source",
-    "summary",
-    "equation",
-    "laws",
-    "anisotropic",
-    "lobe",
-    "lobes",
-    "curves",
-    "parameters",
-    "groups",
-];
+const MODEL_KEYS: &str =
+    "name author source summary equation laws anisotropic lobe lobes curves parameters groups";
 /// The keys of a part of the equation.
 const PART_KEYS: &[&str] = &["term", "text"];
 /// The most brackets of a declaration, and so its deepest nesting.
@@ -116,7 +104,7 @@ fn lower(text: &str) -> String {
 
 impl Reader<'_> {
     fn model(&mut self, root: Cursor, end: usize) -> Option<Said> {
-        let fields = self.fields(root, MODEL_KEYS, "a model")?;
+        let fields = self.fields(root, &MODEL_KEYS.split(' ').collect::<Vec<_>>(), "a model")?;
         let id = self.id;
         let file = super::source_path(id);
         let name = self.words(&fields, "name", LONGEST_NAME).unwrap_or_else(|| intern::text(&humanised(id)));
@@ -190,11 +178,8 @@ impl Reader<'_> {
         let mut laws = Laws { reciprocal: false, energy_conserving: false, non_negative: false };
         let Some(value) = fields.get("laws") else { return laws };
         let Some(list) = value.list() else {
-            let names = laws.list().map(|(name, _)| quoted(name));
-            let rule = format!(
-                "it must be a list of the laws that the model keeps, any of {}",
-                listed(&names, "and")
-            );
+            let names = listed(&laws.list().map(|(name, _)| quoted(name)), "and");
+            let rule = format!("it must be a list of the laws that the model keeps, any of {names}");
             self.wrong(value, &rule);
             return laws;
         };

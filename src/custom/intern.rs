@@ -41,40 +41,28 @@ pub(super) fn text(text: &str) -> &'static str {
     new
 }
 
-/// The choices of a parameter: name in files, name in the window.
-pub(super) fn options(options: Vec<(&'static str, &'static str)>) -> &'static [(&'static str, &'static str)] {
-    static ALL: Kept<[(&str, &str)]> = Mutex::new(Vec::new());
-    kept(&ALL, options, |new| new.leak())
+macro_rules! lists {
+    ($($(#[$about:meta])* $name:ident: $Item:ty;)*) => {
+        $($(#[$about])* pub(super) fn $name(all: Vec<$Item>) -> &'static [$Item] {
+            static ALL: Kept<[$Item]> = Mutex::new(Vec::new());
+            kept(&ALL, all, |new| new.leak())
+        })*
+    };
 }
 
-/// The names of choices.
-pub(super) fn names(names: Vec<&'static str>) -> &'static [&'static str] {
-    static ALL: Kept<[&str]> = Mutex::new(Vec::new());
-    kept(&ALL, names, |new| new.leak())
-}
-
-/// The parts of an equation.
-pub(super) fn equation(parts: Vec<EquationPart>) -> &'static [EquationPart] {
-    static ALL: Kept<[EquationPart]> = Mutex::new(Vec::new());
-    kept(&ALL, parts, |new| new.leak())
-}
-
-/// The groups of parameters of a model.
-pub(super) fn groups(groups: Vec<Group>) -> &'static [Group] {
-    static ALL: Kept<[Group]> = Mutex::new(Vec::new());
-    kept(&ALL, groups, |new| new.leak())
-}
-
-/// The curves that a model reads.
-pub(super) fn curves(curves: Vec<NamedCurve>) -> &'static [NamedCurve] {
-    static ALL: Kept<[NamedCurve]> = Mutex::new(Vec::new());
-    kept(&ALL, curves, |new| new.leak())
-}
-
-/// The parameters of a model.
-pub(super) fn parameters(parameters: Vec<Parameter>) -> &'static [Parameter] {
-    static ALL: Kept<[Parameter]> = Mutex::new(Vec::new());
-    kept(&ALL, parameters, |new| new.leak())
+lists! {
+    /// The choices of a parameter: name in files, name in the window.
+    options: (&'static str, &'static str);
+    /// The names of choices.
+    names: &'static str;
+    /// The parts of an equation.
+    equation: EquationPart;
+    /// The groups of parameters of a model.
+    groups: Group;
+    /// The curves that a model reads.
+    curves: NamedCurve;
+    /// The parameters of a model.
+    parameters: Parameter;
 }
 
 /// A declaration.

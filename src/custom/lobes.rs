@@ -9,7 +9,7 @@ use crate::{
         colour::Encoding,
         lobes::{Lobe, Lobes, MAX_LOBES},
     },
-    parameter::{Parameter, ParameterKind, Values},
+    parameter::{Parameter, Values},
     reflection::ModelEntry,
     text::{
         json::{Cursor, Fields, Reader as _},
@@ -63,11 +63,9 @@ impl Number {
     fn value(&self, values: &Values, encoding: Encoding) -> f32 {
         match self {
             Self::Fixed(number) => *number,
-            Self::Of(p) => match p.kind {
-                ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => {
-                    values.colour(p, encoding).element_sum() / 3.0
-                }
-                _ => values.number(p),
+            Self::Of(p) => match p.kind.linear(&values.get(p), encoding) {
+                Some(three) => three.element_sum() / 3.0,
+                None => values.number(p),
             },
         }
     }
@@ -194,14 +192,8 @@ impl Reader<'_> {
             }
             (usable, _) => {
                 let keys: Vec<_> = usable.iter().map(|key| quoted(key)).collect();
-                self.mistake(
-                    value.start(),
-                    format!(
-                        "{}: a lobe of the shape {shape} needs one of {}",
-                        value.path(),
-                        listed(&keys, "or")
-                    ),
-                );
+                let rule = format!("a lobe of the shape {shape} needs one of {}", listed(&keys, "or"));
+                self.mistake(value.start(), format!("{}: {rule}", value.path()));
                 return None;
             }
         };
@@ -211,11 +203,7 @@ impl Reader<'_> {
     /// A non-negative number, or the name of a numeric parameter; for a weight, also the mean of a colour or
     /// triple parameter.
     fn lobe_number(&mut self, value: Cursor, parameters: &[Parameter], mean: bool) -> Option<Number> {
-        let fits = |p: &&Parameter| match p.kind {
-            ParameterKind::Number { .. } | ParameterKind::Integer { .. } => true,
-            ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => mean,
-            _ => false,
-        };
+        let fits = |p: &&Parameter| p.kind.is_number() || mean && p.kind.limits().is_some();
         let found = match value.text() {
             Some(name) => parameters.iter().filter(fits).find(|p| p.name == name).cloned().map(Number::Of),
             None => value.number().filter(|n| n.is_finite() && *n >= 0.0).map(Number::Fixed),

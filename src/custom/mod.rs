@@ -177,25 +177,10 @@ fn usable_id<'a>(path: &'a Path, registry: &Registry) -> Result<&'a str, String>
     Ok(id)
 }
 
-/// The fallback for models without a valid version.
+/// The fallback for models without a valid version: Lambert's law in grey, regardless of the parameters.
 pub(crate) fn stand_in(ambient: Ambient) -> &'static str {
     match ambient {
-        Ambient::Formula => FORMULA_STAND_IN,
-        Ambient::Albedo => STAND_IN,
+        Ambient::Formula => include_str!("stand_in_with_ambient.wgsl"),
+        Ambient::Albedo => include_str!("stand_in.wgsl"),
     }
 }
-
-/// Lambert's law in grey, regardless of the parameters.
-const STAND_IN: &str = "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
-    return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
-}
-";
-/// The fallback for models with a formula for uniform light.
-const FORMULA_STAND_IN: &str =
-    "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
-    return Terms(vec3(0.0), vec3(0.5 * max(dot(frame.n, l), 0.0)), vec3(0.0));
-}
-fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
-    return vec3(0.5);
-}
-";

@@ -8,7 +8,7 @@ use std::sync::{
 use glam::{Vec3, Vec4};
 use naga::Module;
 
-use super::curves::Reads;
+use super::{curves::Reads, text::GREEK};
 use crate::{
     optics::{
         Frame, Terms,
@@ -16,7 +16,7 @@ use crate::{
         colour::Encoding,
         lobes::Lobes,
     },
-    parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, pack},
+    parameter::{BLOCK_BYTES, Parameter, Values, pack, words},
     reflection::{
         Ambient, Declaration, EquationPart, Instantiate, Lobe, ModelEntry, Readout, Surface, append_curve,
     },
@@ -129,36 +129,9 @@ fn symbols(equation: &[EquationPart], parameters: &[Parameter]) -> Vec<String> {
 fn is_name_of(name: &str, symbol: &str) -> bool {
     let (base, index) = symbol.split_once('_').unwrap_or((symbol, ""));
     let (letter, rest) = name.split_once('_').unwrap_or((name, ""));
-    rest == index && (letter == base || GREEK.iter().any(|(greek, word)| *greek == base && *word == letter))
+    rest == index
+        && (letter == base || GREEK.lines().any(|line| line.split_once(' ') == Some((letter, base))))
 }
-
-/// Spelt-out names of Greek letters.
-const GREEK: [(&str, &str); 24] = [
-    ("α", "alpha"),
-    ("β", "beta"),
-    ("γ", "gamma"),
-    ("Γ", "Gamma"),
-    ("δ", "delta"),
-    ("Δ", "Delta"),
-    ("ε", "epsilon"),
-    ("ζ", "zeta"),
-    ("η", "eta"),
-    ("θ", "theta"),
-    ("κ", "kappa"),
-    ("λ", "lambda"),
-    ("Λ", "Lambda"),
-    ("μ", "mu"),
-    ("ν", "nu"),
-    ("ξ", "xi"),
-    ("ρ", "rho"),
-    ("σ", "sigma"),
-    ("τ", "tau"),
-    ("φ", "phi"),
-    ("χ", "chi"),
-    ("ψ", "psi"),
-    ("ω", "omega"),
-    ("Ω", "Omega"),
-];
 
 /// The model whose lobe is read.
 fn lobe_of(reads: &Reads) -> Lobe {
@@ -243,18 +216,7 @@ impl Surface for Grey {
 
 /// The members of the WGSL struct `Parameters`, one word for each number.
 fn flattened(parameters: &[Parameter], values: &Values, encoding: Encoding) -> Vec<u32> {
-    let mut words = Vec::with_capacity(3 * parameters.len());
-    for p in parameters {
-        match p.kind {
-            ParameterKind::Number { .. } | ParameterKind::Integer { .. } => {
-                words.push(values.number(p).to_bits())
-            }
-            ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => {
-                words.extend(values.colour(p, encoding).to_array().map(f32::to_bits));
-            }
-            ParameterKind::Choice { .. } | ParameterKind::File { .. } => words.push(values.choice(p)),
-        }
-    }
+    let mut words = words(parameters, values, encoding);
     // WGSL has no empty struct: this one has an unused member.
     if words.is_empty() {
         words.push(0);

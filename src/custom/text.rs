@@ -9,6 +9,9 @@ pub(super) use crate::{
 /// The word after `/*` that marks the declaration.
 pub const MARKER: &str = "lcm";
 
+/// Names of Greek letters, and the letters. Those before the empty line are in the symbols of parameters by default.
+pub(super) const GREEK: &str = include_str!("greek.txt");
+
 /// An error: its byte in the file, and the message.
 pub(super) type Mistake = (usize, String);
 

@@ -19,10 +19,7 @@ pub(super) static CHANNEL: Declaration = Declaration {
             let [low, high] = point.range;
             Made::Place((point.to_eye.length() - low) / (high - low))
         },
-        "
-    let range = illumination.channel_high - illumination.channel_low;
-    return vec4((length(to_eye) - illumination.channel_low) / range, 0.0, 0.0, CHANNEL_PLACE);
-",
+        include_str!("depth.wgsl"),
     ),
     ..Declaration::PLAIN
 };

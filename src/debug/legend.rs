@@ -1,5 +1,7 @@
 //! Legends of channels, for the window and for pictures.
 
+use super::colours::BELOW;
+
 /// The facts that a legend may mention.
 pub struct About<'a> {
     /// The ends of the scale.
@@ -31,6 +33,19 @@ impl Legend {
     #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
         Self { title: title.into(), scale: None, colours: Vec::new() }
+    }
+
+    /// The legend of a cosine.
+    #[must_use]
+    pub fn cosine(title: impl Into<String>) -> Self {
+        Self::new(title).scale(["0", "0.5", "1"]).colours(&[(BELOW, "below 0")])
+    }
+
+    /// The legend of a cosine with the direction of a light.
+    #[must_use]
+    pub fn lit_cosine(name: &str, about: &About<'_>) -> Self {
+        let light = (about.light)().unwrap_or_else(|| "no light has a direction".to_owned());
+        Self::cosine(format!("{name}: {light}"))
     }
 
     /// Returns the legend with the numbers of a scale.

@@ -19,13 +19,7 @@ pub(super) static CHANNEL: Declaration = Declaration {
             bright if bright <= 0.0 => Made::Light(Vec3::ZERO),
             bright => Made::Place((bright.log10() + 3.0) / 4.0),
         },
-        "
-    if luminance <= 0.0 {
-        return vec4(0.0);
-    }
-    // Four decades, from 0.001 to 10.
-    return vec4(log2(luminance) * 0.0752575 + 0.75, 0.0, 0.0, CHANNEL_PLACE);
-",
+        include_str!("luminance.wgsl"),
     ),
     ..Declaration::PLAIN
 };

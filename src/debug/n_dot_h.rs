@@ -1,16 +1,13 @@
 //! The cosine between normal and half vector.
 
-use super::{Declaration, Legend, Made, Shows, colours::BELOW};
+use super::{Declaration, Legend, Made, Shows};
 
 pub(super) static CHANNEL: Declaration = Declaration {
     id: "n_dot_h",
     name: "N·H",
     explanation: "The cosine of the angle between the interpolated normal and the half vector, which is midway between \
         light and observer. Highlights of Blinn–Phong and of microfacet models are where it is nearly 1.",
-    legend: |about| {
-        let light = (about.light)().unwrap_or_else(|| "no light has a direction".to_owned());
-        Legend::new(format!("N·H: {light}")).scale(["0", "0.5", "1"]).colours(&[(BELOW, "below 0")])
-    },
+    legend: |about| Legend::lit_cosine("N·H", about),
     has_light: true,
     shows: Shows::Geometry(
         |point| Made::cosine((point.l)().map(|l| point.normal.dot((l + point.v).normalize_or_zero()))),

@@ -1,6 +1,6 @@
 //! The changes that can be made to a scene, and their names in the history.
 
-use std::{f64::consts::GOLDEN_RATIO, iter};
+use std::{f64::consts::GOLDEN_RATIO, iter, mem};
 
 use glam::Vec3;
 
@@ -102,6 +102,12 @@ impl Edit {
     }
 }
 
+/// Replaces a light or an object. True if its name changes.
+fn replace<T: Fields>(part: &mut T, new: T) -> bool {
+    let (name, old) = (Key::from(Light::name), mem::replace(part, new));
+    old.value(name) != part.value(name)
+}
+
 /// Edits of whole parts.
 macro_rules! whole {
     ($($Part:ident: $part:ident;)+) => {
@@ -136,29 +142,23 @@ impl Document {
 
     /// Makes a change that was checked.
     fn make(&mut self, change: Change, name: String, selection: Selection, registry: &Registry) {
-        match change {
-            Change::Light(i, light) => {
-                self.step(name, Extent::Light(i), selection, Some(registry), |document| {
-                    let renamed = document.scene.lights[i].name != light.name;
-                    document.scene.lights[i] = light;
-                    if renamed {
-                        document.number_again(Selection::Light(i), registry);
-                    }
-                });
-            }
-            Change::Object(i, object) => {
-                self.step(name, Extent::Object(i), selection, Some(registry), |document| {
-                    let renamed = document.scene.objects[i].name != object.name;
-                    document.scene.objects[i] = object;
-                    if renamed {
-                        document.number_again(Selection::Object(i), registry);
-                    }
-                });
-            }
+        let (part, extent) = match &change {
+            Change::Light(i, _) => (Selection::Light(*i), Extent::Light(*i)),
+            Change::Object(i, _) => (Selection::Object(*i), Extent::Object(*i)),
             Change::Rest(rest) => {
-                self.change(name, Extent::Rest, selection, |scene| Extent::Rest.copy(&rest, scene))
+                return self.change(name, Extent::Rest, selection, |scene| Extent::Rest.copy(rest, scene));
             }
-        }
+        };
+        self.step(name, extent, selection, Some(registry), |document| {
+            let renamed = match change {
+                Change::Light(i, light) => replace(&mut document.scene.lights[i], light),
+                Change::Object(i, object) => replace(&mut document.scene.objects[i], object),
+                Change::Rest(_) => false,
+            };
+            if renamed {
+                document.number_again(part, registry);
+            }
+        });
     }
 
     /// The change that an edit makes.

@@ -20,6 +20,14 @@ pub(super) struct Label {
     pub(super) number: usize,
 }
 
+impl Label {
+    /// The label of a new part, after as many others.
+    pub(super) fn new(others: &mut u64) -> Self {
+        *others += 1;
+        Self { id: PartId(*others), number: 0 }
+    }
+}
+
 /// The labels of lights and objects, in the order of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Labels {
@@ -98,31 +106,15 @@ impl<T: Clone + PartialEq> Splice<T> {
 
 /// Everything in a scene except its lights and objects.
 pub(super) fn rest_of(scene: &Scene) -> Scene {
-    let Scene {
-        name,
-        description,
-        scene_size,
-        reflection_model,
-        shading_model,
-        observer,
-        display,
-        variants,
-        comparison,
-        lights: _,
-        objects: _,
-    } = scene;
     Scene {
-        name: name.clone(),
-        description: description.clone(),
-        scene_size: *scene_size,
-        reflection_model: reflection_model.clone(),
-        shading_model: shading_model.clone(),
+        name: scene.name.clone(),
+        description: scene.description.clone(),
+        reflection_model: scene.reflection_model.clone(),
+        shading_model: scene.shading_model.clone(),
+        variants: scene.variants.clone(),
         lights: Vec::new(),
-        observer: *observer,
         objects: Vec::new(),
-        display: *display,
-        variants: variants.clone(),
-        comparison: *comparison,
+        ..*scene
     }
 }
 
@@ -375,42 +367,28 @@ impl History {
 
     /// Adds a change to the last step that has not been undone.
     pub(super) fn go_on(&mut self, patch: Patch) {
-        if let Some(Step { name, gesture, after, .. }) =
-            self.done.checked_sub(1).and_then(|i| self.steps.get(i))
-        {
+        if let Some(Step { name, gesture, after, .. }) = self.steps[..self.done].last() {
             self.record(name.clone(), *gesture, patch, *after);
         }
     }
 
     /// Sets the selection after the last step: some steps select what they added.
     pub(super) fn selected(&mut self, selection: Selection) {
-        if let Some(step) = self.done.checked_sub(1).and_then(|i| self.steps.get_mut(i)) {
-            step.after = selection;
-        }
+        self.steps[..self.done].last_mut().into_iter().for_each(|step| step.after = selection);
     }
 
-    /// Undoes the last step. Returns its name, the selection before it, and the part that it changed.
-    pub(super) fn undo(
+    /// Undoes the last step, or redoes the one that was undone last. Returns its name, the selection then, and the part
+    /// that it changed.
+    pub(super) fn go(
         &mut self,
+        back: bool,
         scene: &mut Scene,
         labels: &mut Labels,
     ) -> Option<(String, Selection, Extent)> {
-        let step = self.steps.get(self.done.checked_sub(1)?)?;
-        step.patch.put(scene, labels, true);
-        self.done -= 1;
-        Some((step.name.clone(), step.before, step.patch.extent()))
-    }
-
-    /// Redoes the step that was undone last. Returns its name, the selection after it, and the part that it changed.
-    pub(super) fn redo(
-        &mut self,
-        scene: &mut Scene,
-        labels: &mut Labels,
-    ) -> Option<(String, Selection, Extent)> {
-        let step = self.steps.get(self.done)?;
-        step.patch.put(scene, labels, false);
-        self.done += 1;
-        Some((step.name.clone(), step.after, step.patch.extent()))
+        let step = self.steps.get(if back { self.done.checked_sub(1)? } else { self.done })?;
+        step.patch.put(scene, labels, back);
+        self.done = if back { self.done - 1 } else { self.done + 1 };
+        Some((step.name.clone(), if back { step.before } else { step.after }, step.patch.extent()))
     }
 
     pub(super) fn names(&self) -> impl ExactSizeIterator<Item = &str> {

@@ -178,8 +178,7 @@ impl Document {
 
     /// The label of a new part.
     fn next_label(&mut self) -> Label {
-        self.next += 1;
-        Label { id: PartId(self.next), number: 0 }
+        Label::new(&mut self.next)
     }
 
     /// The scene.
@@ -372,17 +371,9 @@ impl Document {
 
     /// Gives every part a label after any change to the lists.
     fn label_parts(&mut self, registry: Option<&Registry>) {
-        let (lights, objects) = (self.scene.lights.len(), self.scene.objects.len());
-        self.labels.lights.truncate(lights);
-        self.labels.objects.truncate(objects);
-        while self.labels.lights.len() < lights {
-            let label = self.next_label();
-            self.labels.lights.push(label);
-        }
-        while self.labels.objects.len() < objects {
-            let label = self.next_label();
-            self.labels.objects.push(label);
-        }
+        let Self { scene, labels, next, .. } = self;
+        labels.lights.resize_with(scene.lights.len(), || Label::new(next));
+        labels.objects.resize_with(scene.objects.len(), || Label::new(next));
         self.number_parts(registry);
     }
 
@@ -419,16 +410,17 @@ impl Document {
 
     /// Undoes the last step. Returns its name and the selection before it.
     pub fn undo(&mut self) -> Option<(String, Selection)> {
-        self.end_gesture();
-        let (name, selection, part) = self.history.undo(&mut self.scene, &mut self.labels)?;
-        self.touch(part, part != Extent::Rest);
-        Some((name, selection))
+        self.go(true)
     }
 
     /// Redoes the step that was undone last. Returns its name and the selection after it.
     pub fn redo(&mut self) -> Option<(String, Selection)> {
+        self.go(false)
+    }
+
+    fn go(&mut self, back: bool) -> Option<(String, Selection)> {
         self.end_gesture();
-        let (name, selection, part) = self.history.redo(&mut self.scene, &mut self.labels)?;
+        let (name, selection, part) = self.history.go(back, &mut self.scene, &mut self.labels)?;
         self.touch(part, part != Extent::Rest);
         Some((name, selection))
     }

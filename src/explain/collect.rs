@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Asked, Brightest, Corner, Geometry, Integral, Lit, Model, Part, Place, Seen, Setting, Spot};
+use super::{Asked, Brightest, Geometry, Integral, Lamp, Lit, Model, Part, Place, Seen, Setting, Spot};
 use glam::Vec3;
 
 use crate::{
@@ -10,34 +10,23 @@ use crate::{
     optics::{TermSelection, colour::Encoding},
     parameter::{Parameter, Value, Values},
     reference::{
-        Settings,
+        Shot,
         probe::{LitBy, Loop, Point, Probe, light_loop},
+        visible::Shown,
     },
     reflection::{ModelEntry, Surface},
-    registry::Registry,
-    scene::{Light, Object, Scene},
+    scene::Light,
     shading::Stage,
 };
 
-/// A picture of a scene, to be explained.
-pub(super) struct Explain<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) registry: &'a Registry,
-    pub(super) settings: &'a Settings,
-}
-
-impl Explain<'_> {
+impl Shot<'_> {
     /// The explanation of the object that a probe found.
     pub(super) fn seen(&self, found: Probe) -> Option<Seen> {
         let object = self.scene.objects.get(found.object)?;
         let model = self.registry.model(self.scene.model_of(object))?;
         let shading = self.registry.shading_model(self.scene.shading_model_of(object))?;
-        let corners = found.corners.map(|c| Corner {
-            vertex: c.vertex,
-            position: c.position,
-            weight: c.weight,
-            colour: c.colour,
-        });
+        let type_name = self.registry.shape(&object.object_type).map(|entry| entry.declaration.name);
+        let corners = found.corners;
         let spot = |place: Place, point: &Point| self.spot(place, point, &*found.surface);
         let of_corner = |corner: usize| match found.stage {
             Stage::Polygon => Place::Polygon,
@@ -46,7 +35,7 @@ impl Explain<'_> {
         let at_corners = found.at_corners.iter().map(|(corner, point)| spot(of_corner(*corner), point));
         let at_pixel = found.at_pixel.iter().map(|point| spot(Place::Pixel, point));
         Some(Seen {
-            object: self.object(found.object, object),
+            object: part(found.object, &object.name, &object.object_type, type_name),
             shading: shading.declaration,
             position: found.varying.position,
             polygon: found.polygon,
@@ -62,26 +51,19 @@ impl Explain<'_> {
         })
     }
 
-    fn object(&self, index: usize, object: &Object) -> Part {
-        Part {
-            index,
-            name: object.name.clone(),
-            id: object.object_type.clone(),
-            type_name: self.registry.shape(&object.object_type).map_or("", |entry| entry.declaration.name),
-        }
+    fn light(&self, index: usize, light: &Light) -> Part {
+        let entry = self.registry.light(&light.light_type);
+        part(index, &light.name, &light.light_type, entry.map(|entry| entry.declaration.name))
     }
 
-    pub(super) fn light(&self, index: usize, light: &Light) -> Part {
-        Part {
-            index,
-            name: light.name.clone(),
-            id: light.light_type.clone(),
-            type_name: self.registry.light(&light.light_type).map_or("", |entry| entry.declaration.name),
-        }
+    /// The lights that are visible at a pixel.
+    pub(super) fn lamp(&self, shown: &Shown) -> Lamp {
+        let lights = shown.lights.iter().filter_map(|i| Some(self.light(*i, self.scene.lights.get(*i)?)));
+        Lamp { lights: lights.collect(), radiance: shown.radiance }
     }
 
     fn spot(&self, place: Place, point: &Point, surface: &dyn Surface) -> Spot {
-        let run = light_loop(self.scene, self.registry, self.settings, surface, point);
+        let run = light_loop(*self, surface, point);
         let lit = |by: &LitBy| Some(self.lit(self.scene.lights.get(by.index)?, by, point, &run));
         Spot {
             place,
@@ -136,14 +118,18 @@ impl Explain<'_> {
     }
 }
 
+/// A light or an object with this index, name and type.
+fn part(index: usize, name: &Option<String>, id: &str, type_name: Option<&'static str>) -> Part {
+    Part { index, name: name.clone(), id: id.to_owned(), type_name: type_name.unwrap_or_default() }
+}
+
 impl Model {
     /// A model with an object's parameters, and its surface.
     #[must_use]
     pub fn of(entry: &ModelEntry, values: &Values, encoding: Encoding, surface: Arc<dyn Surface>) -> Self {
         let setting = |parameter: &'static Parameter| {
             let value = values.get(parameter);
-            let linear = matches!(value, Value::Colour(_) | Value::Triple(_))
-                .then(|| values.colour(parameter, encoding));
+            let linear = parameter.kind.linear(&value, encoding);
             Setting { parameter, value, linear }
         };
         Self {

@@ -12,7 +12,7 @@ use std::{
 use glam::{Vec2, Vec3};
 
 use super::{
-    Seen as Explained,
+    Part, Seen as Explained,
     numbers::{number, triple},
     pixel,
 };
@@ -23,12 +23,12 @@ use crate::{
         Emitter, Incident, LightRecord,
         extent::{Sample, Seen},
     },
-    optics::{Frame, Terms},
+    optics::{Frame, TermSelection, Terms},
     parameter::words,
     reference::Settings,
     reflection::{ModelEntry, Surface, ends::check_that_it_ends},
     registry::Registry,
-    scene::{Light, Object, Scene, emitter, error::Path},
+    scene::{Object, Scene, emitter, error::Path},
     text::quoted,
 };
 
@@ -141,21 +141,15 @@ fn lights(scene: &Scene, registry: &Registry, scope: Scope) -> Vec<NotFinite> {
             continue;
         }
         let Some((_, emitter, record)) = emitter(light, registry, scene.display.encoding) else { continue };
-        let odd = places.iter().find_map(|p| {
-            let odd = if entry.declaration.extent {
-                with_extent(&*emitter, &record, *p)?
-            } else {
-                of_direction(&*emitter, &record, *p)?
-            };
-            Some((*p, odd))
-        });
-        found.extend(odd.map(|(p, odd)| of_light(i, light, p, &odd)));
+        let odd_at = if entry.declaration.extent { with_extent } else { of_direction };
+        let odd = places.iter().find_map(|p| Some((*p, odd_at(&*emitter, &record, *p)?)));
+        found.extend(odd.map(|(p, odd)| of_light(i, light.name.as_deref(), &light.light_type, p, &odd)));
     }
     found
 }
 
-fn of_light(index: usize, light: &Light, p: Vec3, Odd { of, value, must_be }: &Odd) -> NotFinite {
-    let (name, id, p) = (named(light.name.as_deref()), &light.light_type, triple(p));
+fn of_light(index: usize, name: Option<&str>, id: &str, p: Vec3, odd: &Odd) -> NotFinite {
+    let (name, p, Odd { of, value, must_be }) = (named(name), triple(p), odd);
     let what = format!("{name}is of the type {id}, whose {of} at {p} m is {value}; it must be {must_be}");
     NotFinite { path: part("lights", index), what }
 }
@@ -268,24 +262,18 @@ fn surface(scene: &Scene, object: &Object, model: &ModelEntry) -> Option<String>
 fn too_long(object: &Object, model: &ModelEntry, registry: &Registry) -> String {
     let id = model.declaration.id;
     let file = registry.custom_file(id).map_or_else(String::new, |file| format!(" of {}", file.shown()));
-    let why = model.not_on_cpu().unwrap_or_default();
-    format!(
-        "{}has the reflection model {id}{file}, which cannot be run: {why}",
-        named(object.name.as_deref())
-    )
+    let (name, why) = (named(object.name.as_deref()), model.not_on_cpu().unwrap_or_default());
+    format!("{name}has the reflection model {id}{file}, which cannot be run: {why}")
 }
 
 fn of_model(object: Option<&str>, model: &str, value: Vec3, where_: &str) -> String {
-    let value = triple(value);
-    format!(
-        "{}has the reflection model {model}, which gives {value} for {where_}; it must be finite",
-        named(object)
-    )
+    let (name, value) = (named(object), triple(value));
+    format!("{name}has the reflection model {model}, which gives {value} for {where_}; it must be finite")
 }
 
 /// The sum of the terms, if any of them is not finite.
 fn odd(terms: &Terms) -> Option<Vec3> {
-    let sum = terms.ambient + terms.diffuse + terms.specular;
+    let sum = terms.select(TermSelection::All);
     (!sum.is_finite()).then_some(sum)
 }
 
@@ -339,10 +327,8 @@ pub fn traced(
 ) -> Vec<NotFinite> {
     let mut found: Vec<NotFinite> = Vec::new();
     for at in pixels.iter().step_by(pixels.len().div_ceil(MOST_PIXELS).max(1)) {
-        let Some(seen) = pixel(scene, registry, settings, *at).ok().and_then(|explained| explained.seen)
-        else {
-            continue;
-        };
+        let explained = pixel(scene, registry, settings, *at).ok();
+        let Some(seen) = explained.and_then(|explained| explained.seen) else { continue };
         for odd in of_pixel(scene, registry, &seen, *at) {
             if !found.iter().any(|known| known.path == odd.path) {
                 found.push(odd);
@@ -358,28 +344,21 @@ fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 
     for spot in &seen.spots {
         for lit in spot.lights.iter().filter(|lit| !lit.is_finite()) {
             let light = scene.lights.get(lit.light.index).filter(|_| lit.integral.is_some());
-            let of = light.and_then(|light| {
+            let of_extent = light.and_then(|light| {
                 let (_, emitter, record) = emitter(light, registry, scene.display.encoding)?;
-                let odd = with_extent(&*emitter, &record, spot.position)?;
-                Some(of_light(lit.light.index, light, spot.position, &odd))
+                with_extent(&*emitter, &record, spot.position)
             });
-            if let Some(of) = of {
-                found.push(of);
-            } else if lit.arriving.is_finite() {
-                let value = odd(&lit.response).unwrap_or(lit.contribution);
-                let where_ = format!("{} at pixel {x},{y}", light_path(lit.light.index));
-                let what = of_model(object, seen.model.id, value, &where_);
-                found.push(NotFinite { path: part("objects", seen.object.index), what });
-            } else {
-                let what = format!(
-                    "{}is of the type {}, whose light at {} m is {}; it must be finite",
-                    named(lit.light.name.as_deref()),
-                    lit.light.id,
-                    triple(spot.position),
-                    triple(lit.arriving)
-                );
-                found.push(NotFinite { path: part("lights", lit.light.index), what });
-            }
+            let any = || Odd::infinite("light", triple(lit.arriving)).filter(|_| !lit.arriving.is_finite());
+            let Part { index, name, id, .. } = &lit.light;
+            found.push(match of_extent.or_else(any) {
+                Some(wrong) => of_light(*index, name.as_deref(), id, spot.position, &wrong),
+                None => {
+                    let value = odd(&lit.response).unwrap_or(lit.contribution);
+                    let where_ = format!("{} at pixel {x},{y}", part("lights", *index));
+                    let what = of_model(object, seen.model.id, value, &where_);
+                    NotFinite { path: part("objects", seen.object.index), what }
+                }
+            });
         }
     }
     if found.is_empty() {
@@ -388,8 +367,4 @@ fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 
         found.push(NotFinite { path: part("objects", seen.object.index), what });
     }
     found
-}
-
-fn light_path(index: usize) -> Path {
-    part("lights", index)
 }

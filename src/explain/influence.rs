@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     optics::colour::luminance,
-    parameter::{ParameterKind, Value},
+    parameter::{Parameter, limits::Limits},
     reference::Settings,
     registry::Registry,
     scene::{Scene, limits},
@@ -18,16 +18,14 @@ use crate::{
 const STEP: f64 = 0.01;
 
 /// A number of the scene.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Knob {
     /// A parameter of the reflection model of the object at the pixel, by name.
     Material {
         /// Index of the object.
         object: usize,
-        /// Name of the parameter.
-        name: &'static str,
-        /// True for an integer.
-        whole: bool,
+        /// The parameter.
+        parameter: &'static Parameter,
     },
     /// The intensity or the luminous flux of a light.
     Intensity {
@@ -104,18 +102,11 @@ impl Explainer {
         let mut knobs = Vec::new();
         for setting in &seen.model.settings {
             let parameter = setting.parameter;
-            let (value, range) = match (&parameter.kind, &setting.value) {
-                (ParameterKind::Number { min, max, .. }, Value::Number(v)) => {
-                    (f64::from(*v), [f64::from(*min), f64::from(*max)])
-                }
-                (ParameterKind::Integer { min, max, slider_max, .. }, Value::Integer(v)) => {
-                    (*v as f64, [*min as f64, max.unwrap_or(*slider_max) as f64])
-                }
-                _ => continue,
-            };
-            let whole = matches!(parameter.kind, ParameterKind::Integer { .. });
-            let knob = Knob::Material { object, name: parameter.name, whole };
-            knobs.push((knob, parameter.symbol, parameter.label.to_owned(), parameter.unit, value, range));
+            let Some(value) = parameter.kind.number_of(&setting.value) else { continue };
+            let Some(limits) = parameter.kind.limits() else { continue };
+            let knob = Knob::Material { object, parameter };
+            let Parameter { symbol, label, unit, .. } = *parameter;
+            knobs.push((knob, symbol, label.to_owned(), unit, value, limits));
         }
         for (i, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
             let Some(entry) = registry.light(&light.light_type) else { continue };
@@ -124,24 +115,23 @@ impl Explainer {
                 None => (light.intensity, entry.declaration.unit, limits::intensity(entry.declaration)),
             };
             let name = light.name.clone().unwrap_or_else(|| format!("{} {}", entry.declaration.name, i + 1));
-            let range = [0.0, limits.slider_max];
             let label = format!("{name}: intensity");
-            knobs.push((Knob::Intensity { light: i }, "I", label, unit, f64::from(value), range));
+            let limits = Limits::between(0.0, limits.slider_max);
+            knobs.push((Knob::Intensity { light: i }, "I", label, unit, f64::from(value), limits));
         }
         let mut found = Vec::new();
-        let mut changed = scene.clone();
-        for (knob, symbol, label, unit, value, [min, max]) in knobs {
+        for (knob, symbol, label, unit, value, limits) in knobs {
+            let (min, max) = (limits.min, limits.top());
             // Integers change in whole steps.
-            let whole = matches!(knob, Knob::Material { whole: true, .. });
-            let hundredth = if whole { (STEP * (max - min)).round().max(1.0) } else { STEP * (max - min) };
+            let hundredth =
+                if limits.whole { (STEP * (max - min)).round().max(1.0) } else { STEP * (max - min) };
             // A light may be brighter than the maximum of its slider.
             let tried = [(value - hundredth).max(min), (value + hundredth).min(max.max(value))];
-            let mut light = [Vec3::ZERO; 2];
+            let (mut changed, mut light) = (scene.clone(), [Vec3::ZERO; 2]);
             for (light, tried) in light.iter_mut().zip(tried) {
                 knob.set(&mut changed, tried as f32);
                 *light = self.pixel(&changed, registry, settings, pixel)?.steps.light;
             }
-            knob.restore(&mut changed, scene);
             found.push(Influence { knob, symbol, label, unit, value, tried, light, hundredth, digits });
         }
         let size = |influence: &Influence| influence.effect().abs();
@@ -164,10 +154,9 @@ fn noise(seen: &Seen) -> f32 {
 impl Knob {
     fn set(&self, scene: &mut Scene, value: f32) {
         match *self {
-            Self::Material { object, name, whole } => {
+            Self::Material { object, parameter } => {
                 if let Some(object) = scene.objects.get_mut(object) {
-                    let whole = whole.then_some(Value::Integer(value.round() as i64));
-                    object.material.set(name, whole.unwrap_or(Value::Number(value)));
+                    object.material.set(parameter.name, parameter.kind.of_numbers([value.into(); 3]));
                 }
             }
             Self::Intensity { light } => {
@@ -178,15 +167,6 @@ impl Knob {
                     }
                 }
             }
-        }
-    }
-
-    fn restore(&self, scene: &mut Scene, from: &Scene) {
-        match *self {
-            Self::Material { object, .. } => {
-                scene.objects[object].material = from.objects[object].material.clone()
-            }
-            Self::Intensity { light } => scene.lights[light] = from.lights[light].clone(),
         }
     }
 }

@@ -55,14 +55,9 @@ impl Integral {
     /// A line for each term that is not 0.
     pub(super) fn lines(&self, terms: &Terms) -> Vec<Line> {
         let all = of_terms(terms).into_iter().zip(of_terms(&self.errors));
-        let line = |((term, value), (_, error)): ((Term, Vec3), (Term, Vec3))| Line {
-            term,
-            text: format!("{0} = ∫ {0}(l) L(l) dω", term.symbol()),
-            numbers: None,
-            symbols: Vec::new(),
-            value: Some(colour(value)),
-            error: Some(error),
-            quantity: None,
+        let line = |((term, value), (_, error)): ((Term, Vec3), (Term, Vec3))| {
+            let text = format!("{0} = ∫ {0}(l) L(l) dω", term.symbol());
+            Line { error: Some(error), ..Line::new(term, text, colour(value)) }
         };
         all.filter(|((_, value), _)| *value != Vec3::ZERO).map(line).collect()
     }

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     optics::{TermSelection, Terms},
-    parameter::{Parameter, ParameterKind, Value as Given},
+    parameter::Value as Given,
     reflection::{Ambient, Quantity, Term},
     text::{
         expression::{Expression, Scope, Value},
@@ -50,6 +50,11 @@ pub struct Line {
 }
 
 impl Line {
+    /// A line without numbers.
+    pub(super) fn new(term: Term, text: String, value: Value) -> Self {
+        Self { term, text, numbers: None, symbols: vec![], value: Some(value), error: None, quantity: None }
+    }
+
     /// The symbol of the line's term: `I_d`.
     #[must_use]
     pub fn symbol(&self) -> &'static str {
@@ -248,15 +253,8 @@ impl Lines<'_> {
         let before = self.lines.len();
         // A model without a formula for uniform light responds with its albedo.
         let albedo = term == Term::Ambient && self.model.declaration.ambient == Ambient::Albedo;
-        let blank = Line {
-            term,
-            text: if albedo { term.symbol().to_owned() } else { String::new() },
-            numbers: None,
-            symbols: Vec::new(),
-            value: Some(value),
-            error: None,
-            quantity: albedo.then_some(&ALBEDO),
-        };
+        let text = if albedo { term.symbol().to_owned() } else { String::new() };
+        let blank = Line { quantity: albedo.then_some(&ALBEDO), ..Line::new(term, text, value) };
         let texts: Vec<_> = parts(self.model, term).filter(|_| said).collect();
         let is_head = |text: &str| sides(text).is_some_and(|(head, _)| head == blank.symbol());
         for text in texts.iter().filter(|text| is_head(text)) {
@@ -375,22 +373,14 @@ pub(super) fn setting(setting: &Setting) -> String {
             return format!("{} = {}, {}, {r},{g},{b} in sRGB", p.symbol, triple(linear), p.label);
         }
         (_, Some(linear)) => triple(linear),
-        (Given::Choice(id), _) => choice(p, id).to_owned(),
+        (Given::Choice(id), _) => {
+            p.kind.options().iter().find(|(known, _)| known == id).map_or(&**id, |(_, name)| *name).to_owned()
+        }
         (value, _) => value.to_string(),
     };
     let space = if p.unit.is_empty() || p.unit == "°" { "" } else { " " };
     match p.symbol {
         "" => format!("{}: {value}{space}{}", p.label, p.unit),
         symbol => format!("{symbol} = {value}{space}{}, {}", p.unit, p.label),
-    }
-}
-
-/// The name of a choice.
-fn choice<'a>(parameter: &Parameter, id: &'a str) -> &'a str {
-    match &parameter.kind {
-        ParameterKind::Choice { options, .. } => {
-            options.iter().find(|(known, _)| *known == id).map_or(id, |(_, name)| name)
-        }
-        _ => id,
     }
 }

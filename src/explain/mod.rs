@@ -25,7 +25,7 @@ use crate::{
     optics::{Frame, TermSelection, Terms, colour::luminance},
     parameter::{Parameter, Value},
     reference::{
-        DisplaySteps, Picture, Settings,
+        DisplaySteps, Picture, Settings, Shot,
         meshes::MeshStore,
         probe::{Probe, probe},
         visible,
@@ -55,8 +55,8 @@ mod sentence;
 mod text;
 mod workings;
 
+pub use crate::reference::probe::ProbeCorner as Corner;
 pub use arriving::Step;
-use collect::Explain;
 pub use factor_curve::{Along, FactorCurve};
 pub use geometry::Geometry;
 pub use influence::{Influence, Knob};
@@ -215,19 +215,6 @@ pub struct Setting {
     pub linear: Option<Vec3>,
 }
 
-/// A corner of the triangle that covers a pixel.
-#[derive(Clone, Copy, Debug)]
-pub struct Corner {
-    /// Index of the vertex in the object's mesh.
-    pub vertex: usize,
-    /// Position in the room.
-    pub position: Vec3,
-    /// Weight in the pixel, with perspective correction; the three add up to 1.
-    pub weight: f32,
-    /// The colour calculated there by the shading model; zero for models that calculate it elsewhere.
-    pub colour: Vec3,
-}
-
 /// The kind of a point at which the equation is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
@@ -308,15 +295,23 @@ impl Explanation {
     }
 }
 
+impl Place {
+    /// Weight in the pixel.
+    #[must_use]
+    pub fn weight(self) -> f32 {
+        match self {
+            Self::Vertex { weight, .. } => weight,
+            Self::Polygon | Self::Pixel => 1.0,
+        }
+    }
+}
+
 impl Seen {
     /// The most important point of the pixel: among vertices, the one with the largest weight. `None` if the
     /// shading model did not evaluate the reflection model.
     #[must_use]
     pub fn main_spot(&self) -> Option<usize> {
-        let weight = |i: &usize| match self.spots[*i].place {
-            Place::Vertex { weight, .. } => weight,
-            Place::Polygon | Place::Pixel => 1.0,
-        };
+        let weight = |i: &usize| self.spots[*i].place.weight();
         (0..self.spots.len()).max_by(|a, b| weight(a).total_cmp(&weight(b)))
     }
 }
@@ -377,8 +372,7 @@ impl Lit {
     /// True if all numbers are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        let Terms { ambient, diffuse, specular } = self.response;
-        [ambient, diffuse, specular, self.arriving, self.contribution].iter().all(|v| v.is_finite())
+        self.response.each().iter().chain([&self.arriving, &self.contribution]).all(|v| v.is_finite())
     }
 }
 
@@ -403,15 +397,9 @@ pub fn pixel(
 }
 
 /// Explains one pixel after another, building the meshes of the scene only once.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct Explainer {
     meshes: MeshStore,
-}
-
-impl std::fmt::Debug for Explainer {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Explainer").finish_non_exhaustive()
-    }
 }
 
 impl Explainer {
@@ -426,57 +414,25 @@ impl Explainer {
         settings: &Settings,
         pixel: [u32; 2],
     ) -> Result<Explanation, ExplainError> {
-        explained(&mut self.meshes, scene, registry, settings, pixel)
+        let shot = Shot::new(scene, registry, settings);
+        inside(pixel, [settings.width, settings.height])?;
+        let found = probe(&mut self.meshes, shot, pixel);
+        let beyond = found.as_ref().map(|found| found.varying.position);
+        let lamp = visible::in_front(shot, pixel, beyond).map(|shown| shot.lamp(&shown));
+        Ok(explanation(shot, pixel, found.filter(|_| lamp.is_none()), lamp))
     }
 }
 
-fn explained(
-    meshes: &mut MeshStore,
-    scene: &Scene,
-    registry: &Registry,
-    settings: &Settings,
-    pixel: [u32; 2],
-) -> Result<Explanation, ExplainError> {
-    let size = [settings.width, settings.height];
-    inside(pixel, size)?;
-    let found = probe(meshes, scene, registry, settings, pixel);
-    let explain = Explain { scene, registry, settings };
-    let beyond = found.as_ref().map(|found| found.varying.position);
-    if let Some(shown) = visible::in_front(scene, registry, settings, pixel, beyond) {
-        let lights = shown.lights.iter().filter_map(|i| Some(explain.light(*i, scene.lights.get(*i)?)));
-        let lamp = Lamp { lights: lights.collect(), radiance: shown.radiance };
-        return Ok(explained_as(&explain, pixel, None, Some(lamp), shown.radiance.extend(1.0)));
-    }
-    Ok(explanation(scene, registry, settings, pixel, found))
-}
-
-/// The explanation of a probe's result.
-fn explanation(
-    scene: &Scene,
-    registry: &Registry,
-    settings: &Settings,
-    pixel: [u32; 2],
-    found: Option<Probe>,
-) -> Explanation {
-    let explain = Explain { scene, registry, settings };
-    let light = found.as_ref().map_or(Vec4::ZERO, |found| found.light);
-    explained_as(&explain, pixel, found, None, light)
-}
-
-/// The explanation of the object at a pixel, and its light.
-fn explained_as(
-    explain: &Explain,
-    pixel: [u32; 2],
-    found: Option<Probe>,
-    lamp: Option<Lamp>,
-    light: Vec4,
-) -> Explanation {
-    let Explain { scene, settings, .. } = explain;
+/// The explanation of the object at a pixel, or of the light that is visible there.
+fn explanation(shot: Shot, pixel: [u32; 2], found: Option<Probe>, lamp: Option<Lamp>) -> Explanation {
+    let Shot { scene, settings, .. } = shot;
+    let of_object = || found.as_ref().map_or(Vec4::ZERO, |found| found.light);
+    let light = lamp.as_ref().map_or_else(of_object, |lamp| lamp.radiance.extend(1.0));
     Explanation {
         pixel,
         size: [settings.width, settings.height],
         terms: settings.terms,
-        seen: found.and_then(|found| explain.seen(found)),
+        seen: found.and_then(|found| shot.seen(found)),
         lamp,
         display: scene.display,
         steps: Picture::display_steps(light, &scene.display),

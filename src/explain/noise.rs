@@ -28,11 +28,7 @@ impl Seen {
     /// The standard error of the light of the pixel; `None` without light with extent.
     #[must_use]
     pub fn error(&self) -> Option<Vec3> {
-        let weight = |spot: &Spot| match spot.place {
-            Place::Vertex { weight, .. } => weight,
-            Place::Polygon | Place::Pixel => 1.0,
-        };
-        root_of_squares(self.spots.iter().filter_map(|spot| Some(spot.error()? * weight(spot))))
+        root_of_squares(self.spots.iter().filter_map(|spot| Some(spot.error()? * spot.place.weight())))
     }
 
     /// The standard error of a corner's colour; `None` if the equation was evaluated elsewhere.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Line, agrees};
+use super::{Line, agrees, numbers::DIGITS};
 
 /// Number of standard errors beyond which two integrals differ.
 const SURE: f64 = 2.0;
@@ -20,23 +20,18 @@ impl Pair {
     /// True if one line is missing, or if equations or values differ.
     #[must_use]
     pub fn differs(&self) -> bool {
-        match (&self.a, &self.b) {
-            (Some(a), Some(b)) => {
-                let same = match (&a.value, &b.value) {
-                    // A difference within the noise of the samples does not count.
-                    (Some(x), Some(y)) if a.error.is_some() || b.error.is_some() => {
-                        let [of_a, of_b] = [a, b].map(|line| line.error.unwrap_or_default().as_dvec3());
-                        let reach = SURE * (of_a * of_a + of_b * of_b).map(f64::sqrt);
-                        let apart = DVec3::from_array(x.rgb) - DVec3::from_array(y.rgb);
-                        agrees(x, y, super::numbers::DIGITS) || apart.abs().cmple(reach).all()
-                    }
-                    (Some(a), Some(b)) => agrees(a, b, super::numbers::DIGITS),
-                    (a, b) => a.is_none() && b.is_none(),
-                };
-                a.text != b.text || !same
+        let (Some(a), Some(b)) = (&self.a, &self.b) else { return true };
+        let same = match (&a.value, &b.value) {
+            (Some(x), Some(y)) => {
+                // A difference within the noise of the samples does not count.
+                let [of_a, of_b] = [a, b].map(|line| line.error.unwrap_or_default().as_dvec3());
+                let reach = SURE * (of_a * of_a + of_b * of_b).map(f64::sqrt);
+                let apart = DVec3::from_array(x.rgb) - DVec3::from_array(y.rgb);
+                agrees(x, y, DIGITS) || apart.abs().cmple(reach).all()
             }
-            _ => true,
-        }
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        a.text != b.text || !same
     }
 
     /// The symbol that the lines define.

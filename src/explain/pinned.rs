@@ -5,7 +5,7 @@ use glam::{Vec3, Vec4Swizzles};
 use super::{Explainer, Explanation, explanation};
 use crate::{
     reference::{
-        Settings,
+        Settings, Shot,
         probe::{probe_point, towards},
     },
     registry::Registry,
@@ -78,7 +78,8 @@ impl Explainer {
         anchor: &Anchor,
     ) -> Option<(Explanation, Sight)> {
         let wanted = [anchor.position, anchor.normal];
-        let found = probe_point(&mut self.meshes, scene, registry, settings, object, wanted)?;
+        let shot = Shot::new(scene, registry, settings);
+        let found = probe_point(&mut self.meshes, shot, object, wanted)?;
         let (point, normal) = (found.varying.position, found.face_normal);
         let (pixel, inside) = pixel_of(&scene.observer, [settings.width, settings.height], point);
         let eye = scene.observer.position;
@@ -88,11 +89,11 @@ impl Explainer {
         } else if normal.dot(eye - point) <= 0.0 {
             Sight::Away
         } else {
-            let front = towards(&mut self.meshes, scene, registry, point)
+            let front = towards(&mut self.meshes, shot, point)
                 .filter(|(_, place)| eye.distance(*place) + nearer < eye.distance(point));
             front.map_or(Sight::Clear, |(other, _)| Sight::Behind(other))
         };
-        Some((explanation(scene, registry, settings, pixel, Some(found)), sight))
+        Some((explanation(shot, pixel, Some(found), None), sight))
     }
 }
 

@@ -4,39 +4,28 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use super::{Explanation, Lamp, Place, Seen};
+use super::{Explanation, Lamp, Seen};
 use crate::optics::{TermSelection, colour::luminance};
 
 /// Fraction above which a term counts as all of a lamp's light.
 const ALL: f64 = 0.995;
 
-/// The contributions of lights to a pixel, as luminances.
-#[derive(Default)]
-struct Given {
-    /// By index of the light: the sum, and the ambient, diffuse and specular terms.
-    lights: BTreeMap<usize, [f64; 4]>,
-}
-
-impl Given {
-    /// The light of a pixel: with Gouraud shading, the weighted light of the vertices.
-    fn of(seen: &Seen) -> Self {
-        let mut given = Self::default();
-        for spot in &seen.spots {
-            let weight = match spot.place {
-                Place::Vertex { weight, .. } => f64::from(weight),
-                Place::Polygon | Place::Pixel => 1.0,
-            };
-            for lit in &spot.lights {
-                let sums = given.lights.entry(lit.light.index).or_default();
-                let terms = [lit.response.ambient, lit.response.diffuse, lit.response.specular];
-                let all = [lit.contribution].into_iter().chain(terms.map(|term| term * lit.arriving));
-                for (sum, light) in sums.iter_mut().zip(all) {
-                    *sum += weight * brightness(light);
-                }
+/// The contributions of lights to a pixel as luminances, by index of the light: the sum, and the ambient, diffuse and
+/// specular terms. With Gouraud shading, it is the weighted light of the vertices.
+fn given(seen: &Seen) -> BTreeMap<usize, [f64; 4]> {
+    let mut lights = BTreeMap::new();
+    for spot in &seen.spots {
+        let weight = f64::from(spot.place.weight());
+        for lit in &spot.lights {
+            let sums: &mut [f64; 4] = lights.entry(lit.light.index).or_default();
+            let terms = lit.response.each().map(|term| term * lit.arriving);
+            let all = [lit.contribution].into_iter().chain(terms);
+            for (sum, light) in sums.iter_mut().zip(all) {
+                *sum += weight * brightness(light);
             }
         }
-        given
     }
+    lights
 }
 
 /// The luminance of light, exact for grey; `NaN` if any component is not finite.
@@ -66,7 +55,7 @@ fn by_term(terms: [f64; 3]) -> Option<String> {
 
 /// The share of the brightest lamp.
 fn most(seen: &Seen, terms: TermSelection, name: &dyn Fn(usize) -> String) -> String {
-    let given = Given::of(seen).lights;
+    let given = given(seen);
     if given.is_empty() {
         return if seen.spots.is_empty() {
             "the shading model did not evaluate the reflection model".to_owned()
@@ -119,10 +108,8 @@ pub fn sentence(explanation: &Explanation, subject: &str, name: &dyn Fn(usize) -
     let [r, g, b] = explanation.code();
     if let Some(Lamp { lights, .. }) = &explanation.lamp {
         let names: Vec<_> = lights.iter().map(|light| name(light.index)).collect();
-        return format!(
-            "{subject} ({r}, {g}, {b}): no object is here; {} itself is seen.",
-            names.join(" with ")
-        );
+        let names = names.join(" with ");
+        return format!("{subject} ({r}, {g}, {b}): no object is here; {names} itself is seen.");
     }
     let Some(seen) = &explanation.seen else {
         return format!("{subject} ({r}, {g}, {b}): no object is here, and the background shows.");

@@ -21,25 +21,31 @@ use crate::{
     text::plural,
 };
 
+/// Writes a line with arguments, at a depth.
+macro_rules! say {
+    ($out:expr, $depth:expr, $($what:tt)+) => {
+        $out.line($depth, format_args!($($what)+))
+    };
+}
+
 impl Explanation {
     /// The explanation as a worked example in plain text: the equation, then with numbers, light by light,
     /// and the way from light to the code.
     #[must_use]
     pub fn to_text(&self) -> String {
-        self.written(Form::Text)
+        self.written(false)
     }
 
     /// The explanation as Markdown: a heading for each part, lists, and mathematics as code.
     #[must_use]
     pub fn to_markdown(&self) -> String {
-        self.written(Form::Markdown)
+        self.written(true)
     }
 
     /// The numbers of the scene with the greatest influence on the pixel, as text or Markdown.
     #[must_use]
     pub fn influences_to_text(influences: &[Influence], markdown: bool) -> String {
-        let form = if markdown { Form::Markdown } else { Form::Text };
-        let mut out = Writer { text: String::new(), form };
+        let mut out = Writer { text: String::new(), markdown };
         out.heading("What would move this pixel most, by differences");
         if influences.iter().any(|influence| influence.digits < DIGITS) {
             out.line(1, "The digits are those that the noise of the light with extent leaves.");
@@ -53,14 +59,9 @@ impl Explanation {
             let [low, high] = tried.map(|v| rounded(v, DIGITS));
             let what = format!("{symbol} = {}{space}{unit}", rounded(*value, DIGITS));
             let derivative = rounded_triple(influence.derivative(), influence.digits);
-            out.line(
-                1,
-                format_args!(
-                    "{what}, {label}: Δ light/Δ {symbol} = {derivative} between {low} and {high}; luminance {} for 1 % of \
-                     the range",
-                    signed(influence.effect(), influence.digits)
-                ),
-            );
+            let slope = format!("Δ light/Δ {symbol} = {derivative} between {low} and {high}");
+            let effect = signed(influence.effect(), influence.digits);
+            say!(out, 1, "{what}, {label}: {slope}; luminance {effect} for 1 % of the range");
         }
         out.text
     }
@@ -69,15 +70,14 @@ impl Explanation {
     /// Markdown.
     #[must_use]
     pub fn differences_to_text(&self, other: &Self, names: [&str; 2], markdown: bool) -> String {
-        let form = if markdown { Form::Markdown } else { Form::Text };
-        let mut out = Writer { text: String::new(), form };
+        let mut out = Writer { text: String::new(), markdown };
         let [a, b] = names;
-        out.heading(&format!("View {a} beside view {b}"));
+        out.heading(format_args!("View {a} beside view {b}"));
         for (name, explained) in [(a, self), (b, other)] {
             let [red, green, blue] = explained.code();
             let nothing = if explained.lamp.is_some() { "a light" } else { "background" };
             let model = explained.seen.as_ref().map_or(nothing, |seen| seen.model.declaration.name);
-            out.line(1, format_args!("{name}: {model}, red {red}, green {green}, blue {blue}"));
+            say!(out, 1, "{name}: {model}, red {red}, green {green}, blue {blue}");
         }
         let (Some(first), Some(second)) = (&self.seen, &other.seen) else { return out.text };
         let spots = first.spots.iter().zip(&second.spots);
@@ -86,54 +86,46 @@ impl Explanation {
                 let Some(against) = two.lights.iter().find(|l| l.light.index == lit.light.index) else {
                     continue;
                 };
-                out.subheading(format_args!(
-                    "{}, {}, {}: lines that differ",
-                    named("lights", &lit.light),
-                    lit.light.type_name,
-                    heading(first, one).to_lowercase()
-                ));
+                let (light, place) = (named("lights", &lit.light), heading(first, one).to_lowercase());
+                let kind = lit.light.type_name;
+                out.subheading(format_args!("{light}, {kind}, {place}: lines that differ"));
                 let all = pairs(&lit.lines(&first.model), &against.lines(&second.model));
                 for pair in all.iter().filter(|pair| pair.differs()) {
                     for (name, line) in [(a, &pair.a), (b, &pair.b)] {
                         match line {
                             Some(line) => {
-                                let value = line.outcome(DIGITS).map(|value| format!(" = {value}"));
-                                let numbers = line.right().map(|n| format!(" = {n}")).unwrap_or_default();
-                                let value = value.unwrap_or_default();
-                                out.mathematics(
-                                    2,
-                                    &format!("{name}: "),
-                                    &format!("{}{numbers}{value}", line.text),
-                                    "",
-                                );
+                                let numbers = line.right().map(str::to_owned);
+                                let sides = numbers.into_iter().chain(line.outcome(DIGITS));
+                                let sides: String = sides.map(|side| format!(" = {side}")).collect();
+                                out.mathematics(2, format_args!("{name}: {}{sides}", line.text), "");
                             }
-                            None => out.line(2, format_args!("{name}: no line for {}", pair.defines())),
+                            None => say!(out, 2, "{name}: no line for {}", pair.defines()),
                         }
                     }
                 }
                 let same = all.iter().filter(|pair| !pair.differs()).count();
-                out.line(2, format_args!("{} the same in both", plural(same, "line")));
+                say!(out, 2, "{} the same in both", plural(same, "line"));
             }
         }
         out.text
     }
 
-    fn written(&self, form: Form) -> String {
-        let mut out = Writer { text: String::new(), form };
+    fn written(&self, markdown: bool) -> String {
+        let mut out = Writer { text: String::new(), markdown };
         let [x, y] = self.pixel;
         let [width, height] = self.size;
         let [r, g, b] = self.code();
-        out.title(format_args!("Pixel {x},{y} of {width}×{height}: red {r}, green {g}, blue {b}"));
+        out.marked("#", 0, format_args!("Pixel {x},{y} of {width}×{height}: red {r}, green {g}, blue {b}"));
         if self.terms != TermSelection::All {
-            out.line(0, format_args!("Only the {} term is shown.", self.terms.id()));
+            say!(out, 0, "Only the {} term is shown.", self.terms.id());
         }
         match (&self.seen, &self.lamp) {
             (Some(seen), _) => self.object(&mut out, seen),
             (None, Some(lamp)) => {
                 for light in &lamp.lights {
-                    out.line(0, format_args!("{}, {}, is seen here.", named("lights", light), light.type_name));
+                    say!(out, 0, "{}, {}, is seen here.", named("lights", light), light.type_name);
                 }
-                out.line(1, format_args!("L = {} cd/m²", triple(lamp.radiance)));
+                say!(out, 1, "L = {} cd/m²", triple(lamp.radiance));
             }
             (None, None) => out.line(
                 0,
@@ -147,7 +139,7 @@ impl Explanation {
 
     fn object(&self, out: &mut Writer, seen: &Seen) {
         let part = named("objects", &seen.object);
-        out.line(0, format_args!("{part}, {}, polygon {}", seen.object.type_name, seen.polygon));
+        say!(out, 0, "{part}, {}, polygon {}", seen.object.type_name, seen.polygon);
         out.gap();
         model(out, seen);
         shading(out, seen);
@@ -159,30 +151,22 @@ impl Explanation {
         }
         result(out, seen);
         if let Some(spot) = &seen.per_pixel {
-            self.spot(
-                out,
-                seen,
-                spot,
-                "For comparison: per-pixel shading at this pixel, which is not what is shown",
-            );
+            let heading = "For comparison: per-pixel shading at this pixel, which is not what is shown";
+            self.spot(out, seen, spot, heading);
             let [would, light] = [estimated(spot.colour, spot.error()), estimated(seen.light, seen.error())];
-            out.line(1, format_args!("the light would be {would} instead of {light}"));
+            say!(out, 1, "the light would be {would} instead of {light}");
         }
     }
 
     fn spot(&self, out: &mut Writer, seen: &Seen, spot: &Spot, heading: &str) {
         out.heading(heading);
-        out.line(1, format_args!("position {} m", triple(spot.position)));
-        out.line(1, format_args!("N = {}", triple(spot.normal)));
-        out.line(1, format_args!("V = {}, {} m to the observer", triple(spot.view), number(spot.distance)));
+        say!(out, 1, "position {} m", triple(spot.position));
+        say!(out, 1, "N = {}", triple(spot.normal));
+        say!(out, 1, "V = {}, {} m to the observer", triple(spot.view), number(spot.distance));
         if spot.is_mirrored() {
-            out.line(
-                1,
-                format_args!(
-                    "The normal faces away from the observer: V is the direction to the observer, {}, mirrored in the surface.",
-                    triple(spot.eye)
-                ),
-            );
+            let eye =
+                format!("V is the direction to the observer, {}, mirrored in the surface", triple(spot.eye));
+            say!(out, 1, "The normal faces away from the observer: {eye}.");
         }
         if spot.lights.is_empty() {
             out.line(1, "No light is switched on, so there is no light here.");
@@ -193,24 +177,19 @@ impl Explanation {
         if spot.lights.len() > 1 {
             let lights = plural(spot.lights.len(), "light");
             let sum = told(spot.sum, spot.error(), DIGITS);
-            out.line(1, format_args!("sum over {lights} = {sum}"));
+            say!(out, 1, "sum over {lights} = {sum}");
         }
         if spot.is_replaced() {
-            out.line(
-                1,
-                format_args!(
-                    "The sum is {}; what is no number counts as 0, and nothing beyond ±10^30: {}",
-                    triple(spot.sum),
-                    triple(spot.colour)
-                ),
-            );
+            let [sum, colour] = [spot.sum, spot.colour].map(triple);
+            let rule = "what is no number counts as 0, and nothing beyond ±10^30";
+            say!(out, 1, "The sum is {sum}; {rule}: {colour}");
         }
     }
 
     fn light(&self, out: &mut Writer, seen: &Seen, lit: &Lit) {
         out.subheading(format_args!("{}, {}", named("lights", &lit.light), lit.light.type_name));
         if let (Some(position), Some(distance)) = (lit.position, lit.distance) {
-            out.line(2, format_args!("position {} m, distance d = {} m", triple(position), number(distance)));
+            say!(out, 2, "position {} m, distance d = {} m", triple(position), number(distance));
         }
         if let Some(geometry) = &lit.geometry {
             directions(out, seen, geometry);
@@ -233,14 +212,14 @@ impl Explanation {
         }
         let sum = lit.sum(self.terms);
         if lit.integral.is_some() {
-            out.line(2, format_args!("light to the observer: {sum}"));
+            say!(out, 2, "light to the observer: {sum}");
         } else {
-            out.line(2, format_args!("light to the observer: {sum} × {}", triple(lit.arriving)));
+            say!(out, 2, "light to the observer: {sum} × {}", triple(lit.arriving));
             if sum != "0" {
-                out.mathematics(3, "= ", &lit.product(self.terms), "");
+                out.equals(lit.product(self.terms));
             }
         }
-        out.mathematics(3, "= ", &lit.outcome(DIGITS), "");
+        out.equals(lit.outcome(DIGITS));
         if let Some(brightest) = lit.integral.and_then(|integral| integral.brightest) {
             self.brightest(out, seen, &brightest);
         }
@@ -255,12 +234,12 @@ impl Explanation {
         out.line(2, "Of the directions that were sampled, the one that gives most:");
         directions(out, seen, &brightest.geometry);
         let luminance = rounded_number_or_triple(brightest.luminance, DIGITS);
-        out.mathematics(2, "", &format!("L(l) = {luminance} cd/m²"), ": the luminance from there");
+        out.mathematics(2, format_args!("L(l) = {luminance} cd/m²"), ": the luminance from there");
         for line in brightest.lines(&seen.model, DIGITS) {
             equation(out, &line);
         }
         let gives = triple(brightest.gives(self.terms));
-        out.line(2, format_args!("from there to the observer, per steradian: {gives}"));
+        say!(out, 2, "from there to the observer, per steradian: {gives}");
     }
 
     fn display(&self, out: &mut Writer) {
@@ -269,33 +248,25 @@ impl Explanation {
         out.heading("From light to the code on the display");
         if self.seen.is_some() || self.lamp.is_some() {
             let light = told(steps.light, self.error_of(|steps| steps.light), DIGITS);
-            out.line(1, format_args!("light {light}"));
+            say!(out, 1, "light {light}");
             let (ev, factor) = (number(self.display.exposure), number(steps.exposure));
-            out.line(
-                1,
-                format_args!("exposure {ev} EV, factor 2^{ev} = {factor}: {}", say(|steps| steps.exposed)),
-            );
+            say!(out, 1, "exposure {ev} EV, factor 2^{ev} = {factor}: {}", say(|steps| steps.exposed));
         } else {
-            out.line(1, format_args!("background {}, whatever the exposure", triple(steps.exposed)));
+            say!(out, 1, "background {}, whatever the exposure", triple(steps.exposed));
         }
         if self.display.encoding == Encoding::Off {
-            out.line(
-                1,
-                format_args!(
-                    "without encoding, the numbers themselves are to reach the display: clipped to 0–1 and decoded, since \
-                     the last step encodes: {}",
-                    say(|steps| steps.input)
-                ),
-            );
+            let why = "clipped to 0–1 and decoded, since the last step encodes";
+            let input = say(|steps| steps.input);
+            say!(out, 1, "without encoding, the numbers themselves are to reach the display: {why}: {input}");
         }
         let tone = self.display.tone_mapping.name();
-        out.line(1, format_args!("tone mapping, {tone}: {}", say(|steps| steps.mapped)));
+        say!(out, 1, "tone mapping, {tone}: {}", say(|steps| steps.mapped));
         if steps.mapped.is_nan() {
             out.line(1, "what is no number is shown as 0");
         } else if steps.mapped.max_element() > 1.0 || steps.mapped.min_element() < 0.0 {
             out.line(1, "what is beyond 0–1 is clipped");
         }
-        out.line(1, format_args!("sRGB encoding: {}", say(|steps| steps.encoded)));
+        say!(out, 1, "sRGB encoding: {}", say(|steps| steps.encoded));
         let [of_mapped, of_encoded] =
             [self.error_of(|steps| steps.mapped), self.error_of(|steps| steps.encoded)];
         for (i, channel) in ["red", "green", "blue"].into_iter().enumerate() {
@@ -308,19 +279,14 @@ impl Explanation {
                 _ => format!("12.92 × {put}"),
             };
             let encoded = within(encoded, of_encoded.map(|error| error[i]), DIGITS);
-            out.mathematics(2, "", &format!("{channel}: {numbers} = {encoded}"), "");
+            out.mathematics(2, format_args!("{channel}: {numbers} = {encoded}"), "");
         }
         let [r, g, b] = steps.codes;
-        out.line(1, format_args!("× 255, rounded: {r}, {g}, {b}"));
+        say!(out, 1, "× 255, rounded: {r}, {g}, {b}");
         if let Some(error) = of_encoded {
             let codes = rounded_triple(255.0 * error, 1);
-            out.line(
-                1,
-                format_args!(
-                    "These are the codes of the picture, made from all digits. The standard error of the light is that of \
-                     {codes} codes."
-                ),
-            );
+            let error = format!("The standard error of the light is that of {codes} codes.");
+            say!(out, 1, "These are the codes of the picture, made from all digits. {error}");
         }
     }
 }
@@ -333,16 +299,11 @@ fn equation(out: &mut Writer, line: &Line) {
         source => format!(": {}, {source}", quantity.label),
     });
     match (&value, line.text.contains('=')) {
-        (Some(value), false) => out.mathematics(2, "", &format!("{} = {value}", line.defines()), &about),
+        (Some(value), false) => out.mathematics(2, format_args!("{} = {value}", line.defines()), &about),
         _ => {
-            out.mathematics(2, "", &line.text, &about);
+            out.mathematics(2, &line.text, &about);
             let numbers = line.right().filter(|numbers| Some(*numbers) != value.as_deref());
-            if let Some(numbers) = numbers {
-                out.mathematics(3, "= ", numbers, "");
-            }
-            if let Some(value) = value {
-                out.mathematics(3, "= ", &value, "");
-            }
+            numbers.into_iter().chain(value.as_deref()).for_each(|side| out.equals(side));
         }
     }
 }
@@ -364,9 +325,9 @@ fn named(list: &str, part: &Part) -> String {
 fn model(out: &mut Writer, seen: &Seen) {
     let d = seen.model.declaration;
     let author = if d.author.is_empty() { String::new() } else { format!(" ({})", d.author) };
-    out.heading(&format!("Reflection model: {}{author}", d.name));
+    out.heading(format_args!("Reflection model: {}{author}", d.name));
     for part in d.equation {
-        out.mathematics(1, "", part.text, "");
+        out.mathematics(1, part.text, "");
     }
     if d.family != Family::Basic && !d.equation.is_empty() {
         out.line(1, "I is the answer to light of unit intensity: for a BRDF f_r, π f_r N·L.");
@@ -378,24 +339,21 @@ fn model(out: &mut Writer, seen: &Seen) {
         out.line(1, "The CPU interprets the WGSL of this model.");
     }
     if let Some(trouble) = &seen.model.trouble {
-        out.line(
-            1,
-            format_args!("The CPU cannot run this model, so the numbers below are not its own: {trouble}."),
-        );
+        say!(out, 1, "The CPU cannot run this model, so the numbers below are not its own: {trouble}.");
     }
 }
 
 fn shading(out: &mut Writer, seen: &Seen) {
     let d = seen.shading;
-    out.heading(&format!("Shading model: {}, {}", d.name, d.stage.phrase()));
+    out.heading(format_args!("Shading model: {}, {}", d.name, d.stage.phrase()));
     out.line(1, d.summary);
-    out.line(1, format_args!("point at the pixel's centre: {} m", triple(seen.position)));
-    out.line(1, format_args!("normal of the triangle: {}", triple(seen.face_normal)));
+    say!(out, 1, "point at the pixel's centre: {} m", triple(seen.position));
+    say!(out, 1, "normal of the triangle: {}", triple(seen.face_normal));
     if d.stage == Stage::Pixel {
         let n = seen.interpolated_normal;
-        out.line(1, format_args!("interpolated normal: {}, length {}", triple(n), number(n.length())));
+        say!(out, 1, "interpolated normal: {}, length {}", triple(n), number(n.length()));
         if n != Vec3::ZERO {
-            out.line(1, format_args!("renormalised: {}", triple(n.normalize_or_zero())));
+            say!(out, 1, "renormalised: {}", triple(n.normalize_or_zero()));
         }
     }
 }
@@ -417,15 +375,15 @@ fn result(out: &mut Writer, seen: &Seen) {
     for (i, corner) in seen.corners.iter().enumerate() {
         let sign = if i == 0 { "" } else { "+ " };
         let colour = estimated(corner.colour, seen.error_at(corner));
-        out.line(1, format_args!("{sign}{} × {colour}", number(corner.weight)));
+        say!(out, 1, "{sign}{} × {colour}", number(corner.weight));
     }
-    out.line(1, format_args!("= {}", estimated(seen.light, seen.error())));
+    say!(out, 1, "= {}", estimated(seen.light, seen.error()));
 }
 
 /// Directions, their cosines and angles.
 fn directions(out: &mut Writer, seen: &Seen, geometry: &Geometry) {
     let [l, h, r] = [geometry.l, geometry.h, geometry.r].map(triple);
-    out.line(2, format_args!("L = {l}, H = {h}, R = {r}"));
+    say!(out, 2, "L = {l}, H = {h}, R = {r}");
     let shown =
         if seen.model.declaration.anisotropic { [0, 1, 2, 3, 4, 7, 8].as_slice() } else { &[0, 1, 2, 3, 4] };
     let cosines = shown.iter().map(|i| geometry.cosines[*i]);
@@ -450,10 +408,10 @@ fn angles(out: &mut Writer, seen: &Seen, geometry: &Geometry) {
         .collect();
     if around {
         let [t, b] = [geometry.frame.t, geometry.frame.b].map(triple);
-        out.line(2, format_args!("tangent T = {t}, B = {b}"));
+        say!(out, 2, "tangent T = {t}, B = {b}");
     }
     if !all.is_empty() {
-        out.line(2, format_args!("angles: {}", all.join(", ")));
+        say!(out, 2, "angles: {}", all.join(", "));
     }
 }
 
@@ -464,12 +422,12 @@ fn arriving(out: &mut Writer, lit: &Lit) {
         let about = format!(" for {}: {}", factor.givens(number), factor.meaning);
         let steps = factor.steps(DIGITS);
         if steps.is_empty() {
-            out.mathematics(2, "", &format!("{symbol} = {value}"), &about);
+            out.mathematics(2, format_args!("{symbol} = {value}"), &about);
         }
         for (i, step) in steps.iter().enumerate() {
-            out.mathematics(2, "", &step.text, if i == 0 { &about } else { "" });
-            out.mathematics(3, "= ", &step.numbers, "");
-            out.mathematics(3, "= ", &of_value(&step.value, DIGITS), "");
+            out.mathematics(2, &step.text, if i == 0 { &about } else { "" });
+            out.equals(&step.numbers);
+            out.equals(of_value(&step.value, DIGITS));
         }
     }
     let numbers = |digits: usize, with_unit: bool| {
@@ -491,7 +449,7 @@ fn arriving(out: &mut Writer, lit: &Lit) {
         |digits: &usize| reading(&numbers(*digits, false)).is_ok_and(|read| agrees(&read, &value, DIGITS));
     let factors = numbers((DIGITS..=9).find(fits).unwrap_or(DIGITS), true);
     let all = if lit.factors.len() > 1 { format!("{factors} = {intensity} lx") } else { factors };
-    out.mathematics(2, "", &format!("{equation} = {all}"), "");
+    out.mathematics(2, format_args!("{equation} = {all}"), "");
     if lit.colour != Vec3::ONE && lit.intensity != Vec3::ZERO {
         let numbers = |digits: usize| {
             let intensity = rounded_number_or_triple(lit.intensity, digits);
@@ -499,71 +457,62 @@ fn arriving(out: &mut Writer, lit: &Lit) {
         };
         let numbers = calculation(DIGITS, &colour(lit.arriving), numbers);
         let all = format!("{numbers} = {} lx", triple(lit.arriving));
-        out.mathematics(2, "", &all, ": times the colour of the light");
+        out.mathematics(2, &all, ": times the colour of the light");
     }
 }
 
-/// Format of the text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Form {
-    /// Indented lines.
-    Text,
-    /// Headings and nested lists.
-    Markdown,
-}
-
-/// Writes indented lines.
+/// Writes indented lines, or the headings and nested lists of Markdown.
 struct Writer {
     text: String,
-    form: Form,
+    markdown: bool,
 }
 
 impl Writer {
     fn line(&mut self, depth: usize, what: impl std::fmt::Display) {
-        let line = match (self.form, depth) {
-            (Form::Text, _) => format!("{:width$}{what}", "", width = 2 * depth),
-            (Form::Markdown, 0) => what.to_string(),
-            (Form::Markdown, _) => format!("{:width$}- {what}", "", width = 2 * (depth - 1)),
+        let line = match (self.markdown, depth) {
+            (false, _) => format!("{:width$}{what}", "", width = 2 * depth),
+            (true, 0) => what.to_string(),
+            (true, _) => format!("{:width$}- {what}", "", width = 2 * (depth - 1)),
         };
         // Writing to a String cannot fail.
         let _ = writeln!(self.text, "{}", line.trim_end());
     }
 
-    /// Writes mathematics, with a sign before it and words after it.
-    fn mathematics(&mut self, depth: usize, before: &str, what: &str, behind: &str) {
-        let quote = if self.form == Form::Markdown { "`" } else { "" };
-        self.line(depth, format_args!("{quote}{before}{what}{quote}{behind}"));
+    /// Writes mathematics, with words after it.
+    fn mathematics(&mut self, depth: usize, what: impl std::fmt::Display, behind: &str) {
+        let quote = if self.markdown { "`" } else { "" };
+        self.line(depth, format_args!("{quote}{what}{quote}{behind}"));
+    }
+
+    /// Writes a further side of an equation.
+    fn equals(&mut self, what: impl std::fmt::Display) {
+        self.mathematics(3, format_args!("= {what}"), "");
     }
 
     /// Writes an empty line, which Markdown needs before lists.
     fn gap(&mut self) {
-        if self.form == Form::Markdown {
+        if self.markdown {
             self.text.push('\n');
         }
     }
 
-    fn title(&mut self, what: impl std::fmt::Display) {
-        let mark = if self.form == Form::Markdown { "# " } else { "" };
-        self.line(0, format_args!("{mark}{what}"));
+    /// Writes a heading with its mark in Markdown, or at a depth.
+    fn marked(&mut self, mark: &str, depth: usize, what: impl std::fmt::Display) {
+        match self.markdown {
+            true => self.line(0, format_args!("{mark} {what}")),
+            false => self.line(depth, what),
+        }
         self.gap();
     }
 
-    fn heading(&mut self, what: &str) {
-        let mark = if self.form == Form::Markdown { "## " } else { "" };
+    fn heading(&mut self, what: impl std::fmt::Display) {
         self.line(0, "");
-        self.line(0, format_args!("{mark}{what}"));
-        self.gap();
+        self.marked("##", 0, what);
     }
 
     /// Writes the heading of a light.
     fn subheading(&mut self, what: impl std::fmt::Display) {
         self.line(0, "");
-        match self.form {
-            Form::Text => self.line(1, what),
-            Form::Markdown => {
-                self.line(0, format_args!("### {what}"));
-                self.gap();
-            }
-        }
+        self.marked("###", 1, what);
     }
 }

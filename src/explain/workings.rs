@@ -33,6 +33,12 @@ pub(super) struct Definition {
     pub(super) quantity: Option<&'static Quantity>,
 }
 
+impl Definition {
+    fn of(quantity: &'static Quantity) -> Self {
+        Self { term: Term::Total, text: quantity.text, quantity: Some(quantity) }
+    }
+}
+
 /// A quantity with its value.
 #[derive(Clone, Debug)]
 pub(super) struct Worked {
@@ -82,7 +88,7 @@ fn number(v: f32) -> Value {
 
 /// The ambient, diffuse and specular term, each with its value.
 pub(super) fn of_terms(response: &Terms) -> [(Term, Vec3); 3] {
-    let Terms { ambient, diffuse, specular } = *response;
+    let [ambient, diffuse, specular] = response.each();
     [(Term::Ambient, ambient), (Term::Diffuse, diffuse), (Term::Specular, specular)]
 }
 
@@ -113,11 +119,7 @@ impl<'a> Workings<'a> {
             mathematics::definitions(part.text).into_iter().map(of)
         });
         let holds = |quantity: &&Quantity| quantity.when.iter().all(|(name, ids)| model.chooses(name, ids));
-        let quantities = declaration.quantities.iter().filter(holds).map(|quantity| Definition {
-            term: Term::Total,
-            text: quantity.text,
-            quantity: Some(quantity),
-        });
+        let quantities = declaration.quantities.iter().filter(holds).map(Definition::of);
         Self {
             model,
             geometry,
@@ -205,11 +207,7 @@ impl<'a> Workings<'a> {
         // If several quantities share a symbol, the present choices select one.
         let mut quantities = self.definitions.iter().filter_map(|definition| definition.quantity);
         let quantity = quantities.find(|quantity| same_symbol(quantity.symbol(), symbol));
-        let definition = quantity.map(|quantity| Definition {
-            term: Term::Total,
-            text: quantity.text,
-            quantity: Some(quantity),
-        });
+        let definition = quantity.map(Definition::of);
         self.worked.push(Worked { text: name.to_owned(), value, definition });
         Ok(value)
     }

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::{
     light::{LightEntry, LightRecord, Twin},
-    parameter::Parameter,
+    parameter::{Parameter, lanes},
     registry::Registry,
     scene::{Scene, record, shines_from_everywhere},
 };
@@ -134,15 +134,15 @@ impl<'a> Lights<'a> {
 /// The size of a WGSL type, in words.
 #[must_use]
 pub fn size(kind: &str) -> usize {
-    if kind == "vec3<f32>" { 3 } else { 1 }
+    lanes(kind)
 }
 
 /// The size of a WGSL record with these fields, in bytes.
 #[must_use]
 pub fn stride(fields: &[LightField]) -> usize {
-    let end = fields.iter().fold(0usize, |end, field| match size(field.kind) {
-        3 => end.next_multiple_of(16) + 12,
-        words => end + 4 * words,
+    let end = fields.iter().fold(0usize, |end, field| {
+        let words = size(field.kind);
+        end.next_multiple_of(4 * words.next_power_of_two()) + 4 * words
     });
     end.next_multiple_of(16)
 }

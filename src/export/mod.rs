@@ -7,8 +7,6 @@
 
 use std::path::PathBuf;
 
-use template::filled;
-
 pub use crate::progress::Progress;
 use crate::{progress::Cancelled, registry::Registry, scene::Scene};
 
@@ -24,7 +22,6 @@ pub mod payload;
 mod refusals;
 pub mod shader;
 pub mod shaders;
-mod template;
 pub mod translate;
 pub mod view;
 pub mod write;

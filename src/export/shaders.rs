@@ -77,12 +77,10 @@ pub fn alone(request: &Request) -> Result<Host, ExportError> {
     match display.tone_mapping {
         tone if tone.is_table() => {
             let formulas = ToneMapping::ALL.into_iter().filter(|t| !t.is_table()).map(ToneMapping::id);
-            Err(ExportError::refused(format!(
-                "display.tone_mapping: {} is a table of colours, but a stand-alone shader has only formulas; \
-                 these can be exported: {}",
-                tone.id(),
-                crate::text::listed(&formulas.collect::<Vec<_>>(), "and")
-            )))
+            let formulas = crate::text::listed(&formulas.collect::<Vec<_>>(), "and");
+            let is = format!("display.tone_mapping: {} is a table of colours", tone.id());
+            let why = "a stand-alone shader has only formulas; these can be exported";
+            Err(ExportError::refused(format!("{is}, but {why}: {formulas}")))
         }
         tone => Ok(Host::Alone { tone, encoding: display.encoding }),
     }
@@ -93,9 +91,8 @@ fn lit<'a>(request: &Request<'a>) -> Result<Lit<'a>, ExportError> {
     let lit = Lit::of(*request, alone(request)?, |index| index == request.object)?;
     if lit.objects.is_empty() {
         let path = object_path(request.scene, request.object);
-        return Err(ExportError::refused(format!(
-            "{path} is hidden; make it visible, or choose another object"
-        )));
+        let what = format!("{path} is hidden; make it visible, or choose another object");
+        return Err(ExportError::refused(what));
     }
     Ok(lit)
 }

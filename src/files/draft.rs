@@ -6,10 +6,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, PersistError};
 
 use super::{
-    FileError,
+    FileError, Node,
     before::{Before, Turn},
     folder_of, follow, litter,
     living::{self, Living, Temporary},
@@ -130,7 +130,14 @@ impl Draft {
     ///
     /// # Errors
     /// Returns [`io::ErrorKind::AlreadyExists`] if the place is taken, and any error of the operating system.
-    pub fn create(mut self) -> Result<(), FileError> {
+    pub fn create(self) -> Result<(), FileError> {
+        self.persist(|file, target| file.persist_noclobber(target))
+    }
+
+    fn persist(
+        mut self,
+        put: impl FnOnce(NamedTempFile, &Path) -> Result<File, PersistError>,
+    ) -> Result<(), FileError> {
         if self.executable {
             make_executable(self.file.as_file())?;
         }
@@ -138,7 +145,7 @@ impl Draft {
         let Self { target, file, living: _living, synced, .. } = self;
         let step = living::step();
         // The file stays open, and thus locked, until its folder is on disk.
-        let persisted = file.persist_noclobber(&target);
+        let persisted = put(file, &target);
         drop(step);
         let _file = persisted.map_err(|e| e.error)?;
         sync_folder(&target, synced);
@@ -169,28 +176,18 @@ impl Draft {
     /// # Errors
     /// Returns an error if the place holds anything but a regular file, and any error of the operating
     /// system. Unless it is [`FileError::Unfinished`], the old file is unchanged.
-    pub fn replace(mut self) -> Result<(), FileError> {
+    pub fn replace(self) -> Result<(), FileError> {
         let old = existing(&self.target)?;
         if let Some(old) = &old {
             let alike = take_after(self.file.as_file(), old);
             self.file.as_file().set_permissions(old.permissions())?;
-            if (!alike || links(old) > 1)
+            if (!alike || Node::of(old).links > 1)
                 && let Some(place) = open_to_overwrite(&self.target, old)
             {
                 return self.overwrite(place, old);
             }
         }
-        if self.executable {
-            make_executable(self.file.as_file())?;
-        }
-        self.sync()?;
-        let Self { target, file, living: _living, synced, .. } = self;
-        let step = living::step();
-        let persisted = file.persist(&target);
-        drop(step);
-        let _file = persisted.map_err(|e| e.error)?;
-        sync_folder(&target, synced);
-        Ok(())
+        self.persist(|file, target| file.persist(target))
     }
 
     /// Overwrites the existing file. This can be interrupted, so until it is done the draft is kept under a
@@ -274,17 +271,6 @@ fn take_after(file: &File, old: &Metadata) -> bool {
     }
     #[cfg(not(unix))]
     true
-}
-
-/// The number of hard links of a file.
-#[cfg_attr(not(unix), allow(unused_variables))]
-fn links(metadata: &Metadata) -> u64 {
-    #[cfg(unix)]
-    {
-        std::os::unix::fs::MetadataExt::nlink(metadata)
-    }
-    #[cfg(not(unix))]
-    1
 }
 
 /// Syncs the folder of a new name. Not every file system supports this; the file itself is complete either

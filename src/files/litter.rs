@@ -9,7 +9,7 @@ use std::{
 
 use super::shown::Shown as _;
 use super::{
-    FileError, is_same, options,
+    FileError, Node, is_same, options,
     overwrite::{fill, open_to_overwrite},
     read, read_start,
 };
@@ -52,22 +52,16 @@ impl std::fmt::Display for Unfinished {
                 write!(f, ". Its whole content is in {copy}; use that, or delete it.")
             }
             None => {
-                write!(
-                    f,
-                    "{copy} is the whole content of a file that no longer exists; use it, or delete it."
-                )
+                write!(f, "{copy} is the whole content of a file that no longer exists")?;
+                f.write_str("; use it, or delete it.")
             }
         }
     }
 }
 
 /// The name of the complete copy of a file during overwriting.
-#[cfg_attr(not(unix), allow(unused_variables))]
 pub(super) fn whole(draft: &Path, old: &Metadata) -> PathBuf {
-    #[cfg(unix)]
-    let inode = std::os::unix::fs::MetadataExt::ino(old);
-    #[cfg(not(unix))]
-    let inode = 0;
+    let inode = Node::of(old).inode;
     let name = draft.file_name().unwrap_or_default().to_string_lossy();
     draft.with_file_name(format!("{}.{inode}-{}{WHOLE}", name.trim_end_matches(DRAFT), changed(old)))
 }
@@ -168,7 +162,7 @@ fn remove_folder_if_abandoned(path: &Path) {
     remove_draft(path);
 }
 
-/// Removes the abandoned draft of a folder, as [`remove_folder_if_left`] does.
+/// Removes the abandoned draft of a folder, as [`remove_folder_if_abandoned`] does.
 pub(super) fn remove_draft(path: &Path) {
     let old = fs::read_dir(path.join(OLD)).ok().and_then(|mut entries| entries.next());
     if let Some(old) = old {
@@ -231,7 +225,8 @@ fn finish(folder: &Path, copy: &Path, inode: u64, time: u64) -> Option<Unfinishe
         // Only the effect of the interruption itself is undone, and only among files of one owner: in a
         // world-writable folder, the copy could come from anybody.
         let begun = wanted.starts_with(&there) || changed(&metadata) == time;
-        let interrupted = begun && lock.metadata().is_ok_and(|m| owner(&m) == owner(&metadata));
+        let interrupted =
+            begun && lock.metadata().is_ok_and(|m| Node::of(&m).owner == Node::of(&metadata).owner);
         let place = interrupted.then(|| open_to_overwrite(&file, &metadata)).flatten();
         let done =
             place.is_some_and(|mut place| lock.rewind().is_ok() && fill(&mut lock, &mut place).is_ok());
@@ -255,16 +250,6 @@ fn with_inode(folder: &Path, inode: u64) -> Option<(PathBuf, Metadata)> {
     }
     #[cfg(not(unix))]
     None
-}
-
-#[cfg_attr(not(unix), allow(unused_variables))]
-fn owner(metadata: &Metadata) -> u32 {
-    #[cfg(unix)]
-    {
-        std::os::unix::fs::MetadataExt::uid(metadata)
-    }
-    #[cfg(not(unix))]
-    0
 }
 
 #[cfg(test)]

@@ -303,13 +303,30 @@ fn regular(metadata: &Metadata) -> Result<(), FileError> {
 }
 
 /// True if two descriptions are of one file, or if that is unknown.
-#[cfg_attr(not(unix), allow(unused_variables))]
 fn is_same(a: &Metadata, b: &Metadata) -> bool {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt as _;
-        (a.dev(), a.ino()) == (b.dev(), b.ino())
+    let [a, b] = [a, b].map(Node::of);
+    (a.device, a.inode) == (b.device, b.inode)
+}
+
+/// What Unix knows of a file; elsewhere, all files are alike.
+pub(crate) struct Node {
+    device: u64,
+    pub(crate) inode: u64,
+    owner: u32,
+    /// The number of hard links.
+    links: u64,
+}
+
+impl Node {
+    #[cfg_attr(not(unix), allow(unused_variables))]
+    pub(crate) fn of(metadata: &Metadata) -> Self {
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt as _;
+            let (device, inode) = (metadata.dev(), metadata.ino());
+            Self { device, inode, owner: metadata.uid(), links: metadata.nlink() }
+        }
+        #[cfg(not(unix))]
+        Self { device: 0, inode: 0, owner: 0, links: 1 }
     }
-    #[cfg(not(unix))]
-    true
 }

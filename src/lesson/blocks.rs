@@ -1,20 +1,16 @@
 //! The fenced blocks of a step.
 
-use std::path::Path;
-
 use super::{
     AnswerChoice, Block, Condition, Control, Goal, Run, Task, controls,
     draft::Draft,
     limits::MAX_LINES,
     problem::Problems,
     runs::inline,
-    state, window,
+    state::{self, Shelf},
+    window,
     words::{Line, Piece, lines, pair},
 };
-use crate::{
-    registry::Registry,
-    text::{did_you_mean, listed, mathematics::beyond_limits, nearest, quoted},
-};
+use crate::text::{did_you_mean, listed, mathematics::beyond_limits, nearest, quoted};
 
 /// The kinds of blocks.
 const KINDS: [&str; 7] = ["equation", "scene", "view", "point", "predict", "do", "find"];
@@ -27,18 +23,13 @@ pub(super) fn read(
     at: usize,
     body: Piece,
     draft: &mut Draft,
-    folder: Option<&Path>,
-    registry: &Registry,
+    shelf: Shelf,
     problems: &mut Problems,
 ) {
     let Some(kind) = KINDS.into_iter().find(|kind| *kind == info) else {
         let near = did_you_mean(info, KINDS.iter().map(|k| (*k, *k)));
-        let found = if info.is_empty() {
-            "a block without a kind".to_owned()
-        } else {
-            format!("a block {}", quoted(info))
-        };
-        problems.at(at, format!("this is {found}; a block is {}{near}", listed(&KINDS, "or")));
+        let found = if info.is_empty() { "without a kind".to_owned() } else { quoted(info) };
+        problems.at(at, format!("this is a block {found}; a block is {}{near}", listed(&KINDS, "or")));
         return;
     };
     if kind != "equation" && draft.kinds.contains(&kind) {
@@ -62,7 +53,7 @@ pub(super) fn read(
         }
         "scene" => {
             let before = problems.count();
-            draft.step.scene = Some(state::read(body, folder, registry, problems));
+            draft.step.scene = Some(state::read(body, shelf, problems));
             draft.is_lost = problems.count() > before;
         }
         "view" => {
@@ -77,7 +68,7 @@ pub(super) fn read(
                     problems.at(line.piece().at, "each line of a point block must be KIND: NAME");
                     continue;
                 };
-                match controls::control(key, value, registry, problems) {
+                match controls::control(key, value, shelf.registry, problems) {
                     Some(control) => {
                         draft.points.push(value.at);
                         draft.step.points.push(control);
@@ -140,16 +131,11 @@ fn mark(text: &str) -> Option<(usize, bool)> {
 /// Reads a question with its answers.
 fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
     let before = problems.count();
-    let mut marks: Vec<(usize, usize, bool)> = Vec::new();
-    for line in lines(body.text, body.at) {
-        let piece = line.piece();
-        if let Some((length, right)) = mark(piece.text) {
-            marks.push((piece.at - body.at, length, right));
-        }
-    }
+    let marked = |piece: Piece| mark(piece.text).map(|(length, right)| (piece.at - body.at, length, right));
+    let marks: Vec<_> = lines(body.text, body.at).filter_map(|line| marked(line.piece())).collect();
     if marks.len() > MOST_ANSWERS {
-        problems
-            .at(at, format!("a question has at most {MOST_ANSWERS} answers; this one has {}", marks.len()));
+        let count = marks.len();
+        problems.at(at, format!("a question has at most {MOST_ANSWERS} answers; this one has {count}"));
         return None;
     }
     let end = marks.first().map_or(body.text.len(), |mark| mark.0);
@@ -181,10 +167,8 @@ fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
     }
     match answers.iter().filter(|answer| answer.right).count() {
         _ if answers.len() < 2 => {
-            problems.at(
-                at,
-                "a question needs at least two answers; begin each with [ ], and the right one with [x]",
-            );
+            let rule = "begin each with [ ], and the right one with [x]";
+            problems.at(at, format!("a question needs at least two answers; {rule}"));
         }
         0 => problems.at(at, "the question has no right answer; mark it with [x] instead of [ ]"),
         right if right == answers.len() => {
@@ -197,20 +181,11 @@ fn question(at: usize, body: Piece, problems: &mut Problems) -> Option<Task> {
 
 /// The part of a task that a word probably stands for.
 fn part_meant(word: &str) -> Option<&'static str> {
-    const MEANT: [(&str, &str); 10] = [
-        ("until", "until"),
-        ("condition", "until"),
-        ("when", "until"),
-        ("goal", "until"),
-        ("hint", "hint"),
-        ("tip", "hint"),
-        ("help", "hint"),
-        ("clue", "hint"),
-        ("note", "hint"),
-        ("advice", "hint"),
+    const MEANT: [(&str, &[&str]); 2] = [
+        ("until", &["until", "condition", "when", "goal"]),
+        ("hint", &["hint", "tip", "help", "clue", "note", "advice"]),
     ];
-    let near = nearest(word, MEANT.into_iter())?;
-    MEANT.into_iter().map(|(_, part)| part).find(|part| *part == near)
+    nearest(word, MEANT.iter().flat_map(|(part, words)| words.iter().map(|word| (*word, *part))))
 }
 
 /// Reads a task with its condition.
@@ -251,20 +226,16 @@ fn goal(at: usize, body: Piece, draft: &mut Draft, problems: &mut Problems) -> O
             Some((key, _)) => {
                 problems.at(key.at, format!("a task has no {}; did you mean until:?", quoted(key.text)))
             }
-            None => {
-                problems
-                    .at(at, "the task has no condition; add a line until: with the condition that ends it");
-            }
+            None => problems
+                .at(at, "the task has no condition; add a line until: with the condition that ends it"),
         }
         return None;
     };
     // Conditions contain no colon: a line with one was meant for another part.
     if let Some((key, _)) = lines(written.text, written.at).skip(1).find_map(|line| pair(&line)) {
         let meant = part_meant(key.text).map_or_else(String::new, |part| format!("; did you mean {part}:?"));
-        problems.at(
-            key.at,
-            format!("a task has no key {}; its keys are until and hint{meant}", quoted(key.text)),
-        );
+        let found = quoted(key.text);
+        problems.at(key.at, format!("a task has no key {found}; its keys are until and hint{meant}"));
         return None;
     }
     draft.until = Some(written.at);

@@ -20,12 +20,7 @@ pub(super) fn steps(start: &Scene, drafts: &[Draft], registry: &Registry, proble
         if let Some(change) = &draft.step.scene {
             match change.applied(&scene, registry) {
                 Ok(changed) => scene = changed,
-                Err(found) => {
-                    for (at, what) in found {
-                        problems.at(at, what);
-                    }
-                    return;
-                }
+                Err(found) => return found.into_iter().for_each(|(at, what)| problems.at(at, what)),
             }
             if change.opens() {
                 known.scene_opened();
@@ -65,26 +60,19 @@ fn step(
     window.views = scene.variants.len() + 1;
     if let Some(active) = change.active {
         if active >= window.views {
-            let views = plural(window.views, "view");
-            problems
-                .at(place("active"), format!("there is no view {}: the scene has {views}", LETTERS[active]));
+            let (letter, views) = (LETTERS[active], plural(window.views, "view"));
+            problems.at(place("active"), format!("there is no view {letter}: the scene has {views}"));
         } else {
             (window.active, known.active) = (active, true);
         }
     }
     window.active = window.active.min(window.views - 1);
-    if let Some(channel) = change.channel {
-        (window.channel, known.channel) = (channel, true);
+    macro_rules! set {
+        ($($what:ident)+) => {
+            $(if let Some(given) = change.$what { (window.$what, known.$what) = (given, true) })+
+        };
     }
-    if let Some(terms) = change.terms {
-        (window.terms, known.terms) = (terms, true);
-    }
-    if let Some(explain) = change.explain {
-        (window.explain, known.explain) = (explain, true);
-    }
-    if let Some(plots) = change.plots {
-        (window.plots, known.plots) = (plots, true);
-    }
+    set! { channel terms explain plots }
     if let Some(part) = &change.select {
         known.selection = part.find(scene);
         if known.selection.is_none() {
@@ -113,9 +101,7 @@ fn step(
         pinned: false,
     };
     if is_sound && goal.until.holds_at_once(&situation, known) {
-        problems.at(
-            at,
-            "the task is already done when the step begins; change the condition, or the scene before it",
-        );
+        let remedy = "change the condition, or the scene before it";
+        problems.at(at, format!("the task is already done when the step begins; {remedy}"));
     }
 }

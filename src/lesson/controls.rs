@@ -3,9 +3,10 @@
 use super::{problem::Problems, words::Piece};
 use crate::{
     document::Selection,
+    parameter::Parameter,
     registry::Registry,
     scene::Scene,
-    text::{did_you_mean, listed, nearest, quoted},
+    text::{did_you_mean, listed, nearest, plural, quoted},
 };
 
 /// A control of the window.
@@ -67,11 +68,20 @@ pub enum Which {
 }
 
 impl Which {
-    fn find<'a>(&self, mut names: impl ExactSizeIterator<Item = Option<&'a str>>) -> Option<usize> {
+    fn find(&self, names: &[Option<&str>]) -> Option<usize> {
         match self {
             Self::Number(number) => number.checked_sub(1).filter(|index| *index < names.len()),
-            Self::Name(name) => names.position(|known| known == Some(name)),
+            Self::Name(name) => names.iter().position(|known| *known == Some(name)),
         }
+    }
+}
+
+/// The names of the lights of a scene, or of its objects.
+fn names(scene: &Scene, of_lights: bool) -> Vec<Option<&str>> {
+    if of_lights {
+        scene.lights.iter().map(|light| light.name.as_deref()).collect()
+    } else {
+        scene.objects.iter().map(|object| object.name.as_deref()).collect()
     }
 }
 
@@ -82,35 +92,18 @@ impl PartName {
         match self {
             Self::Room => Some(Selection::Room),
             Self::Observer => Some(Selection::Observer),
-            Self::Light(which) => {
-                which.find(scene.lights.iter().map(|l| l.name.as_deref())).map(Selection::Light)
-            }
-            Self::Object(which) => {
-                which.find(scene.objects.iter().map(|o| o.name.as_deref())).map(Selection::Object)
-            }
+            Self::Light(which) => which.find(&names(scene, true)).map(Selection::Light),
+            Self::Object(which) => which.find(&names(scene, false)).map(Selection::Object),
         }
     }
 
     /// The parts of this kind in a scene, for messages.
     pub(super) fn known(&self, scene: &Scene) -> String {
-        let list = |count: usize, what: &str, names: Vec<&str>| {
-            let names: Vec<_> = names.iter().take(6).map(|name| quoted(name)).collect();
-            let called =
-                if names.is_empty() { String::new() } else { format!(", {}", listed(&names, "and")) };
-            format!("the scene has {}{called}", crate::text::plural(count, what))
-        };
-        match self {
-            Self::Light(_) => list(
-                scene.lights.len(),
-                "light",
-                scene.lights.iter().filter_map(|l| l.name.as_deref()).collect(),
-            ),
-            _ => list(
-                scene.objects.len(),
-                "object",
-                scene.objects.iter().filter_map(|o| o.name.as_deref()).collect(),
-            ),
-        }
+        let of_lights = matches!(self, Self::Light(_));
+        let all = names(scene, of_lights);
+        let called: Vec<_> = all.iter().flatten().take(6).map(|name| quoted(name)).collect();
+        let called = if called.is_empty() { String::new() } else { format!(", {}", listed(&called, "and")) };
+        format!("the scene has {}{called}", plural(all.len(), if of_lights { "light" } else { "object" }))
     }
 
     /// Reads `room`, `observer`, `object 1`, `light "key light"`.
@@ -138,27 +131,29 @@ impl PartName {
 
 /// The part of a scene with the most similar name to an unknown one, as it must be written.
 pub(super) fn nearest_part(written: &str, scene: &Scene) -> Option<String> {
-    let word = |text: &str| -> Option<usize> { text.find(char::is_whitespace) };
-    let bare = match word(written).map(|end| (&written[..end], written[end..].trim())) {
-        Some(("object" | "light", name)) => name,
+    let bare = match written.split_once(char::is_whitespace) {
+        Some(("object" | "light", name)) => name.trim(),
         _ => written,
     };
     let bare = bare.trim_matches(['"', '“', '”', '\'', '‘', '’']);
-    let parts = |kind: &'static str, names: Vec<Option<&str>>| {
-        let names: Vec<_> = names.into_iter().flatten().map(str::to_owned).collect();
-        names.into_iter().map(move |name| (format!("{kind} {}", quoted(&name)), name))
+    let parts = |kind: &'static str, of_lights: bool| {
+        let names = names(scene, of_lights).into_iter().flatten();
+        names.map(move |name| (name, format!("{kind} {}", quoted(name))))
     };
-    let objects = parts("object", scene.objects.iter().map(|part| part.name.as_deref()).collect());
-    let lights = parts("light", scene.lights.iter().map(|part| part.name.as_deref()).collect());
-    let all: Vec<_> = objects.chain(lights).collect();
-    nearest(bare, all.iter().map(|(part, name)| (name.as_str(), part.as_str()))).map(str::to_owned)
+    let all: Vec<_> = parts("object", false).chain(parts("light", true)).collect();
+    nearest(bare, all.iter().map(|(name, part)| (*name, part.as_str()))).map(str::to_owned)
 }
 
-/// The names of all parameters: of materials, lights and shapes.
-pub(super) fn parameters(registry: &Registry) -> Vec<&'static str> {
+/// All parameters: of materials, lights and shapes.
+pub(super) fn parameters(registry: &Registry) -> impl Iterator<Item = &'static Parameter> {
     let lights = registry.lights().iter().flat_map(|entry| entry.parameters);
     let shapes = registry.shapes().iter().flat_map(|entry| entry.parameters);
-    registry.material_parameters().chain(lights).chain(shapes).map(|p| p.name).collect()
+    registry.material_parameters().chain(lights).chain(shapes)
+}
+
+/// The names of all knobs.
+pub(super) fn knobs(registry: &Registry) -> Vec<&'static str> {
+    parameters(registry).map(|p| p.name).chain(KNOBS.iter().copied()).collect()
 }
 
 /// Reads a line of a `point` block; a part is returned with its byte, to be looked up in the scene.
@@ -173,21 +168,14 @@ pub(super) fn control(
         if found.is_none() {
             let near = did_you_mean(value.text, known.iter().map(|k| (*k, *k)));
             // There are too many parameters to name.
-            let all = if known.len() > 12 {
-                String::new()
-            } else {
-                format!("; it must be {}", listed(known, "or"))
-            };
+            let few = known.len() <= 12;
+            let all = if few { format!("; it must be {}", listed(known, "or")) } else { String::new() };
             problems.at(value.at, format!("there is no {what} {}{all}{near}", quoted(value.text)));
         }
         found
     };
     match key.text {
-        "knob" => {
-            let mut known = parameters(registry);
-            known.extend(KNOBS);
-            one_of("knob", &known).map(Control::Knob)
-        }
+        "knob" => one_of("knob", &knobs(registry)).map(Control::Knob),
         "menu" => one_of("menu", MENUS).map(Control::Menu),
         "button" => one_of("button", BUTTONS).map(Control::Button),
         "tab" => one_of("tab", TABS).map(Control::Tab),
@@ -201,14 +189,8 @@ pub(super) fn control(
         other => {
             let known = ["knob", "menu", "button", "tab", "part"];
             let near = did_you_mean(other, known.iter().map(|k| (*k, *k)));
-            problems.at(
-                key.at,
-                format!(
-                    "a lesson cannot point at a {}; it can point at {}{near}",
-                    quoted(other),
-                    listed(&known, "or")
-                ),
-            );
+            let (other, known) = (quoted(other), listed(&known, "or"));
+            problems.at(key.at, format!("a lesson cannot point at a {other}; it can point at {known}{near}"));
             None
         }
     }

@@ -5,7 +5,7 @@ use super::{
     problem::Problems,
     words::{Line, lines, pair},
 };
-use crate::text::{did_you_mean, quoted};
+use crate::text::quoted;
 
 /// The keys, in the order of the documentation.
 const KEYS: [&str; 4] = ["title", "summary", "minutes", "scene"];
@@ -34,13 +34,11 @@ pub(super) fn read(text: &str, problems: &mut Problems) -> Front {
         return front;
     };
     if !is_fence(&first) {
-        problems.at(
-            first.at,
-            "the front matter is missing; begin the file with a line ---, then title: and summary:, then a line ---",
-        );
+        let remedy = "begin the file with a line ---, then title: and summary:, then a line ---";
+        problems.at(first.at, format!("the front matter is missing; {remedy}"));
         return front;
     }
-    let mut given: Vec<&str> = Vec::new();
+    let mut given = Vec::new();
     let mut closed = false;
     for line in all {
         front.end = line.end;
@@ -62,29 +60,14 @@ pub(super) fn read(text: &str, problems: &mut Problems) -> Front {
             problems.at(line.at, "each line of the front matter must be KEY: VALUE");
             continue;
         };
-        let Some(known) = KEYS.into_iter().find(|known| *known == key.text) else {
-            let near = did_you_mean(key.text, KEYS.iter().map(|k| (*k, *k)));
-            problems.at(
-                key.at,
-                format!(
-                    "the front matter has no key {}; its keys are title, summary, minutes and scene{near}",
-                    quoted(key.text)
-                ),
-            );
-            continue;
-        };
-        if given.contains(&known) {
-            problems.at(key.at, format!("{known} is given twice; remove one"));
-            continue;
-        }
-        given.push(known);
+        let Some(known) = problems.key(key, ("the front matter", "key"), &KEYS, &mut given) else { continue };
         if value.text.is_empty() {
             problems.at(value.at, format!("{known} is empty"));
             continue;
         }
         if value.text.chars().nth(LONGEST_TITLE).is_some() {
-            problems
-                .at(value.at, format!("{known} has more than {LONGEST_TITLE} characters, the most allowed"));
+            let what = format!("{known} has more than {LONGEST_TITLE} characters, the most allowed");
+            problems.at(value.at, what);
             continue;
         }
         match known {
@@ -93,13 +76,10 @@ pub(super) fn read(text: &str, problems: &mut Problems) -> Front {
             "scene" => front.scene = Some((value.at, value.text.to_owned())),
             _ => match value.text.parse() {
                 Ok(minutes @ 1..=LONGEST) => front.minutes = Some(minutes),
-                _ => problems.at(
-                    value.at,
-                    format!(
-                        "minutes is {}, but it must be a whole number from 1 to {LONGEST}",
-                        quoted(value.text)
-                    ),
-                ),
+                _ => {
+                    let rule = format!("it must be a whole number from 1 to {LONGEST}");
+                    problems.at(value.at, format!("minutes is {}, but {rule}", quoted(value.text)));
+                }
             },
         }
     }

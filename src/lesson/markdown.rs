@@ -1,8 +1,6 @@
 //! Converts Markdown to steps: headings, paragraphs, lists and fenced blocks. Everything else is refused with
 //! its position.
 
-use std::path::Path;
-
 use pulldown_cmark::{Event, HeadingLevel, Parser, Tag, TagEnd};
 
 use super::{
@@ -12,9 +10,9 @@ use super::{
     plain,
     problem::Problems,
     runs::{Runs, options, refusal},
+    state::Shelf,
     words::Piece,
 };
-use crate::registry::Registry;
 
 /// Maximum nesting of lists.
 const DEEPEST_LIST: usize = 3;
@@ -22,8 +20,7 @@ const DEEPEST_LIST: usize = 3;
 /// Reads the steps of a lesson.
 struct Reader<'a, 'p, 'q> {
     whole: &'a str,
-    folder: Option<&'a Path>,
-    registry: &'a Registry,
+    shelf: Shelf<'a>,
     problems: &'p mut Problems<'q>,
     steps: Vec<Draft>,
     runs: Runs,
@@ -36,17 +33,10 @@ struct Reader<'a, 'p, 'q> {
 }
 
 /// Reads the steps in a text from a byte on.
-pub(super) fn steps(
-    whole: &str,
-    from: usize,
-    folder: Option<&Path>,
-    registry: &Registry,
-    problems: &mut Problems,
-) -> Vec<Draft> {
+pub(super) fn steps(whole: &str, from: usize, shelf: Shelf, problems: &mut Problems) -> Vec<Draft> {
     let mut reader = Reader {
         whole,
-        folder,
-        registry,
+        shelf,
         problems,
         steps: Vec::new(),
         runs: Runs::default(),
@@ -98,13 +88,8 @@ pub(super) fn steps(
         }
         let length = length(&draft.step);
         if length > LONGEST_STEP {
-            problems.at(
-                draft.at,
-                format!(
-                    "the step has {length} characters of text; at most {LONGEST_STEP} are allowed: begin another \
-                     step with ##"
-                ),
-            );
+            let rule = format!("at most {LONGEST_STEP} are allowed: begin another step with ##");
+            problems.at(draft.at, format!("the step has {length} characters of text; {rule}"));
         }
     }
     steps
@@ -209,13 +194,12 @@ impl Reader<'_, '_, '_> {
                     ..Draft::default()
                 });
             }
-            Event::Start(Tag::Paragraph) if !self.items.is_empty() => self.item(at),
-            Event::Start(Tag::Paragraph) => {}
+            Event::Start(Tag::Paragraph) if self.items.is_empty() => {}
             Event::End(TagEnd::Paragraph) if self.items.is_empty() => {
                 let runs = self.runs.take();
                 self.push(Block::Paragraph(runs), at);
             }
-            Event::End(TagEnd::Paragraph) => self.item(at),
+            Event::Start(Tag::Paragraph) | Event::End(TagEnd::Paragraph) => self.item(at),
             Event::Start(Tag::List(first)) => {
                 self.item(at);
                 if self.lists.len() >= DEEPEST_LIST {
@@ -268,12 +252,12 @@ impl Reader<'_, '_, '_> {
             self.problems.at(at, "this block is never closed; end it with a line ```");
             return;
         };
-        let (folder, registry) = (self.folder, self.registry);
+        let shelf = self.shelf;
         if self.step(at).is_none() {
             return;
         }
         if let Some(draft) = self.steps.last_mut() {
-            blocks::read(info.trim(), at, body, draft, folder, registry, self.problems);
+            blocks::read(info.trim(), at, body, draft, shelf, self.problems);
         }
     }
 }

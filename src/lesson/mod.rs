@@ -12,8 +12,8 @@
 use std::{path::Path, sync::Arc};
 
 use crate::{
-    channel::DebugChannel, curves::Kind, document::Selection, optics::TermSelection, registry::Registry,
-    scene::Scene,
+    channel::DebugChannel, curves::Kind, document::Selection, optics::TermSelection, parameter::Outside,
+    registry::Registry, scene::Scene,
 };
 
 mod blocks;
@@ -39,6 +39,7 @@ pub use controls::{BUTTONS, Control, KNOBS, MENUS, PartName, TABS, Which};
 pub use problem::Problem;
 pub use situation::{Situation, WindowFacts};
 pub use state::SceneChange;
+use state::Shelf;
 pub use window::SETTINGS;
 
 /// A lesson.
@@ -176,12 +177,13 @@ pub struct WindowChange {
 }
 
 impl Lesson {
-    /// Reads a lesson: a Markdown file, or a folder with `lesson.md` and the scenes that it names.
+    /// Reads a lesson: a Markdown file, or a folder with `lesson.md` and the scenes that it names. The scenes may name
+    /// the files `outside` its folder.
     ///
     /// # Errors
     /// Returns every problem, in the order of the file.
-    pub fn read(path: &Path, registry: &Registry) -> Result<Self, Vec<Problem>> {
-        read::file(path, registry)
+    pub fn read(path: &Path, registry: &Registry, outside: &Outside) -> Result<Self, Vec<Problem>> {
+        read::file(path, registry, outside)
     }
 
     /// Reads a lesson from text. `name` becomes its [`id`](Self::id). Scenes are looked up in the folder,
@@ -195,7 +197,7 @@ impl Lesson {
         folder: Option<&Path>,
         registry: &Registry,
     ) -> Result<Self, Vec<Problem>> {
-        read::text(text, name, folder, registry)
+        read::text(text, name, Shelf { folder, outside: Outside::NONE, registry })
     }
 
     /// The scene on entering a step, if the learner changes nothing in the earlier steps.

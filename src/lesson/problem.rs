@@ -5,10 +5,14 @@ use std::fmt;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use serde::Serialize;
 
-use super::limits::MAX_PROBLEMS;
+use super::{limits::MAX_PROBLEMS, words::Piece};
 use crate::{
     files::printable,
-    text::place::{Lines, Place},
+    text::{
+        did_you_mean, listed,
+        place::{Lines, Place},
+        quoted,
+    },
 };
 
 /// A problem of a lesson.
@@ -76,6 +80,28 @@ impl<'a> Problems<'a> {
     /// Adds a problem at a byte.
     pub(super) fn at(&mut self, at: usize, message: impl Into<String>) {
         self.found.push((at, message.into()));
+    }
+
+    /// The known key of an entry, which may be given once.
+    pub(super) fn key(
+        &mut self,
+        key: Piece,
+        (place, word): (&str, &str),
+        known: &[&'static str],
+        given: &mut Vec<&'static str>,
+    ) -> Option<&'static str> {
+        let Some(found) = known.iter().find(|known| **known == key.text) else {
+            let near = did_you_mean(key.text, known.iter().map(|k| (*k, *k)));
+            let (written, all) = (quoted(key.text), listed(known, "and"));
+            self.at(key.at, format!("{place} has no {word} {written}; its {word}s are {all}{near}"));
+            return None;
+        };
+        if given.contains(found) {
+            self.at(key.at, format!("{found} is given twice; remove one"));
+            return None;
+        }
+        given.push(found);
+        Some(found)
     }
 
     /// Appends words to the last problem found at a byte.

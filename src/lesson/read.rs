@@ -6,9 +6,16 @@ use std::{
     sync::Arc,
 };
 
-use super::{Lesson, Problem, check, front, limits::MAX_FILE_BYTES, markdown, problem::Problems, state};
+use super::{
+    Lesson, Problem, check, front,
+    limits::MAX_FILE_BYTES,
+    markdown,
+    problem::Problems,
+    state::{self, Shelf},
+};
 use crate::{
     files::{self, FileError, Kind},
+    parameter::Outside,
     registry::Registry,
     scene::{Scene, encoding, error::LoadError},
 };
@@ -17,7 +24,7 @@ use crate::{
 const IN_FOLDER: &str = "lesson.md";
 
 /// Reads a lesson from a file or a folder.
-pub(super) fn file(path: &Path, registry: &Registry) -> Result<Lesson, Vec<Problem>> {
+pub(super) fn file(path: &Path, registry: &Registry, outside: &Outside) -> Result<Lesson, Vec<Problem>> {
     let is_folder = files::kind(path).is_ok_and(|kind| kind == Kind::Folder);
     let file: Cow<Path> = if is_folder { path.join(IN_FOLDER).into() } else { path.into() };
     let whole = |message: String| vec![Problem::of_file(message)];
@@ -53,16 +60,11 @@ pub(super) fn file(path: &Path, registry: &Registry) -> Result<Lesson, Vec<Probl
     let named = if is_folder { absolute.file_name() } else { absolute.file_stem() };
     let id = named.unwrap_or_default().to_string_lossy();
     let folder: PathBuf = files::folder_of(&file).to_owned();
-    text(content, &id, Some(&folder), registry)
+    text(content, &id, Shelf { folder: Some(&folder), outside, registry })
 }
 
 /// Reads a lesson from text.
-pub(super) fn text(
-    whole: &str,
-    name: &str,
-    folder: Option<&Path>,
-    registry: &Registry,
-) -> Result<Lesson, Vec<Problem>> {
+pub(super) fn text(whole: &str, name: &str, shelf: Shelf) -> Result<Lesson, Vec<Problem>> {
     let whole = whole.strip_prefix('\u{feff}').unwrap_or(whole);
     let mut problems = Problems::of(whole);
     if whole.len() as u64 > MAX_FILE_BYTES {
@@ -73,17 +75,17 @@ pub(super) fn text(
     let mut is_known = true;
     let start = match &front.scene {
         None => Scene::default(),
-        Some((at, file)) => state::open(file, folder, registry).unwrap_or_else(|what| {
+        Some((at, file)) => state::open(file, shelf).unwrap_or_else(|what| {
             problems.at(*at, what);
             is_known = false;
             Scene::default()
         }),
     };
-    let drafts = markdown::steps(whole, front.end, folder, registry, &mut problems);
+    let drafts = markdown::steps(whole, front.end, shelf, &mut problems);
     let start = Arc::new(start);
     // Without the intended scene, everything about it would seem wrong.
     if is_known && !problems.are_enough() {
-        check::steps(&start, &drafts, registry, &mut problems);
+        check::steps(&start, &drafts, shelf.registry, &mut problems);
     }
     if !problems.is_empty() {
         return Err(problems.finish());

@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     files::{self, FileError},
+    parameter::Outside,
     registry::Registry,
     scene::{
         Scene, SceneIn,
@@ -29,12 +30,24 @@ use crate::{
 /// Name of the scene in the reader of scene files, which determines its format.
 const NAME: &str = "step.json";
 
+/// Where a lesson finds its scenes.
+#[derive(Clone, Copy)]
+pub(super) struct Shelf<'a> {
+    /// The folder of the lesson, if it has one; it must contain the scenes.
+    pub folder: Option<&'a FilePath>,
+    /// The files outside their folder that the scenes may name.
+    pub outside: &'a Outside,
+    pub registry: &'a Registry,
+}
+
 /// The change of the scene on entering a step.
 #[derive(Clone, Debug, Default)]
 pub struct SceneChange {
     operations: Vec<Operation>,
     /// The folder of the files named in the scene.
     folder: PathBuf,
+    /// The files outside that folder that it may name.
+    outside: Outside,
 }
 
 #[derive(Clone, Debug)]
@@ -97,7 +110,10 @@ impl SceneChange {
             set(&mut json, path.segments(), value).map_err(|what| vec![(*at, format!("{path} {what}"))])?;
         }
         let text = json.to_string();
-        let read = load::in_folder(text.as_bytes(), (NAME, &self.folder), registry, Defaults::Use);
+        let mut outside = self.outside.clone();
+        outside.allow(base.files());
+        let how = Defaults::Use.allowing(&outside);
+        let read = load::in_folder(text.as_bytes(), (NAME, &self.folder), registry, how);
         read.map(|Loaded { scene, .. }| scene).map_err(|error| {
             let of = |problem: &Path| {
                 let alike = |path: &Path| {
@@ -142,9 +158,8 @@ fn set(json: &mut Json, path: &[Segment], value: &Json) -> Result<(), String> {
             };
             if *index > list.len() {
                 let count = list.len();
-                return Err(format!(
-                    "does not exist: the list has {count} entries, counted from 0; [{count}] adds one"
-                ));
+                let has = format!("the list has {count} entries, counted from 0");
+                return Err(format!("does not exist: {has}; [{count}] adds one"));
             }
             if rest.is_empty() && value.is_null() {
                 if *index < list.len() {
@@ -161,24 +176,25 @@ fn set(json: &mut Json, path: &[Segment], value: &Json) -> Result<(), String> {
 }
 
 /// The scene with a name in a lesson: a file in its folder, or else a shipped scene.
-pub(super) fn open(name: &str, folder: Option<&FilePath>, registry: &Registry) -> Result<Scene, String> {
-    let outside = || {
+pub(super) fn open(name: &str, shelf: Shelf) -> Result<Scene, String> {
+    let Shelf { folder, outside, registry } = shelf;
+    let refused = || {
         let name = quoted(name);
         Err(format!("{name} is outside the folder of the lesson; put the scene itself beside the lesson"))
     };
     let joined = folder.map(|folder| folder.join(name)).unwrap_or_default();
     let beside = match folder.map(|folder| files::inside(folder, &joined)) {
         None if FilePath::new(name).components().any(|c| !matches!(c, Component::Normal(_))) => {
-            return outside();
+            return refused();
         }
         None => None,
         Some(Ok(_)) => Some(joined),
         Some(Err(FileError::Io(error))) if error.kind() == ErrorKind::NotFound => None,
-        Some(Err(FileError::Outside(_))) => return outside(),
+        Some(Err(FileError::Outside(_))) => return refused(),
         Some(Err(error)) => return Err(format!("the scene {} could not be read: {error}", quoted(name))),
     };
     let loaded = match beside {
-        Some(path) => load::file(&path, registry, Defaults::Use).map(|loaded| loaded.scene),
+        Some(path) => load::file(&path, registry, Defaults::Use.allowing(outside)).map(|loaded| loaded.scene),
         None => match EXAMPLES.iter().find(|example| example.file == name) {
             Some(example) => example.scene(registry),
             None => {
@@ -203,23 +219,16 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
     let mut at = 0;
     while at < text.len() {
         if path.segments().len() == MAX_DEPTH {
-            return Err((
-                at,
-                format!("a path has at most {MAX_DEPTH} steps; no path in a scene has more than five"),
-            ));
+            let what = format!("a path has at most {MAX_DEPTH} steps; no path in a scene has more than five");
+            return Err((at, what));
         }
         let rest = &text[at..];
         if let Some(inside) = rest.strip_prefix('[') {
             let end = inside.find(']').ok_or((at, "this bracket is never closed".to_owned()))?;
-            let index = inside[..end].trim().parse().map_err(|_| {
-                (
-                    at + 1,
-                    format!(
-                        "{} is not an index; an index is a whole number, 0 or more",
-                        quoted(&inside[..end])
-                    ),
-                )
-            })?;
+            let written = &inside[..end];
+            let rule = "is not an index; an index is a whole number, 0 or more";
+            let index =
+                written.trim().parse().map_err(|_| (at + 1, format!("{} {rule}", quoted(written))))?;
             path = path.then(Segment::Index(index));
             at += end + 2;
             continue;
@@ -228,11 +237,9 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
         let word = &rest[dot..];
         let length = word.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(word.len());
         if length == 0 || dot == 0 && at > 0 {
-            return Err((
-                at,
-                "a path consists of keys with dots between them, and of [indices] in lists: objects[0].size"
-                    .to_owned(),
-            ));
+            let what =
+                "a path consists of keys with dots between them, and of [indices] in lists: objects[0].size";
+            return Err((at, what.to_owned()));
         }
         path = path.then(Segment::Key(word[..length].to_owned().into()));
         at += dot + length;
@@ -241,14 +248,9 @@ pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
 }
 
 /// Reads the body of a `scene` block.
-pub(super) fn read(
-    body: Piece,
-    folder: Option<&FilePath>,
-    registry: &Registry,
-    problems: &mut Problems,
-) -> SceneChange {
-    let mut change =
-        SceneChange { operations: Vec::new(), folder: folder.map(FilePath::to_owned).unwrap_or_default() };
+pub(super) fn read(body: Piece, shelf: Shelf, problems: &mut Problems) -> SceneChange {
+    let folder = shelf.folder.map(FilePath::to_owned).unwrap_or_default();
+    let mut change = SceneChange { operations: Vec::new(), folder, outside: shelf.outside.clone() };
     // A value continues over lines that do not begin with a path.
     let mut statements: Vec<(usize, usize)> = Vec::new();
     for line in lines(body.text, body.at) {
@@ -270,10 +272,8 @@ pub(super) fn read(
     let mut opened = false;
     for (i, (start, end)) in statements.into_iter().enumerate() {
         if i == MAX_LINES {
-            problems.at(
-                start,
-                format!("a scene block sets at most {MAX_LINES} values; open a scene that has them"),
-            );
+            let what = format!("a scene block sets at most {MAX_LINES} values; open a scene that has them");
+            problems.at(start, what);
             break;
         }
         let piece = body.part(start - body.at, end - body.at);
@@ -283,7 +283,7 @@ pub(super) fn read(
                 problems.at(piece.at, "the block opens two scenes; keep the last one");
                 continue;
             }
-            match open(name.text, folder, registry) {
+            match open(name.text, shelf) {
                 Ok(scene) => {
                     change.operations.push(Operation { at: name.at, what: What::Open(Arc::new(scene)) });
                 }
@@ -298,10 +298,8 @@ pub(super) fn read(
             let value = piece.text[colon + 1..].trim();
             let value = if value.is_empty() { "VALUE" } else { value };
             let meant = format!("{} = {value}", piece.text[..colon].trim_end());
-            problems.at(
-                piece.at + colon,
-                format!("a scene block sets values with =; write {}", shortened(&meant)),
-            );
+            let what = format!("a scene block sets values with =; write {}", shortened(&meant));
+            problems.at(piece.at + colon, what);
             continue;
         }
         let Some(equals) = equals else {
@@ -329,18 +327,9 @@ fn json(piece: Piece) -> Result<Json, (usize, String)> {
             what if what.contains("truncated") => "the value ends too early".to_owned(),
             what => what.replace("the end of the file after the scene", "the end of the value"),
         };
-        let hint = if piece.text.starts_with(|c: char| c.is_alphabetic()) {
-            " Text needs double quotes, as in \"phong\"."
-        } else {
-            ""
-        };
-        return Err((
-            piece.at + at,
-            format!(
-                "{}{hint}",
-                sentence(&what).trim_end_matches('.').to_owned() + if hint.is_empty() { "" } else { "." }
-            ),
-        ));
+        let is_word = piece.text.starts_with(|c: char| c.is_alphabetic());
+        let hint = if is_word { ". Text needs double quotes, as in \"phong\"." } else { "" };
+        return Err((piece.at + at, sentence(&what).trim_end_matches('.').to_owned() + hint));
     }
     serde_json::from_str(piece.text).map_err(|error| (piece.at, error.to_string()))
 }

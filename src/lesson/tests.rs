@@ -484,7 +484,7 @@ fn files_that_are_no_lessons_are_refused_in_words() {
     let at = |name: &str| folder.path().join(name);
     let registry = Registry::builtin();
     let said = |path: &std::path::Path| {
-        let problems = Lesson::read(path, &registry).expect_err("no lesson");
+        let problems = Lesson::read(path, &registry, Outside::NONE).expect_err("no lesson");
         assert_eq!(problems.len(), 1);
         problems[0].to_string()
     };
@@ -510,7 +510,7 @@ fn files_that_are_no_lessons_are_refused_in_words() {
     fs::write(at("default.json"), own).expect("writable");
     fs::write(at("lesson.md"), "\u{feff}---\ntitle: T\nsummary: S.\nscene: default.json\n---\n## S\n\nt\n")
         .expect("writable");
-    let lesson = Lesson::read(folder.path(), &registry).expect("sound");
+    let lesson = Lesson::read(folder.path(), &registry, Outside::NONE).expect("sound");
     assert_eq!(lesson.start.name.as_deref(), Some("Own"));
     assert_eq!(Some(lesson.id.as_str()), folder.path().file_name().and_then(|name| name.to_str()));
     fs::write(at("default.json"), "{").expect("writable");

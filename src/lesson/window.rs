@@ -30,18 +30,13 @@ pub const SETTINGS: &[(&str, &str, &str)] = &[
 ];
 
 /// A word from a list; reports an unknown one.
-fn one_of<T>(key: &str, value: Piece, known: &[(&str, T)], problems: &mut Problems) -> Option<T>
-where
-    T: Clone,
-{
+fn one_of<T: Clone>(key: &str, value: Piece, known: &[(&str, T)], problems: &mut Problems) -> Option<T> {
     let found = known.iter().find(|(word, _)| *word == value.text);
     if found.is_none() {
         let words: Vec<_> = known.iter().map(|(word, _)| *word).collect();
         let near = did_you_mean(value.text, words.iter().map(|w| (*w, *w)));
-        problems.at(
-            value.at,
-            format!("{key} is {}, but it must be {}{near}", quoted(value.text), listed(&words, "or")),
-        );
+        let rule = format!("it must be {}{near}", listed(&words, "or"));
+        problems.at(value.at, format!("{key} is {}, but {rule}", quoted(value.text)));
     }
     found.map(|(_, meaning)| meaning.clone())
 }
@@ -59,26 +54,10 @@ pub(super) fn setting(
         problems.at(line.piece().at, "each line of a view block must be SETTING: VALUE");
         return;
     };
-    let Some((known, ..)) = SETTINGS.iter().find(|(known, ..)| *known == key.text) else {
-        let keys: Vec<_> = SETTINGS.iter().map(|(key, ..)| *key).collect();
-        let near = did_you_mean(key.text, keys.iter().map(|k| (*k, *k)));
-        problems.at(
-            key.at,
-            format!(
-                "a view block has no setting {}; its settings are {}{near}",
-                quoted(key.text),
-                listed(&keys, "and")
-            ),
-        );
-        return;
-    };
-    if given.contains(known) {
-        problems.at(key.at, format!("{known} is given twice; remove one"));
-        return;
-    }
-    given.push(known);
+    let keys: Vec<_> = SETTINGS.iter().map(|(key, ..)| *key).collect();
+    let Some(known) = problems.key(key, ("a view block", "setting"), &keys, given) else { return };
     places.push((known, value.at));
-    match *known {
+    match known {
         "channel" => {
             let channels = DebugChannel::ALL.map(|channel| (channel.id(), Some(channel)));
             let all: Vec<_> = channels.into_iter().chain([("none", None)]).collect();
@@ -88,8 +67,8 @@ pub(super) fn setting(
         "explain" => window.explain = one_of(known, value, &[("on", true), ("off", false)], problems),
         "plots" => {
             let kinds = Kind::ALL.map(|kind| (kind.id(), Some(kind)));
-            window.plots =
-                one_of(known, value, &kinds.into_iter().chain([("off", None)]).collect::<Vec<_>>(), problems);
+            let all: Vec<_> = kinds.into_iter().chain([("off", None)]).collect();
+            window.plots = one_of(known, value, &all, problems);
         }
         "active" => {
             let letters: Vec<_> = LETTERS.into_iter().enumerate().map(|(i, letter)| (letter, i)).collect();
@@ -116,13 +95,8 @@ fn pin(value: Piece, problems: &mut Problems) -> Option<Option<[f32; 2]>> {
             Some(Some([*x, *y]))
         }
         _ => {
-            problems.at(
-                value.at,
-                format!(
-                    "this is {}, but pin must be none, or two numbers from 0 to 1: X, Y from the top left of the picture",
-                    quoted(value.text)
-                ),
-            );
+            let rule = "pin must be none, or two numbers from 0 to 1: X, Y from the top left of the picture";
+            problems.at(value.at, format!("this is {}, but {rule}", quoted(value.text)));
             None
         }
     }

@@ -22,11 +22,8 @@ pub const DATA_VARIABLE: &str = "LCM_DATA_DIR";
 
 /// The shipped example models: name and text of each.
 pub const EXAMPLES: &[(&str, &str)] = &[
-    (
-        "charlie_sheen.wgsl",
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/charlie_sheen.wgsl")),
-    ),
-    ("gooch.wgsl", include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models/gooch.wgsl"))),
+    ("charlie_sheen.wgsl", include_str!("../../assets/models/charlie_sheen.wgsl")),
+    ("gooch.wgsl", include_str!("../../assets/models/gooch.wgsl")),
 ];
 
 /// A problem with a folder.

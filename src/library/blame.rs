@@ -33,17 +33,13 @@ impl Library {
             problem.message = detailed(&problem.message, &format!("introduced by the change in {cause}"));
             return problem;
         }
-        let last = text.trim_end().lines().last().unwrap_or_default();
-        Box::new(ShaderProblem {
-            file: cause.to_owned(),
-            line: text.trim_end().lines().count().max(1),
-            column: last.chars().count().max(1),
-            source: last.to_owned(),
-            message: match text.trim().is_empty() {
-                true => format!("the file is empty; {}", problem.message),
-                false => format!("after the end of the file: {}", problem.message),
-            },
-        })
+        let message = match text.trim().is_empty() {
+            true => format!("the file is empty; {}", problem.message),
+            false => format!("after the end of the file: {}", problem.message),
+        };
+        let text = text.trim_end();
+        let last = text.char_indices().last().map_or(0, |(at, _)| at);
+        Box::new(ShaderProblem::at(cause, text, last, message))
     }
 }
 

@@ -58,14 +58,9 @@ impl Job {
         if let Ok(model) = &result
             && let Err(why) = check_that_it_ends(&model.entry, &Values::default(), Encoding::Srgb)
         {
-            let line = text.lines().position(|line| line.contains("fn response")).unwrap_or_default();
-            result = Err(vec![ShaderProblem {
-                file: source.clone(),
-                line: line + 1,
-                column: 1,
-                source: text.lines().nth(line).unwrap_or_default().to_owned(),
-                message: why.to_string(),
-            }]);
+            let before = &text[..text.find("fn response").unwrap_or_default()];
+            let line = before.rfind('\n').map_or(0, |i| i + 1);
+            result = Err(vec![ShaderProblem::at(&source, &text, line, why.to_string())]);
         }
         Done { source, text, result }
     }
@@ -93,6 +88,12 @@ struct State {
     closed: bool,
 }
 
+impl State {
+    fn is_at_work(&self) -> bool {
+        self.reading.is_some() || !self.jobs.is_empty()
+    }
+}
+
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
@@ -107,17 +108,12 @@ impl Reader {
         let started = thread::Builder::new().name("custom models".to_owned()).spawn(move || {
             let mut told = Instant::now();
             loop {
-                let mut state = theirs.lock();
-                let job = loop {
-                    if state.closed {
-                        return;
-                    }
-                    if let Some((source, job)) = state.jobs.pop_first() {
-                        state.reading = Some(source);
-                        break job;
-                    }
-                    state = theirs.news.wait(state).unwrap_or_else(PoisonError::into_inner);
-                };
+                let waits = |state: &mut State| !state.closed && state.jobs.is_empty();
+                let state = theirs.news.wait_while(theirs.lock(), waits);
+                let mut state = state.unwrap_or_else(PoisonError::into_inner);
+                let next = state.jobs.pop_first().filter(|_| !state.closed);
+                let Some((source, job)) = next else { return };
+                state.reading = Some(source);
                 drop(state);
                 let done = job.done();
                 let mut state = theirs.lock();
@@ -151,19 +147,17 @@ impl Reader {
     /// True while a model waits to be read, or its result to be collected.
     #[must_use]
     pub fn is_busy(&self) -> bool {
-        self.thread.as_ref().is_some_and(|shared| {
-            let state = shared.lock();
-            state.reading.is_some() || !state.jobs.is_empty() || !state.done.is_empty()
-        })
+        self.is(|state| state.is_at_work() || !state.done.is_empty())
     }
 
     /// True while the thread works, and will call `wake`.
     #[must_use]
     pub fn is_reading(&self) -> bool {
-        self.thread.as_ref().is_some_and(|shared| {
-            let state = shared.lock();
-            state.done.is_empty() && (state.reading.is_some() || !state.jobs.is_empty())
-        })
+        self.is(|state| state.is_at_work() && state.done.is_empty())
+    }
+
+    fn is(&self, so: impl Fn(&State) -> bool) -> bool {
+        self.thread.as_ref().is_some_and(|shared| so(&shared.lock()))
     }
 }
 

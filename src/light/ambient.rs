@@ -9,23 +9,11 @@ parameters! {
 }
 
 impl LightType for Ambient {
-    const DECLARATION: Declaration = Declaration {
-        id: "ambient",
-        name: "Ambient",
-        summary: "The same light from every direction: illuminates every point equally, whatever its normal.",
-        glyph: "◌",
-        has_position: false,
-        has_direction: false,
-        unit: "lx",
-        default_intensity: 1.0,
-        slider_max: 10.0,
-        cone_parameter: None,
-        sizes: &[],
-        roll_parameter: None,
-        equation: "I(p) = I",
-        extent: false,
-        wgsl: wgsl!("light/ambient.wgsl"),
-    };
+    const DECLARATION: Declaration = Declaration::new("ambient", "Ambient", wgsl!("light/ambient.wgsl"))
+        .summary("The same light from every direction: illuminates every point equally, whatever its normal.")
+        .glyph("◌")
+        .lux(1.0, 10.0)
+        .equation("I(p) = I");
 
     fn incident(&self, light: &LightRecord, _p: Vec3) -> Incident {
         Incident::Uniform { intensity: Vec3::splat(light.intensity) }

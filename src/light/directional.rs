@@ -10,23 +10,15 @@ parameters! {
 }
 
 impl LightType for Directional {
-    const DECLARATION: Declaration = Declaration {
-        id: "directional",
-        name: "Directional",
-        summary: "Light from infinitely far away, as from the sun: one direction and one strength everywhere.",
-        glyph: "↓",
-        has_position: false,
-        has_direction: true,
-        unit: "lx",
-        default_intensity: 1.0,
-        slider_max: 10.0,
-        cone_parameter: None,
-        sizes: &[],
-        roll_parameter: None,
-        equation: "I(p) = I",
-        extent: false,
-        wgsl: wgsl!("light/directional.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        Declaration::new("directional", "Directional", wgsl!("light/directional.wgsl"))
+            .summary(
+                "Light from infinitely far away, as from the sun: one direction and one strength everywhere.",
+            )
+            .glyph("↓")
+            .with_direction()
+            .lux(1.0, 10.0)
+            .equation("I(p) = I");
 
     fn incident(&self, light: &LightRecord, _p: Vec3) -> Incident {
         Incident::From { l: -light.direction, intensity: Vec3::splat(light.intensity) }

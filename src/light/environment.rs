@@ -9,12 +9,7 @@ use super::{
     sky::{self, Sky},
     studio,
 };
-use crate::{
-    optics::sampling,
-    parameter::{Parameter, ParameterKind, UsedWhen},
-    parameters,
-    shader::wgsl,
-};
+use crate::{optics::sampling, parameter::Parameter, parameters, shader::wgsl};
 
 const SOURCE: Parameter = Parameter::choice(
     "source",
@@ -30,65 +25,51 @@ const STUDIO: u32 = 1;
 const SKY: u32 = 2;
 const FILE: u32 = 3;
 
-const PATH: Parameter = Parameter {
-    used_when: Some(UsedWhen { parameter: "source", choices: &["file"] }),
-    ..Parameter::file("path", &panorama::FORMAT, "room.hdr").label("picture").help(
+const PATH: Parameter = Parameter::file("path", &panorama::FORMAT, "room.hdr")
+    .label("picture")
+    .help(
         "A picture of surroundings, twice as wide as it is high, in Radiance's .hdr or OpenEXR's .exr, by its name from the folder of \
          the scene. Its values are cd/m². −z is in its middle.",
     )
-};
+    .used_when("source", &["file"]);
 
-const ROTATION: Parameter = Parameter {
-    name: "rotation",
-    symbol: "ψ",
-    label: "rotation",
-    unit: "°",
-    help: "Turns it about the vertical, anticlockwise as seen from above.",
-    kind: ParameterKind::Number { min: -360.0, max: 360.0, default: 0.0 },
-    used_when: Some(UsedWhen { parameter: "source", choices: &["studio", "sky", "file"] }),
-};
+const ROTATION: Parameter = Parameter::number("rotation", -360.0..=360.0, 0.0)
+    .symbol("ψ")
+    .unit("°")
+    .help("Turns it about the vertical, anticlockwise as seen from above.")
+    .used_when("source", &["studio", "sky", "file"]);
 
-/// A parameter used only by skies.
-const fn of_sky(parameter: Parameter) -> Parameter {
-    Parameter { used_when: Some(UsedWhen { parameter: "source", choices: &["sky"] }), ..parameter }
-}
+const SKY_TYPE: Parameter = Parameter::choice("sky_type", &sky::TYPES, 11)
+    .label("type of sky")
+    .help("One of the fifteen types of CIE S 011 / ISO 15469, from overcast to clear and turbid.")
+    .used_when("source", &["sky"]);
 
-const SKY_TYPE: Parameter = of_sky(
-    Parameter::choice("sky_type", &sky::TYPES, 11)
-        .label("type of sky")
-        .help("One of the fifteen types of CIE S 011 / ISO 15469, from overcast to clear and turbid."),
-);
+const SUN_ELEVATION: Parameter = Parameter::number("sun_elevation", 0.0..=90.0, 35.0)
+    .symbol("γ_s")
+    .label("sun's elevation")
+    .unit("°")
+    .help("The height of the sun above the horizon. The sun itself is another light; the sky is brighter around it.")
+    .used_when("source", &["sky"]);
 
-const SUN_ELEVATION: Parameter = of_sky(
-    Parameter::number("sun_elevation", 0.0..=90.0, 35.0)
-        .symbol("γ_s")
-        .label("sun's elevation")
-        .unit("°")
-        .help("The height of the sun above the horizon. The sun itself is another light; the sky is brighter around it."),
-);
+const SUN_AZIMUTH: Parameter = Parameter::number("sun_azimuth", -360.0..=360.0, 140.0)
+    .symbol("α_s")
+    .label("sun's azimuth")
+    .unit("°")
+    .help("The direction of the sun from −z, clockwise as seen from above.")
+    .used_when("source", &["sky"]);
 
-const SUN_AZIMUTH: Parameter = of_sky(
-    Parameter::number("sun_azimuth", -360.0..=360.0, 140.0)
-        .symbol("α_s")
-        .label("sun's azimuth")
-        .unit("°")
-        .help("The direction of the sun from −z, clockwise as seen from above."),
-);
+const ZENITH_LUMINANCE: Parameter = Parameter::number("zenith_luminance", 0.0..=20_000.0, 0.1)
+    .symbol("L_z")
+    .label("zenith luminance")
+    .unit("cd/m²")
+    .help("The luminance of the sky straight above; the luminance of the rest follows from the type.")
+    .used_when("source", &["sky"]);
 
-const ZENITH_LUMINANCE: Parameter = of_sky(
-    Parameter::number("zenith_luminance", 0.0..=20_000.0, 0.1)
-        .symbol("L_z")
-        .label("zenith luminance")
-        .unit("cd/m²")
-        .help("The luminance of the sky straight above; the luminance of the rest follows from the type."),
-);
-
-const GROUND_REFLECTANCE: Parameter = of_sky(
-    Parameter::number("ground_reflectance", 0.0..=1.0, 0.2)
-        .symbol("ρ_g")
-        .label("ground reflectance")
-        .help("The part of the skylight that the ground scatters back, evenly."),
-);
+const GROUND_REFLECTANCE: Parameter = Parameter::number("ground_reflectance", 0.0..=1.0, 0.2)
+    .symbol("ρ_g")
+    .label("ground reflectance")
+    .help("The part of the skylight that the ground scatters back, evenly.")
+    .used_when("source", &["sky"]);
 
 parameters! {
     /// **Environment**: light from all around, infinitely far away; its intensity is a factor of the luminance of its source

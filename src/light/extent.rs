@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::LightRecord;
-use crate::parameter::{Parameter, ParameterKind};
+use crate::parameter::Parameter;
 
 /// A random direction from a point to a light with extent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -107,15 +107,10 @@ pub(super) const VISIBLE: Parameter =
     Parameter::flag("visible", true).help("It is to be seen in the picture; it lights objects in any case.");
 
 /// The rotation about the direction.
-pub(super) const ROLL: Parameter = Parameter {
-    name: "roll",
-    symbol: "ρ",
-    label: "roll",
-    unit: "°",
-    help: "Turns it about its direction.",
-    kind: ParameterKind::Number { min: -360.0, max: 360.0, default: 0.0 },
-    used_when: None,
-};
+pub(super) const ROLL: Parameter = Parameter::number("roll", -360.0..=360.0, 0.0)
+    .symbol("ρ")
+    .unit("°")
+    .help("Turns it about its direction.");
 
 /// Luminous flux divided by luminance for an area that shines equally in all directions of one or both sides,
 /// m² sr.

@@ -9,6 +9,7 @@ use bevy::{ecs::component::Component, reflect::Reflectable};
 use glam::{Vec2, Vec3};
 
 use crate::{
+    declared::take_each,
     optics::{colour::Encoding, radiometry::Arriving, sampling::power_heuristic},
     parameter::{Parameter, ParameterSet, Table, TypeComponent, Value, Values, words},
     shader::Source,
@@ -36,21 +37,12 @@ mod studio;
 mod sun;
 mod twin;
 
-pub use ambient::Ambient;
-pub use cylinder::Cylinder;
-pub use directional::Directional;
-pub use disc::Disc;
-pub use environment::Environment;
+pub use self::{
+    ambient::Ambient, cylinder::Cylinder, directional::Directional, disc::Disc, environment::Environment,
+    factor::Factor, photometric::Photometric, point::Point, rectangle::Rectangle, size::Size, sphere::Sphere,
+    spot::Spot, sun::Sun, twin::Twin,
+};
 use extent::{BLOCK, Cone, Directions, Sample, Seen};
-pub use factor::Factor;
-pub use photometric::Photometric;
-pub use point::Point;
-pub use rectangle::Rectangle;
-pub use size::Size;
-pub use sphere::Sphere;
-pub use spot::Spot;
-pub use sun::Sun;
-pub use twin::Twin;
 
 /// Receives light types one after the other.
 pub trait Take {
@@ -60,17 +52,9 @@ pub trait Take {
 
 /// Registers the built-in light types, in the order of all lists.
 pub fn register_builtin(to: &mut impl Take) {
-    to.take::<Point>();
-    to.take::<Spot>();
-    to.take::<Photometric>();
-    to.take::<Directional>();
-    to.take::<Ambient>();
-    to.take::<Rectangle>();
-    to.take::<Disc>();
-    to.take::<Sphere>();
-    to.take::<Cylinder>();
-    to.take::<Sun>();
-    to.take::<Environment>();
+    take_each! {
+        to: Point Spot Photometric Directional Ambient Rectangle Disc Sphere Cylinder Sun Environment
+    }
 }
 
 /// Maximum number of lights in a scene; the capacity of the light buffer.

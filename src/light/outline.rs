@@ -38,6 +38,13 @@ impl LightEntry {
         extent::sides(direction, Vec2::from(roll.to_radians().sin_cos()))
     }
 
+    /// The diameter of a ball around all [sizes](super::Declaration::sizes) of a light, metres.
+    #[must_use]
+    pub fn span(&self, values: &Values) -> f32 {
+        let half = |size: &Size| self.parameter(size.parameter()).map(|p| size.part() * values.number(p));
+        2.0 * self.declaration.sizes.iter().filter_map(half).map(|half| half * half).sum::<f32>().sqrt()
+    }
+
     /// The outlines of a light with extent as seen from a position: lists of points in the room, whose convex
     /// hulls in the picture are the outlines. They follow from the [sizes](super::Declaration::sizes) of the
     /// type: width and height give a rectangle, a radius a circle, or a ball for a type without direction, a

@@ -4,33 +4,18 @@ use super::{
     Declaration, Factor, Incident, LightRecord, LightType,
     ies::{self, Web},
 };
-use crate::{
-    optics::radiometry::inverse_square,
-    parameter::{Parameter, ParameterKind},
-    parameters,
-    shader::wgsl,
-};
+use crate::{optics::radiometry::inverse_square, parameter::Parameter, parameters, shader::wgsl};
 
-const FILE: Parameter = Parameter {
-    name: "file",
-    symbol: "w",
-    label: "photometric file",
-    unit: "",
-    help: "The IES file that says how many candelas the lamp sends into each direction, as its maker measured it; \
-           relative to the folder of the scene.",
-    kind: ParameterKind::File { format: &ies::FORMAT, default: "wall_washer.ies" },
-    used_when: None,
-};
+const FILE: Parameter = Parameter::file("file", &ies::FORMAT, "wall_washer.ies")
+    .symbol("w")
+    .label("photometric file")
+    .help("The IES file that says how many candelas the lamp sends into each direction, as its maker measured it; \
+           relative to the folder of the scene.");
 
-const ROTATION: Parameter = Parameter {
-    name: "rotation",
-    symbol: "ψ",
-    label: "rotation",
-    unit: "°",
-    help: "Turns the lamp about its axis, anticlockwise as seen from behind the lamp.",
-    kind: ParameterKind::Number { min: -360.0, max: 360.0, default: 0.0 },
-    used_when: None,
-};
+const ROTATION: Parameter = Parameter::number("rotation", -360.0..=360.0, 0.0)
+    .symbol("ψ")
+    .unit("°")
+    .help("Turns the lamp about its axis, anticlockwise as seen from behind the lamp.");
 
 parameters! {
     /// **Photometric lamp**: shines as measured by its maker; `I(p) = I w(γ, C) / |p − p₀|²`. `w` is the distribution
@@ -71,23 +56,16 @@ impl Photometric {
 }
 
 impl LightType for Photometric {
-    const DECLARATION: Declaration = Declaration {
-        id: "photometric",
-        name: "Photometric lamp",
-        summary: "Shines as its maker measured it, by an IES file; falls off with the square of the distance.",
-        glyph: "◭",
-        has_position: true,
-        has_direction: true,
-        unit: "×",
-        default_intensity: 1.0,
-        slider_max: 10.0,
-        cone_parameter: None,
-        sizes: &[],
-        roll_parameter: None,
-        equation: "I(p) = I w / d^2",
-        extent: false,
-        wgsl: wgsl!("light/photometric.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        Declaration::new("photometric", "Photometric lamp", wgsl!("light/photometric.wgsl"))
+            .summary(
+                "Shines as its maker measured it, by an IES file; falls off with the square of the distance.",
+            )
+            .glyph("◭")
+            .at_position()
+            .with_direction()
+            .factor(1.0, 10.0)
+            .equation("I(p) = I w / d^2");
 
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         let to_light = light.position - p;

@@ -15,23 +15,14 @@ parameters! {
 }
 
 impl LightType for Point {
-    const DECLARATION: Declaration = Declaration {
-        id: "point",
-        name: "Point",
-        summary: "Shines equally in every direction from one point; falls off with the square of the distance.",
-        glyph: "☀",
-        has_position: true,
-        has_direction: false,
-        unit: "cd",
-        default_intensity: 20.0,
-        slider_max: 200.0,
-        cone_parameter: None,
-        sizes: &[],
-        roll_parameter: None,
-        equation: "I(p) = I / d^2",
-        extent: false,
-        wgsl: wgsl!("light/point.wgsl"),
-    };
+    const DECLARATION: Declaration = Declaration::new("point", "Point", wgsl!("light/point.wgsl"))
+        .summary(
+            "Shines equally in every direction from one point; falls off with the square of the distance.",
+        )
+        .glyph("☀")
+        .at_position()
+        .candela(20.0, 200.0)
+        .equation("I(p) = I / d^2");
 
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         let to_light = light.position - p;

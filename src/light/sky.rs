@@ -26,24 +26,12 @@ pub(super) const TYPES: [(&str, &str); 15] = [
     ("15", "15 white-blue, turbid, wide corona"),
 ];
 
-/// Gradation `a`, `b` and indicatrix `c`, `d`, `e` of each type.
-const COEFFICIENTS: [[f32; 5]; 15] = [
-    [4.0, -0.7, 0.0, -1.0, 0.0],
-    [4.0, -0.7, 2.0, -1.5, 0.15],
-    [1.1, -0.8, 0.0, -1.0, 0.0],
-    [1.1, -0.8, 2.0, -1.5, 0.15],
-    [0.0, -1.0, 0.0, -1.0, 0.0],
-    [0.0, -1.0, 2.0, -1.5, 0.15],
-    [0.0, -1.0, 5.0, -2.5, 0.3],
-    [0.0, -1.0, 10.0, -3.0, 0.45],
-    [-1.0, -0.55, 2.0, -1.5, 0.15],
-    [-1.0, -0.55, 5.0, -2.5, 0.3],
-    [-1.0, -0.55, 10.0, -3.0, 0.45],
-    [-1.0, -0.32, 10.0, -3.0, 0.45],
-    [-1.0, -0.32, 16.0, -3.0, 0.3],
-    [-1.0, -0.15, 16.0, -3.0, 0.3],
-    [-1.0, -0.15, 24.0, -2.8, 0.15],
-];
+/// Gradation `a`, `b` and indicatrix `c`, `d`, `e` of the type with this index.
+fn coefficients(index: usize) -> [f32; 5] {
+    let row = include_str!("sky.csv").lines().nth(index).unwrap_or_default();
+    let mut numbers = row.split(", ").filter_map(|number| number.parse().ok());
+    std::array::from_fn(|_| numbers.next().unwrap_or_default())
+}
 
 /// Fractions of the samples: towards the ground, around the sun, over the sky.
 const GROUND_SHARE: f32 = 0.2;
@@ -75,7 +63,7 @@ impl Sky {
         let (sine, cosine) = elevation.to_radians().sin_cos();
         let (east, north) = azimuth.to_radians().sin_cos();
         let sun = Vec3::new(east * cosine, sine, -north * cosine);
-        let coefficients = COEFFICIENTS[index.min(COEFFICIENTS.len() - 1)];
+        let coefficients = coefficients(index.min(TYPES.len() - 1));
         let mut sky = Self { coefficients, sun, scale: 1.0, ground: 0.0 };
         sky.scale = zenith / sky.above(Vec3::Y);
         sky.ground = reflectance * sky.illuminance() / PI;

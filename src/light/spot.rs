@@ -3,30 +3,20 @@ use glam::Vec3;
 use super::{Declaration, Factor, Incident, LightRecord, LightType};
 use crate::{
     optics::radiometry::{cone, cone_solid_angle, inverse_square},
-    parameter::{ABOVE_ZERO, Parameter, ParameterKind},
+    parameter::{ABOVE_ZERO, Parameter},
     parameters,
     shader::wgsl,
 };
 
-const CONE_ANGLE: Parameter = Parameter {
-    name: "cone_angle",
-    symbol: "θ_c",
-    label: "cone angle",
-    unit: "°",
-    help: "Half the opening of the cone: the angle between its axis and its edge.",
-    kind: ParameterKind::Number { min: ABOVE_ZERO, max: 90.0, default: 30.0 },
-    used_when: None,
-};
+const CONE_ANGLE: Parameter = Parameter::number("cone_angle", ABOVE_ZERO..=90.0, 30.0)
+    .symbol("θ_c")
+    .label("cone angle")
+    .unit("°")
+    .help("Half the opening of the cone: the angle between its axis and its edge.");
 
-const PENUMBRA: Parameter = Parameter {
-    name: "penumbra",
-    symbol: "s",
-    label: "penumbra",
-    unit: "",
-    help: "The fraction of the cone taken by the soft edge: 0 is a hard edge, 1 fades from the axis outwards.",
-    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.1 },
-    used_when: None,
-};
+const PENUMBRA: Parameter = Parameter::number("penumbra", 0.0..=1.0, 0.1).symbol("s").help(
+    "The fraction of the cone taken by the soft edge: 0 is a hard edge, 1 fades from the axis outwards.",
+);
 
 parameters! {
     /// **Spotlight**: a point light within a cone; `I(p) = I · cone(θ, θ_c, s) / |p − p₀|²`
@@ -49,23 +39,14 @@ impl Spot {
 }
 
 impl LightType for Spot {
-    const DECLARATION: Declaration = Declaration {
-        id: "spot",
-        name: "Spot",
-        summary: "A point light within a cone; falls off with the square of the distance and fades at the cone's edge.",
-        glyph: "▼",
-        has_position: true,
-        has_direction: true,
-        unit: "cd",
-        default_intensity: 20.0,
-        slider_max: 200.0,
-        cone_parameter: Some(CONE_ANGLE.name),
-        sizes: &[],
-        roll_parameter: None,
-        equation: "I(p) = I cone(θ, θ_c, s) / d^2",
-        extent: false,
-        wgsl: wgsl!("light/spot.wgsl"),
-    };
+    const DECLARATION: Declaration = Declaration::new("spot", "Spot", wgsl!("light/spot.wgsl"))
+        .summary("A point light within a cone; falls off with the square of the distance and fades at the cone's edge.")
+        .glyph("▼")
+        .at_position()
+        .with_direction()
+        .candela(20.0, 200.0)
+        .cone(CONE_ANGLE.name)
+        .equation("I(p) = I cone(θ, θ_c, s) / d^2");
 
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         let to_light = light.position - p;

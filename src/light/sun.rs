@@ -6,22 +6,12 @@ use super::{
     Declaration, LightRecord, LightType,
     extent::{Cone, Sample, Seen, VISIBLE, number},
 };
-use crate::{
-    optics::sampling,
-    parameter::{Parameter, ParameterKind},
-    parameters,
-    shader::wgsl,
-};
+use crate::{optics::sampling, parameter::Parameter, parameters, shader::wgsl};
 
-const DIAMETER: Parameter = Parameter {
-    name: "diameter",
-    symbol: "δ",
-    label: "diameter",
-    unit: "°",
-    help: "The angle that it fills; the sun as seen from the earth fills 0.53°.",
-    kind: ParameterKind::Number { min: 0.01, max: 90.0, default: 0.53 },
-    used_when: None,
-};
+const DIAMETER: Parameter = Parameter::number("diameter", 0.01..=90.0, 0.53)
+    .symbol("δ")
+    .unit("°")
+    .help("The angle that it fills; the sun as seen from the earth fills 0.53°.");
 
 parameters! {
     /// **Sun**: a disc infinitely far away; E lux on a surface that faces it, so its luminance is `L = E / (π sin²(δ/2))`.

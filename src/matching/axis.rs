@@ -1,6 +1,6 @@
 //! The coordinates of a search: parameters mapped to numbers from 0 to 1.
 
-use crate::parameter::{Parameter, ParameterKind, Value};
+use crate::parameter::{Parameter, Value};
 
 /// Maximum tried for a parameter without a legal maximum: an exponent whose highlight is a quarter of a
 /// degree wide.
@@ -22,7 +22,7 @@ pub(super) struct Axis {
     /// Offset added to the value before taking its logarithm.
     logarithm: Option<f64>,
     /// True for integers.
-    whole: bool,
+    pub(super) whole: bool,
 }
 
 impl Axis {
@@ -31,30 +31,19 @@ impl Axis {
     pub(super) fn of(declarations: &[&'static Parameter], now: &Value) -> Vec<Self> {
         let Some(first) = declarations.first() else { return Vec::new() };
         // Legal for all models.
-        let range = declarations.iter().filter_map(|p| ends(p)).reduce(|a, b| (a.0.max(b.0), a.1.min(b.1)));
+        let ranges = declarations.iter().filter_map(|p| p.kind.limits()).map(|range| (range.min, range.max));
+        let range = ranges.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1)));
         let Some((low, high)) = range.filter(|(low, high)| low < high) else { return Vec::new() };
-        let numbers = numbers_of(now);
         let endless = high == f64::INFINITY;
-        let top = if endless { LARGEST.max(numbers[0]) } else { high };
+        let top = if endless { LARGEST.max(now.numbers()[0]) } else { high };
         let logarithm = match low {
             _ if endless => Some(1.0 - low),
             low if low > 0.0 && top / low >= WIDE => Some(0.0),
             _ => None,
         };
-        let (channels, whole) = match first.kind {
-            ParameterKind::Number { .. } => (1, false),
-            ParameterKind::Integer { .. } => (1, true),
-            ParameterKind::Colour { .. } => (3, true),
-            ParameterKind::Triple { .. } => (3, false),
-            ParameterKind::Choice { .. } | ParameterKind::File { .. } => (0, false),
-        };
+        let whole = first.kind.limits().is_some_and(|range| range.whole);
         let axis = |channel| Self { channel, low, high: top, logarithm, whole };
-        (0..channels).map(axis).collect()
-    }
-
-    /// True for integers.
-    pub(super) fn is_whole(&self) -> bool {
-        self.whole
+        (0..first.kind.components()).map(axis).collect()
     }
 
     /// The legal value at a coordinate.
@@ -103,41 +92,6 @@ impl Axis {
     }
 }
 
-/// The ends of the range of each number.
-fn ends(parameter: &Parameter) -> Option<(f64, f64)> {
-    match parameter.kind {
-        ParameterKind::Number { min, max, .. } | ParameterKind::Triple { min, max, .. } => {
-            Some((min.into(), max.into()))
-        }
-        ParameterKind::Integer { min, max, .. } => {
-            Some((min as f64, max.map_or(f64::INFINITY, |max| max as f64)))
-        }
-        ParameterKind::Colour { .. } => Some((0.0, 255.0)),
-        ParameterKind::Choice { .. } | ParameterKind::File { .. } => None,
-    }
-}
-
-/// The numbers of a value.
-pub(super) fn numbers_of(value: &Value) -> [f64; 3] {
-    match value {
-        Value::Number(v) => [f64::from(*v); 3],
-        Value::Integer(v) => [*v as f64; 3],
-        Value::Colour(v) => v.map(f64::from),
-        Value::Triple(v) => v.map(f64::from),
-        Value::Choice(_) | Value::File(_) => [0.0; 3],
-    }
-}
-
-/// The value of a parameter with these numbers.
-pub(super) fn value_of(parameter: &Parameter, numbers: [f64; 3]) -> Value {
-    match parameter.kind {
-        ParameterKind::Integer { .. } => Value::Integer(numbers[0] as i64),
-        ParameterKind::Colour { .. } => Value::Colour(numbers.map(|v| v as u8)),
-        ParameterKind::Triple { .. } => Value::Triple(numbers.map(|v| v as f32)),
-        _ => Value::Number(numbers[0] as f32),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -156,14 +110,14 @@ mod tests {
                 for step in 0..=10 {
                     let value = axis.value(f64::from(step) / 10.0);
                     let name = parameter.name;
-                    assert!(parameter.allows(&value_of(parameter, [value; 3])), "{name} {value}");
+                    assert!(parameter.allows(&parameter.kind.of_numbers([value; 3])), "{name} {value}");
                     assert!(
                         (axis.value(axis.coordinate(value)) - value).abs() <= 1e-5 * value.abs(),
                         "{name}"
                     );
                     let beside = axis.beside(value);
                     assert!(beside != value, "{name} {value}");
-                    assert!(parameter.allows(&value_of(parameter, [beside; 3])), "{name} {beside}");
+                    assert!(parameter.allows(&parameter.kind.of_numbers([beside; 3])), "{name} {beside}");
                     seen += 1;
                 }
             }

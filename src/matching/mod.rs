@@ -26,7 +26,7 @@
 //! ```
 
 use crate::{
-    parameter::{Parameter, ParameterKind, Value},
+    parameter::{Parameter, Value},
     progress::{Cancelled, Progress},
     reflection::usage::unused,
     registry::Registry,
@@ -263,15 +263,11 @@ pub fn parameters(scene: &Scene, view: usize, registry: &Registry) -> Vec<(&'sta
 fn known(side: &Side, registry: &Registry) -> Vec<(&'static Parameter, bool)> {
     let mut all: Vec<(&'static Parameter, bool)> = Vec::new();
     for parameter in side.models(registry).into_iter().flat_map(|model| model.parameters) {
-        let usual = match parameter.kind {
-            ParameterKind::Number { .. } | ParameterKind::Integer { .. } => true,
-            ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => false,
-            ParameterKind::Choice { .. } | ParameterKind::File { .. } => continue,
-        };
-        if all.iter().all(|(known, _)| known.name != parameter.name)
+        if parameter.kind.limits().is_some()
+            && all.iter().all(|(known, _)| known.name != parameter.name)
             && reason_against(side, parameter, registry).is_none()
         {
-            all.push((parameter, usual));
+            all.push((parameter, parameter.kind.is_number()));
         }
     }
     all
@@ -297,13 +293,10 @@ pub fn match_view(request: &Request, registry: &Registry, progress: &Progress) -
     let scene = request.scene;
     let letter = LETTERS.get(request.view).copied().unwrap_or("?");
     let views = scene.variants.len() + 1;
-    let sides = [0, request.view].map(|view| Side::seen(scene, view, registry));
-    let [Some(a), Some(b)] = &sides else {
+    let side = |view| Side::seen(scene, view, registry).filter(|_| request.view > 0);
+    let (Some(a), Some(b)) = (&side(0), &side(request.view)) else {
         return Err(MatchError::NoView { view: letter.to_owned(), views });
     };
-    if request.view == 0 {
-        return Err(MatchError::NoView { view: letter.to_owned(), views });
-    }
     if b.models(registry).is_empty() {
         return Err(MatchError::NothingVisible);
     }
@@ -379,11 +372,9 @@ fn frees(
         let now = object.map_or_else(|| parameter.default_value(), |object| object.material.get(parameter));
         let axes = Axis::of(&users, &now);
         if axes.is_empty() {
-            return Err(match parameter.kind {
-                ParameterKind::Choice { .. } | ParameterKind::File { .. } => {
-                    MatchError::NoNumber { name: parameter.name, kind: parameter.kind.name() }
-                }
-                _ => MatchError::NoRange { name: parameter.name, view },
+            return Err(match parameter.kind.limits() {
+                None => MatchError::NoNumber { name: parameter.name, kind: parameter.kind.name() },
+                Some(_) => MatchError::NoRange { name: parameter.name, view },
             });
         }
         frees.push(Free { parameter, axes, now });

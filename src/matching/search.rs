@@ -9,7 +9,7 @@
 use std::time::{Duration, Instant};
 
 use super::{
-    axis::{Axis, numbers_of, value_of},
+    axis::Axis,
     least_squares::{Limits, Residuals, Stop, descend},
 };
 use crate::{
@@ -114,10 +114,7 @@ impl<'a, T: Target> Search<'a, T> {
     pub(super) fn run(mut self) -> Result<Found, Cancelled> {
         "comparing the views".clone_into(&mut self.step);
         let none = Point { numbers: self.present(), on: vec![false; self.free.len()] };
-        let before = match self.error(&none) {
-            Ok(error) => error,
-            Err(Stop) => return Err(Cancelled),
-        };
+        let before = self.error(&none).map_err(|Stop| Cancelled)?;
         if before > NONE && !self.free.is_empty() {
             // The end of the evaluations ends the search, and what was found counts.
             let _ = self.find();
@@ -149,7 +146,7 @@ impl<'a, T: Target> Search<'a, T> {
     /// The present values.
     fn present(&self) -> Vec<f64> {
         let numbers = |free: &'a Free| {
-            let now = numbers_of(&free.now);
+            let now = free.now.numbers();
             free.axes.iter().map(move |axis| axis.legal(now[axis.channel]))
         };
         self.free.iter().flat_map(numbers).collect()
@@ -163,7 +160,7 @@ impl<'a, T: Target> Search<'a, T> {
             let mut own = [0.0; 3];
             own.iter_mut().zip(numbers.by_ref().take(free.axes.len())).for_each(|(to, from)| *to = *from);
             if *on {
-                values.push((free.parameter.name, value_of(free.parameter, own)));
+                values.push((free.parameter.name, free.parameter.kind.of_numbers(own)));
             }
         }
         values
@@ -363,7 +360,7 @@ impl<'a, T: Target> Search<'a, T> {
         let owners = self.owners();
         for _ in 0..ROUNDS {
             let before = self.best.0;
-            for (i, (owner, axis)) in owners.iter().enumerate().filter(|(_, (_, axis))| axis.is_whole()) {
+            for (i, (owner, axis)) in owners.iter().enumerate().filter(|(_, (_, axis))| axis.whole) {
                 for step in [-1.0, 1.0] {
                     let Some(best) = self.best.1.as_ref().filter(|best| best.on[*owner]) else { continue };
                     let mut point = best.clone();
@@ -391,7 +388,7 @@ impl<'a, T: Target> Search<'a, T> {
             }
         }
         for (at, (owner, axis)) in self.owners().into_iter().enumerate() {
-            if axis.is_whole() || !point.on[owner] {
+            if axis.whole || !point.on[owner] {
                 continue;
             }
             let number = point.numbers[at];
@@ -513,7 +510,7 @@ mod tests {
         fn differences(&mut self, values: &Given, to: &mut [f64]) {
             self.asked += 1;
             let get = |name: &str, now: f64| {
-                values.iter().find(|(n, _)| *n == name).map_or(now, |(_, value)| numbers_of(value)[0])
+                values.iter().find(|(n, _)| *n == name).map_or(now, |(_, value)| value.numbers()[0])
             };
             let found = [get("alpha", 3.0), get("k_s", 0.9)];
             for (i, to) in to.iter_mut().enumerate() {

@@ -49,11 +49,6 @@ impl Side {
         }
         models
     }
-
-    /// The encoding of colours.
-    pub(super) fn encoding(&self) -> Encoding {
-        self.scene.display.encoding
-    }
 }
 
 /// A material of an object in both views.
@@ -85,10 +80,10 @@ impl Pair {
                 continue;
             }
             pairs.push(Self {
-                wanted: model_a.instantiate(&of_a.material, a.encoding()),
+                wanted: model_a.instantiate(&of_a.material, a.scene.display.encoding),
                 model: model.clone(),
                 own: of_b.material.clone(),
-                encoding: b.encoding(),
+                encoding: b.scene.display.encoding,
                 anisotropic: model_a.declaration.anisotropic || model.declaration.anisotropic,
             });
             seen.push(legal);

@@ -29,7 +29,7 @@ fn error(scene: &Scene, what: What, parameters: &[&str]) -> String {
 /// The matched value of a number.
 fn found(found: &Match, name: &str) -> f64 {
     let value = found.values.iter().find(|(n, _)| *n == name);
-    axis::numbers_of(&value.unwrap_or_else(|| panic!("{name} is not in {found:?}")).1)[0]
+    value.unwrap_or_else(|| panic!("{name} is not in {found:?}")).1.numbers()[0]
 }
 
 const PHONG: [(&str, Value); 4] = [
@@ -142,7 +142,7 @@ fn equal_highlights_of_phong_and_blinn_have_exponents_of_one_to_four() {
     let ward = scene(("ward", &brushed), ("ward", &[("alpha_x", number(0.3)), ("alpha_y", number(0.3))]));
     let highlight = matched(&ward, What::Highlight, &["k_s", "alpha_x", "alpha_y"]).expect("a match");
     for (name, value) in brushed {
-        let expected = axis::numbers_of(&value)[0];
+        let expected = value.numbers()[0];
         assert!((found(&highlight, name) / expected - 1.0).abs() < 0.02, "{highlight:?}");
     }
     // Over all directions the lobes differ in shape: Blinn's is narrower across the plane of incidence, so that a smaller

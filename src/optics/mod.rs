@@ -41,7 +41,19 @@ pub struct Terms {
     pub specular: Vec3,
 }
 
+impl From<[Vec3; 3]> for Terms {
+    fn from([ambient, diffuse, specular]: [Vec3; 3]) -> Self {
+        Self { ambient, diffuse, specular }
+    }
+}
+
 impl Terms {
+    /// The ambient, the diffuse and the specular term.
+    #[must_use]
+    pub fn each(self) -> [Vec3; 3] {
+        [self.ambient, self.diffuse, self.specular]
+    }
+
     /// The sum of the selected terms.
     #[must_use]
     pub fn select(self, selection: TermSelection) -> Vec3 {
@@ -92,11 +104,6 @@ impl TermSelection {
     /// Number of the selection in shaders (`TERM_…` in `lights.wgsl`).
     #[must_use]
     pub fn code(self) -> u32 {
-        match self {
-            Self::All => 0,
-            Self::Ambient => 1,
-            Self::Diffuse => 2,
-            Self::Specular => 3,
-        }
+        self as u32
     }
 }

@@ -42,14 +42,6 @@ pub enum ToneMapping {
     KhronosPbrNeutral,
 }
 
-/// The names and the description of a variant.
-struct About {
-    id: &'static str,
-    name: &'static str,
-    author: &'static str,
-    summary: &'static str,
-}
-
 impl ToneMapping {
     /// All variants, in display order.
     pub const ALL: [Self; 8] = [
@@ -63,63 +55,15 @@ impl ToneMapping {
         Self::KhronosPbrNeutral,
     ];
 
-    const fn about(self) -> About {
-        match self {
-            Self::None => About {
-                id: "none",
-                name: "None (clip)",
-                author: "",
-                summary: "No curve: values above 1 are clipped, and numbers stay comparable.",
-            },
-            Self::Reinhard => About {
-                id: "reinhard",
-                name: "Reinhard",
-                author: "E. Reinhard and others 2002",
-                summary: "c / (1 + c) per channel. Bright colours shift in hue towards their secondary colours.",
-            },
-            Self::ReinhardLuminance => About {
-                id: "reinhard_luminance",
-                name: "Reinhard, luminance",
-                author: "E. Reinhard and others 2002",
-                summary: "The same curve on luminance alone: keeps hue and saturation, so bright colours do not desaturate.",
-            },
-            Self::Aces => About {
-                id: "aces",
-                name: "ACES (fitted)",
-                author: "S. Hill 2017",
-                summary: "A fit of the film industry's reference transform: high contrast, bright colours desaturate and shift in hue.",
-            },
-            Self::AgX => About {
-                id: "agx",
-                name: "AgX",
-                author: "T. Sobotka 2022",
-                summary: "Soft contrast over 16.5 EV; bright colours desaturate gently and hardly shift in hue.",
-            },
-            Self::TonyMcMapface => About {
-                id: "tony_mc_mapface",
-                name: "Tony McMapface",
-                author: "T. Stachowiak 2023",
-                summary: "Adds no contrast and stays near the input; compresses perceived brightness, and bright colours desaturate.",
-            },
-            Self::BlenderFilmic => About {
-                id: "blender_filmic",
-                name: "Blender Filmic",
-                author: "T. Sobotka 2017",
-                summary: "The curve of Blender 2.79 to 3.6, over 23 EV: low contrast, bright colours desaturate and shift slightly in hue.",
-            },
-            Self::KhronosPbrNeutral => About {
-                id: "khronos_pbr_neutral",
-                name: "Khronos PBR Neutral",
-                author: "Khronos Group 2024",
-                summary: "Keeps colours up to 0.8, less the 0.04 of a dielectric's reflection: for products whose colour must be right.",
-            },
-        }
+    /// A line about the variant in `tone.txt`: id, name, author or summary.
+    fn line(self, line: usize) -> &'static str {
+        include_str!("tone.txt").lines().nth(5 * self as usize + line).unwrap_or_default()
     }
 
     /// Name in scene files and on the command line.
     #[must_use]
     pub fn id(self) -> &'static str {
-        self.about().id
+        self.line(0)
     }
 
     /// The variant with this name.
@@ -131,19 +75,19 @@ impl ToneMapping {
     /// Display name.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.about().name
+        self.line(1)
     }
 
     /// Author and year; empty without a curve.
     #[must_use]
     pub fn author(self) -> &'static str {
-        self.about().author
+        self.line(2)
     }
 
     /// A description in one or two sentences.
     #[must_use]
     pub fn summary(self) -> &'static str {
-        self.about().summary
+        self.line(3)
     }
 
     /// True if the curve needs a table of colours; the others are formulas.

@@ -1,18 +1,15 @@
 //! A caption that describes the picture, so that a screenshot says what it shows.
 
-use std::{collections::BTreeSet, sync::Arc};
+use std::collections::BTreeSet;
 
-use bevy_egui::egui::{Color32, FontId, Galley, Pos2, Ui, Vec2, pos2, vec2};
-
-use super::{maths, state::Session, theme};
+use super::{maths, prelude::*};
 pub use crate::caption::Part;
 use crate::{
     caption::{display, line, single, terms_alone, value},
     optics::TermSelection,
-    parameter::{Parameter, ParameterKind},
+    parameter::Parameter,
     reflection::usage,
-    registry::Registry,
-    scene::{Object, Scene},
+    scene::Object,
 };
 
 /// Maximum number of values in a caption; more would be a list.
@@ -89,8 +86,7 @@ pub(super) fn values(object: &Object, model: &str, registry: &Registry, most: us
 fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<Part> {
     let Some(model) = registry.model(model) else { return Vec::new() };
     let part = |p: &'static Parameter| {
-        let wordy = matches!(p.kind, ParameterKind::Colour { .. } | ParameterKind::Triple { .. });
-        let (symbol, text) = value(p, &object.material.get(p)).filter(|_| !wordy)?;
+        let (symbol, text) = value(p, &object.material.get(p)).filter(|_| p.kind.components() == 1)?;
         Some((p, Part { symbol, ..Part::new(2, text) }))
     };
     let used = |p: &&'static Parameter| usage::unused(model.parameters, p, &object.material).is_none();

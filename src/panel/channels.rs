@@ -1,21 +1,11 @@
 //! Debug channels: the legend in the picture.
 
-use bevy_egui::egui::{
-    self, Align2, Color32, CornerRadius, CursorIcon, FontId, Id, Mesh, Rect, Sense, Stroke, StrokeKind,
-    TextStyle, Ui, WidgetInfo, WidgetType, pos2, vec2,
-};
+use bevy_egui::egui::{CornerRadius, Mesh};
 
-use super::{
-    keys,
-    state::{Action, CompareCommand, Session, ViewChange},
-    theme::{self, Palette},
-    wires,
-};
+use super::{keys, prelude::*, wires};
 use crate::{
     channel::{DebugChannel, Legend, Setting},
     optics::viridis::{VIRIDIS, viridis},
-    registry::Registry,
-    scene::variant::{LETTERS, MAX_VARIANTS},
 };
 
 /// The channel that a view shows, with its picture's legend.
@@ -34,15 +24,15 @@ pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(Deb
 }
 
 /// Paints the legend of a view's channel from a corner on, if the view shows one; a click on it shows the picture
-/// again. Returns the legend's rectangle and the requested actions.
+/// again. Returns the legend's rectangle.
 pub(super) fn legend(
     ui: &mut Ui,
     rect: Rect,
     (side, top): (Align2, f32),
     view: usize,
-    session: &Session,
-    registry: &Registry,
-) -> Option<(Rect, Vec<Action>)> {
+    context: &mut PanelContext<'_>,
+) -> Option<Rect> {
+    let (session, registry) = (context.session(), context.registry());
     let (channel, mut legend) = shown(session, view, registry)?;
     if !session.document.variants.is_empty() {
         legend.title = format!("{} · {}", LETTERS[view.min(MAX_VARIANTS)], legend.title);
@@ -52,18 +42,16 @@ pub(super) fn legend(
     }
     let place = plate(ui, rect, side, top, &legend);
     let response = ui.interact(place, Id::new(("channel legend", view)), Sense::click());
-    let said = format!("Channel: {}. Show the picture", legend.title);
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));
+    theme::says(&response, WidgetType::Button, format!("Channel: {}. Show the picture", legend.title));
     let palette = Palette::here(ui);
-    let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.accent };
+    let rim = if theme::is_hot(&response) { palette.text } else { palette.accent };
     let stroke = Stroke::new(theme::scale_here(ui), rim);
     ui.painter_at(rect).rect_stroke(place, 4.0, stroke, StrokeKind::Inside);
-    let mut actions = Vec::new();
     if response.clicked() {
         if view != session.active() {
-            actions.push(Action::Compare(CompareCommand::Activate(view)));
+            context.act(Action::Compare(CompareCommand::Activate(view)));
         }
-        actions.push(Action::View(ViewChange::Channel(None)));
+        context.act(Action::View(ViewChange::Channel(None)));
     }
     let help = format!(
         "{}\n\nClick, or {}: the picture again. {}: the next channel.",
@@ -76,7 +64,7 @@ pub(super) fn legend(
         response.show_tooltip_text(&help);
     }
     response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(help);
-    Some((place, actions))
+    Some(place)
 }
 
 /// Paints a legend at a side of the picture, and returns its rectangle.
@@ -98,7 +86,7 @@ pub(super) fn plate(ui: &Ui, rect: Rect, side: Align2, top: f32, legend: &Legend
     let rows = colours.iter().map(|(_, text)| swatch + 2.0 * gap + text.size().x);
     let bar = if numbers.is_some() { 180.0 * scale } else { 0.0 };
     let width = rows.fold(title.size().x.max(bar.min(room)), f32::max);
-    let line = |text: &egui::Galley| text.size().y.max(swatch) + 0.5 * gap;
+    let line = |text: &Galley| text.size().y.max(swatch) + 0.5 * gap;
     let of_scale = numbers.as_ref().map_or(0.0, |n| 2.0 * gap + swatch + n[0].size().y);
     let height = title.size().y + of_scale + colours.iter().map(|(_, text)| line(text)).sum::<f32>();
     let corner = pos2(side.pos_in_rect(&rect.shrink(8.0)).x, top);
@@ -124,13 +112,8 @@ pub(super) fn plate(ui: &Ui, rect: Rect, side: Align2, top: f32, legend: &Legend
     for ([r, g, b], text) in colours {
         let height = line(&text);
         let square = Align2::LEFT_CENTER.anchor_size(pos2(at.x, at.y + 0.5 * height), vec2(swatch, swatch));
-        painter.rect(
-            square,
-            2.0,
-            Color32::from_rgb(r, g, b),
-            Stroke::new(1.0, palette.weak),
-            StrokeKind::Outside,
-        );
+        let (colour, stroke) = (Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
+        painter.rect(square, 2.0, colour, stroke, StrokeKind::Outside);
         let y = at.y + 0.5 * (height - text.size().y);
         painter.galley(pos2(square.right() + 2.0 * gap, y), text, palette.text);
         at.y += height;

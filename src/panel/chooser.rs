@@ -2,22 +2,12 @@
 
 use std::cell::RefCell;
 
-use bevy_egui::egui::{
-    self, Button, Color32, Id, Key, Margin, Modifiers, Popup, PopupCloseBehavior, Rect, RectAlign, RichText,
-    ScrollArea, Sense, Stroke, TextEdit, Tooltip, Ui, WidgetInfo, WidgetType, pos2, vec2,
-};
+use bevy_egui::egui::{Margin, Modifiers, PopupCloseBehavior, RectAlign, TextEdit, Tooltip};
 
-use super::{
-    Panel, PanelContext, Place, author,
-    icon::{self, Icon},
-    is_panel, keys,
-    state::{Action, Over, Session, ViewChange},
-    theme::{self, Palette},
-};
+use super::{author, keys, prelude::*};
 use crate::{
-    parameter::{Parameter, ParameterKind},
+    parameter::Parameter,
     reflection::{Family, ModelEntry},
-    registry::Registry,
 };
 
 /// True if every word of a search begins a word of a text, in any order.
@@ -33,10 +23,7 @@ pub fn matches(text: &str, search: &str) -> bool {
 pub(super) fn further(model: &ModelEntry) -> impl Iterator<Item = (String, &'static str)> {
     let of = |parameter: &'static Parameter| {
         let own = (format!("{} {} {}", parameter.label, parameter.symbol, parameter.name), parameter.label);
-        let choices = match parameter.kind {
-            ParameterKind::Choice { options, .. } if !parameter.is_flag() => options,
-            _ => &[],
-        };
+        let choices = if parameter.is_flag() { &[][..] } else { parameter.kind.options() };
         std::iter::once(own).chain(choices.iter().map(|(id, name)| (format!("{name} {id}"), *name)))
     };
     let synonyms = model.declaration.synonyms.iter().map(|synonym| ((*synonym).to_owned(), *synonym));
@@ -129,7 +116,7 @@ pub struct Words {
 }
 
 /// Forgets the search text of a [`list`], so that the list opens fresh.
-pub fn forget(ctx: &egui::Context, id: Id) {
+pub fn forget(ctx: &Context, id: Id) {
     ctx.data_mut(|d| {
         d.remove::<String>(id.with("search"));
         d.remove::<usize>(id.with("row"));
@@ -182,7 +169,7 @@ pub fn list<'e, T>(
             if i == row && moved {
                 response.scroll_to_me(None);
             }
-            if response.hovered() && ui.input(|i| i.pointer.delta() != egui::Vec2::ZERO) {
+            if response.hovered() && ui.input(|i| i.pointer.delta() != Vec2::ZERO) {
                 row = i;
             }
             if response.clicked() {
@@ -192,7 +179,7 @@ pub fn list<'e, T>(
         }
     });
     ui.separator();
-    ui.add(egui::Label::new(theme::small(ui, words.foot)).wrap());
+    ui.add(Label::new(theme::small(ui, words.foot)).wrap());
     if edit.changed() {
         row = 0;
     }
@@ -220,7 +207,7 @@ fn walked(ui: &Ui, id: Id, mut row: usize, count: usize) -> (usize, Option<usize
     })
 }
 
-fn search_field(ui: &mut Ui, id: Id, words: Words, search: &mut String) -> egui::Response {
+fn search_field(ui: &mut Ui, id: Id, words: Words, search: &mut String) -> Response {
     let edit = TextEdit::singleline(search)
         .id(id.with("text"))
         .hint_text(words.hint)
@@ -232,7 +219,7 @@ fn search_field(ui: &mut Ui, id: Id, words: Words, search: &mut String) -> egui:
 }
 
 /// The tooltip of an entry, beside the list: anywhere else it would hide the next entries.
-fn beside(ui: &Ui, entry: &egui::Response, tip: impl FnOnce(&mut Ui)) {
+fn beside(ui: &Ui, entry: &Response, tip: impl FnOnce(&mut Ui)) {
     let screen = ui.ctx().content_rect();
     let room = (screen.right() - entry.rect.right()).max(entry.rect.left() - screen.left());
     if room < TIP + 32.0 {
@@ -250,12 +237,11 @@ fn beside(ui: &Ui, entry: &egui::Response, tip: impl FnOnce(&mut Ui)) {
 /// The width of the column of keys, points.
 const KEYS: f32 = 96.0;
 
-fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> egui::Response {
+fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> Response {
     let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::click());
-    response.widget_info(|| {
-        WidgetInfo::selected(WidgetType::SelectableLabel, !entry.off, entry.current, entry.name)
-    });
+    let info = || WidgetInfo::selected(WidgetType::SelectableLabel, !entry.off, entry.current, entry.name);
+    response.widget_info(info);
     if !ui.is_rect_visible(rect) {
         return response;
     }
@@ -269,15 +255,15 @@ fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> egui::Response {
     }
     let y = rect.center().y;
     if let Some(number) = entry.number {
-        let small = egui::TextStyle::Small.resolve(ui.style());
+        let small = TextStyle::Small.resolve(ui.style());
         let at = pos2(rect.left() + 16.0, y);
-        painter.text(at, egui::Align2::CENTER_CENTER, number, small, palette.weak);
+        painter.text(at, Align2::CENTER_CENTER, number, small, palette.weak);
     }
     let mut left = rect.left() + 30.0;
     if let Some(colour) = entry.swatch {
         left = rect.left() + 10.0;
         let sample = Rect::from_min_size(pos2(left, y - 7.0), vec2(22.0, 14.0));
-        painter.rect(sample, 3.0, colour, Stroke::new(1.0, palette.weak), egui::StrokeKind::Inside);
+        painter.rect(sample, 3.0, colour, Stroke::new(1.0, palette.weak), StrokeKind::Inside);
         left += 30.0;
     }
     let mut right = rect.right() - 6.0;
@@ -287,15 +273,15 @@ fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> egui::Response {
             let sign = Rect::from_center_size(pos2(rect.left() + 13.0, y), vec2(11.0, 11.0));
             icon::paint(&painter, sign, Icon::Check, palette.accent);
         }
-        let key = theme::elided(ui, key, egui::TextStyle::Body, palette.weak, KEYS);
+        let key = theme::elided(ui, key, TextStyle::Body, palette.weak, KEYS);
         painter.galley(pos2(right - key.size().x, y - key.size().y / 2.0), key, palette.weak);
         right -= KEYS;
     }
     let ink = if entry.off { palette.weak } else { palette.text };
-    let name = theme::elided(ui, entry.name, egui::TextStyle::Body, ink, right - left);
+    let name = theme::elided(ui, entry.name, TextStyle::Body, ink, right - left);
     let room = right - left - name.size().x - 12.0;
     painter.galley(pos2(left, y - name.size().y / 2.0), name, ink);
-    let note = theme::elided(ui, &entry.note, egui::TextStyle::Small, palette.weak, room);
+    let note = theme::elided(ui, &entry.note, TextStyle::Small, palette.weak, room);
     painter.galley(pos2(right - note.size().x, y - note.size().y / 2.0), note, palette.weak);
     response
 }
@@ -377,8 +363,8 @@ const CHOOSER: &str = "reflection chooser";
 
 /// Shows the button and, if open, the list. They refer to the selected object's model override if there is one,
 /// otherwise to the model of the scene.
-pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> {
-    let mut actions = Vec::new();
+pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let palette = Palette::here(ui);
     let shown = session.model_shown();
     let current = registry.model(shown);
@@ -391,85 +377,61 @@ pub fn show(ui: &mut Ui, session: &Session, registry: &Registry) -> Vec<Action> 
     let of = session.model_override().is_some().then(|| session.name_of(session.selection, registry));
     let button = if of.is_some() { button.stroke(Stroke::new(1.5, palette.accent)) } else { button };
     let response = ui.add_sized(vec2(WIDTH, 24.0), button);
-    response
-        .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Reflection model: {name}")));
-    if response.clicked() {
-        actions.push(Action::View(ViewChange::Chooser(!session.view.chooser_open)));
+    theme::says(&response, WidgetType::ComboBox, format!("Reflection model: {name}"));
+    context.on_click(&response, || Action::View(ViewChange::Chooser(!session.view.chooser_open)));
+    if session.view.chooser_open {
+        let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 156.0;
+        opened(Popup::from_response(&response), height, context);
+    } else if let Some(model) = current {
+        theme::tip(response, 320.0, |ui| {
+            if let Some(name) = &of {
+                ui.label(format!("The model of {name} alone, in place of the scene’s."));
+            }
+            about(ui, model);
+            let key = keys::word(ui.ctx(), "choose_model");
+            ui.label(theme::small(ui, format!("key {key} chooses another")));
+        });
     }
-    if !session.view.chooser_open {
-        if let Some(model) = current {
-            response.on_hover_ui(|ui| {
-                ui.set_max_width(320.0);
-                if let Some(name) = &of {
-                    ui.label(format!("The model of {name} alone, in place of the scene’s."));
-                }
-                about(ui, model);
-                let key = keys::word(ui.ctx(), "choose_model");
-                ui.label(theme::small(ui, format!("key {key} chooses another")));
-            });
-        }
-        return actions;
-    }
-    let height = ui.ctx().content_rect().bottom() - response.rect.bottom() - 156.0;
-    actions.extend(opened(Popup::from_response(&response), height, session, registry));
-    actions
 }
 
 /// The list alone, in a corner of a presentation, which has no bar; the equation is in the opposite corner.
 pub(super) struct Alone;
 
 impl Panel for Alone {
-    is_panel!("models", "Reflection models", Place::Over(Over::List));
-
-    fn is_open(&self, session: &Session) -> bool {
-        session.view.chooser_open
-    }
+    is_panel!("models", "Reflection models", Place::Over(Over::List), |session| session.view.chooser_open);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry) = (context.session(), context.registry());
+        let session = context.session();
         if !session.view.chooser_open {
             forget(ui.ctx(), Id::new(CHOOSER));
         } else if session.view.presenting {
             let screen = ui.ctx().content_rect();
             let at = screen.right_top() + vec2(-theme::UNIT, theme::UNIT);
             let popup = Popup::new(Id::new(CHOOSER), ui.ctx().clone(), at, egui::LayerId::background());
-            let popup = popup.align(RectAlign::BOTTOM_END);
-            context.actions.extend(opened(popup, screen.height() - 172.0, session, registry));
+            opened(popup.align(RectAlign::BOTTOM_END), screen.height() - 172.0, context);
         }
     }
 }
 
 /// Shows the list in its popup, at most `height` points high.
-fn opened(popup: Popup, height: f32, session: &Session, registry: &Registry) -> Vec<Action> {
-    let mut actions = Vec::new();
-    let id = Id::new(CHOOSER);
-    let mut open = true;
-    let mut chosen = None;
-    let mut asked = Vec::new();
-    let width = 460.0;
-    popup
-        .id(id)
-        .open_bool(&mut open)
-        .width(width)
-        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
-        .show(|ui| {
-            ui.set_width(width);
-            let shown = session.model_shown();
-            chosen = models(ui, id, height, session, registry, Some(shown), None).flatten();
-            ui.separator();
-            asked = author::buttons(ui, session, registry);
-        });
+fn opened(popup: Popup, height: f32, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
+    let (id, width) = (Id::new(CHOOSER), 460.0);
+    let (mut open, mut chosen) = (true, None);
+    let asked = context.actions.len();
+    let popup = popup.id(id).open_bool(&mut open).width(width);
+    popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
+        ui.set_width(width);
+        chosen = models(ui, id, height, session, registry, Some(session.model_shown()), None).flatten();
+        ui.separator();
+        author::buttons(ui, context);
+    });
     // A clicked button closes the list: the dialog that follows stands alone.
-    open &= asked.is_empty();
-    actions.extend(asked);
-    if let Some(model) = chosen {
-        actions.push(Action::Edit(session.edit_model(model.declaration.id)));
-        open = false;
-    }
+    open &= asked == context.actions.len() && chosen.is_none();
+    context.edits(chosen.map(|model| session.edit_model(model.declaration.id)));
     if !open {
-        actions.push(Action::View(ViewChange::Chooser(false)));
+        context.act(Action::View(ViewChange::Chooser(false)));
     }
-    actions
 }
 
 #[cfg(test)]

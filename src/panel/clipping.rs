@@ -1,8 +1,11 @@
 //! The warning that the picture clips, and the marks on clipped pixels: a channel exceeds what the display can show.
 
-use bevy_egui::egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
+use bevy_egui::egui::{Mesh, Painter};
 
-use super::state::{Badge, Clipping, Session, Severity};
+use super::{
+    prelude::*,
+    state::{Badge, Clipping},
+};
 use crate::scene::limits;
 
 /// Formats a share as a percentage: "3 %", "under 0.1 %".

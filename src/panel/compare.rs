@@ -1,9 +1,6 @@
 //! The views of a comparison in the picture: their arrangement, headers, and the edge of a wipe.
 
-use bevy_egui::egui::{
-    self, Align, Align2, Button, Id, Layout as Direction, Rect, RichText, Sense, Stroke, StrokeKind,
-    TextStyle, Ui, UiBuilder, WidgetInfo, WidgetType, pos2, vec2,
-};
+use bevy_egui::egui::Layout as Direction;
 
 mod bar;
 mod place;
@@ -21,18 +18,13 @@ pub use place::Arrangement;
 
 use super::{
     caption::Lines,
-    icon::{self, Icon},
     keys, knob, matching,
-    state::{Action, Cell, CompareCommand, MatchCommand, Session},
-    theme::{self, Palette},
+    prelude::*,
+    state::{Cell, MatchCommand},
 };
 use crate::{
     caption::{Part, line, view_parts},
-    registry::Registry,
-    scene::{
-        comparison::Layout,
-        variant::{LETTERS, MAX_VARIANTS},
-    },
+    scene::comparison::Layout,
 };
 
 /// A layout in the window.
@@ -53,7 +45,7 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
     let variants = session.document.variants.len();
     if variants == 0 {
         let cells = vec![Cell { view: 0, rect: whole, part: whole }];
-        return Arrangement { cells, picture: whole, ..Arrangement::default() };
+        return Arrangement { cells, ..Arrangement::new(whole) };
     }
     let comparison = &session.document.comparison;
     let arranging = arranging(comparison.layout);
@@ -67,30 +59,26 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
     let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top() - footer));
     // Readable from the back row.
     let high = if session.view.presenting { (0.055 * whole.height()).max(HEADER) } else { HEADER };
-    let mut all = Arrangement { bar: (rows > 0.0).then_some(bar), ..Arrangement::default() };
+    let mut all = Arrangement { bar: (rows > 0.0).then_some(bar), ..Arrangement::new(picture) };
     (arranging.arrange)(&mut all, &Frame { session, picture, views: comparison.views(variants), high });
     let first = all.cells.iter().map(|cell| cell.rect);
     all.picture = first.reduce(Rect::union).unwrap_or(picture);
     all
 }
 
-/// Shows headers, edge and bar. Returns the requested actions, and the rectangles that cover the picture.
-pub fn show(
-    ui: &mut Ui,
-    arrangement: &Arrangement,
-    session: &Session,
-    registry: &Registry,
-) -> (Vec<Action>, Vec<Rect>) {
-    let (mut actions, mut places) = (Vec::new(), Vec::new());
+/// Shows headers, edge and bar. Returns the rectangles that cover the picture.
+pub fn show(ui: &mut Ui, arrangement: &Arrangement, context: &mut PanelContext<'_>) -> Vec<Rect> {
+    let session = context.session();
+    let mut places = Vec::new();
     let held = keys::of(ui.ctx(), "blink").is_some_and(|blink| ui.input(|i| i.key_down(blink.key)));
     if session.view.blinking && !held {
-        actions.push(Action::Compare(CompareCommand::Blink(false)));
+        context.act(Action::Compare(CompareCommand::Blink(false)));
     }
     let palette = Palette::here(ui);
     let several = arrangement.cells.len() > 1;
     for (view, rect) in &arrangement.headers {
         places.push(*rect);
-        header(ui, *view, *rect, several, session, registry, &mut actions);
+        header(ui, *view, *rect, several, context);
     }
     let comparison = &session.document.comparison;
     if several && comparison.layout.is_beside() {
@@ -107,26 +95,18 @@ pub fn show(
         places.push(rect);
     }
     if several && !session.view.presenting {
-        let over = arranging(comparison.layout).over;
-        places.extend(over(ui, arrangement.picture, comparison, &mut actions));
+        places.extend((arranging(comparison.layout).over)(ui, arrangement.picture, context));
     }
     if let Some(rect) = arrangement.bar {
         places.push(rect);
-        bar(ui, rect, session, arranging, &mut actions);
+        bar(ui, rect, arranging, context);
     }
-    (actions, places)
+    places
 }
 
 /// Header of a view: its letter, its difference from A, and its menu.
-fn header(
-    ui: &mut Ui,
-    view: usize,
-    rect: Rect,
-    several: bool,
-    session: &Session,
-    registry: &Registry,
-    actions: &mut Vec<Action>,
-) {
+fn header(ui: &mut Ui, view: usize, rect: Rect, several: bool, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let palette = Palette::here(ui);
     let active = session.active() == view;
     ui.painter().rect_filled(rect, 0.0, palette.panel);
@@ -134,29 +114,24 @@ fn header(
     let stroke = Stroke::new(if active { 2.0 } else { 1.0 }, rule);
     ui.painter().hline(rect.x_range(), rect.bottom() - 1.0, stroke);
     let letter = LETTERS[view.min(MAX_VARIANTS)];
-    let parts = in_parts(session, view, registry);
+    let parts = in_parts(session, view, context.registry());
     let text = line(&parts);
     let click = ui.interact(rect, Id::new(("view header", view)), Sense::click());
-    click.widget_info(|| {
-        WidgetInfo::selected(WidgetType::RadioButton, true, active, format!("View {letter}: {text}"))
-    });
-    if click.clicked() {
-        actions.push(Action::Compare(CompareCommand::Activate(view)));
-    }
+    theme::says_chosen(&click, WidgetType::RadioButton, active, format!("View {letter}: {text}"));
+    context.on_click(&click, || Action::Compare(CompareCommand::Activate(view)));
     let inner = UiBuilder::new().max_rect(rect.shrink2(vec2(6.0, 2.0)));
     ui.scope_builder(inner.layout(Direction::right_to_left(Align::Center)), |ui| {
         if !session.view.presenting {
-            menu(ui, view, session, actions);
+            menu(ui, view, context);
         }
         if !several {
-            switches(ui, view, session, registry, actions);
+            switches(ui, view, context);
         }
         ui.with_layout(Direction::left_to_right(Align::Center), |ui| {
             title(ui, rect, view, parts, &text, session);
         });
     });
-    click.on_hover_ui(|ui| {
-        ui.set_max_width(320.0);
+    theme::tip(click, 320.0, |ui| {
         ui.label(theme::strong(ui, format!("View {letter}")));
         ui.label(if view == 0 { "The scene itself.".to_owned() } else { text });
         ui.label(theme::small(ui, "Click: the panels show and change this view."));
@@ -164,19 +139,16 @@ fn header(
 }
 
 /// A button for each view, where one is shown at a time.
-fn switches(ui: &mut Ui, view: usize, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+fn switches(ui: &mut Ui, view: usize, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let palette = Palette::here(ui);
     for other in (0..=session.document.variants.len()).rev() {
         let name = LETTERS[other];
         let on = other == view;
         let text = RichText::new(name).small().color(if on { palette.text } else { palette.weak });
         let button = ui.add(Button::new(text).selected(on).min_size(vec2(22.0, 20.0)));
-        button.widget_info(|| {
-            WidgetInfo::selected(WidgetType::RadioButton, true, on, format!("Show view {name}"))
-        });
-        if button.clicked() {
-            actions.push(Action::Compare(CompareCommand::Activate(other)));
-        }
+        theme::says_chosen(&button, WidgetType::RadioButton, on, format!("Show view {name}"));
+        context.on_click(&button, || Action::Compare(CompareCommand::Activate(other)));
         button.on_hover_text(format!("View {name}: {}", line(&in_parts(session, other, registry))));
     }
 }
@@ -192,19 +164,17 @@ fn title(ui: &mut Ui, header: Rect, view: usize, parts: Vec<Part>, text: &str, s
     let ink = if hidden { palette.weak } else { palette.text };
     let scale = header.height() / HEADER;
     let size = scale * TextStyle::Body.resolve(ui.style()).size;
-    let badge = Rect::from_center_size(
-        pos2(ui.max_rect().left() + 10.0 * scale, header.center().y),
-        vec2(20.0, 20.0) * scale,
-    );
+    let centre = pos2(ui.max_rect().left() + 10.0 * scale, header.center().y);
+    let badge = Rect::from_center_size(centre, vec2(20.0, 20.0) * scale);
     let (fill, on) = if lit { (palette.accent, palette.panel) } else { (palette.field, ink) };
     ui.painter().rect(badge, 4.0, fill, Stroke::new(1.0, palette.line), StrokeKind::Inside);
-    let font = egui::FontId::new(size, theme::semibold());
+    let font = FontId::new(size, theme::semibold());
     let letter = LETTERS[view.min(MAX_VARIANTS)];
     ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, on);
     let room = (ui.max_rect().width() - 30.0 * scale).max(0.0);
     let at = badge.right_center() + vec2(8.0, 0.0) * scale;
     // With symbols as in the equation, if there is room. A presentation says the rest below.
-    let dots = theme::elided(ui, ", …", egui::FontId::proportional(size), ink, room);
+    let dots = theme::elided(ui, ", …", FontId::proportional(size), ink, room);
     let less = if session.view.presenting { 0.0 } else { dots.size().x };
     let all = parts.len();
     let parts = fitting(ui, parts, size, ink, room - less);
@@ -217,14 +187,14 @@ fn title(ui: &mut Ui, header: Rect, view: usize, parts: Vec<Part>, text: &str, s
         }
         lines.paint(ui, place.min, ink);
     } else {
-        let galley = theme::elided(ui, text, egui::FontId::proportional(size), ink, room);
+        let galley = theme::elided(ui, text, FontId::proportional(size), ink, room);
         let at = Align2::LEFT_CENTER.anchor_size(at, galley.size());
         ui.painter().galley(at.min, galley, ink);
     }
 }
 
 /// The leading parts that fit into one line.
-fn fitting(ui: &Ui, mut parts: Vec<Part>, size: f32, ink: egui::Color32, room: f32) -> Vec<Part> {
+fn fitting(ui: &Ui, mut parts: Vec<Part>, size: f32, ink: Color32, room: f32) -> Vec<Part> {
     while parts.len() > 1 {
         let lines = Lines::within(ui, parts.clone(), size, ink, room, 1);
         if lines.size.y < 1.9 * size && lines.size.x <= room {
@@ -245,7 +215,7 @@ fn in_parts(session: &Session, view: usize, registry: &Registry) -> Vec<Part> {
 }
 
 /// The menu of actions for a view.
-fn menu(ui: &mut Ui, view: usize, session: &Session, actions: &mut Vec<Action>) {
+fn menu(ui: &mut Ui, view: usize, context: &mut PanelContext<'_>) {
     let letter = LETTERS[view.min(MAX_VARIANTS)];
     let button = icon::button(ui, Icon::Down, &format!("Menu of view {letter}"));
     let id = ui.make_persistent_id(("view menu", view));
@@ -254,25 +224,25 @@ fn menu(ui: &mut Ui, view: usize, session: &Session, actions: &mut Vec<Action>) 
         let mut item = |ui: &mut Ui, text: String, command: CompareCommand| {
             if ui.add(Button::new(text).frame(false)).clicked() {
                 chosen = Some(command);
-                egui::Popup::close_id(ui.ctx(), id);
+                Popup::close_id(ui.ctx(), id);
             }
         };
         if view > 0 {
             item(ui, format!("Make {letter} like A"), CompareCommand::LikeA(view));
             item(ui, format!("Swap A and {letter}"), CompareCommand::Swap(view));
             if matching::entry(ui, view) {
-                actions.push(Action::Match(MatchCommand::Ask(view)));
-                egui::Popup::close_id(ui.ctx(), id);
+                context.act(Action::Match(MatchCommand::Ask(view)));
+                Popup::close_id(ui.ctx(), id);
             }
             item(ui, format!("Remove view {letter}"), CompareCommand::Remove(view));
             ui.separator();
         }
-        if session.document.variants.len() < MAX_VARIANTS {
+        if context.session().document.variants.len() < MAX_VARIANTS {
             item(ui, "Add a view".to_owned(), CompareCommand::Add);
         } else {
             ui.label(theme::small(ui, "A scene has at most four views."));
         }
         chosen
     });
-    actions.extend(chosen.map(Action::Compare));
+    context.actions.extend(chosen.map(Action::Compare));
 }

@@ -4,7 +4,7 @@ use bevy::{
     app::App,
     ecs::{resource::Resource, world::World},
 };
-use bevy_egui::egui::{Rect, Ui};
+use bevy_egui::egui::{Rect, Response, Ui};
 
 use super::{
     state::{Action, Over, PanelInfo, PictureArea, Place, Session, Severity},
@@ -38,9 +38,9 @@ pub trait Panel: Send + Sync + 'static {
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>);
 }
 
-/// Declares the id, the title and the place of a panel of the window.
+/// Declares the id, the title and the place of a panel of the window, and when it is open, unless always.
 macro_rules! is_panel {
-    ($id:expr, $title:expr, $place:expr) => {
+    ($id:expr, $title:expr, $place:expr $(, $open:expr)?) => {
         fn id(&self) -> &'static str {
             $id
         }
@@ -52,6 +52,13 @@ macro_rules! is_panel {
         fn place(&self) -> Place {
             $place
         }
+
+        $(
+            fn is_open(&self, session: &$crate::panel::state::Session) -> bool {
+                let open: fn(&$crate::panel::state::Session) -> bool = $open;
+                open(session)
+            }
+        )?
     };
 }
 pub(super) use is_panel;
@@ -120,9 +127,19 @@ impl<'a> PanelContext<'a> {
         self.actions.push(action);
     }
 
+    /// Does what a user asks for by a click.
+    pub(super) fn on_click(&mut self, widget: &Response, action: impl FnOnce() -> Action) {
+        self.actions.extend(widget.clicked().then(action));
+    }
+
     /// Changes the scene, as one step of the history. What breaks a rule of scenes is refused with a message.
     pub fn edit(&mut self, edit: Edit) {
         self.act(Action::Edit(edit));
+    }
+
+    /// Makes the edits that there are.
+    pub(super) fn edits(&mut self, edits: impl IntoIterator<Item = Edit>) {
+        self.actions.extend(edits.into_iter().map(Action::Edit));
     }
 
     /// Adds a message to those at the bottom of the window.
@@ -146,35 +163,40 @@ impl<'a> PanelContext<'a> {
     }
 }
 
-/// A panel of others, which may panic.
-struct Guarded<P> {
-    panel: P,
+/// The panels of the window.
+#[derive(Default, Resource)]
+pub struct Panels {
+    list: Vec<Listed>,
+    /// The commands queued when the panels were last shown.
+    queue: Vec<Command>,
+}
+
+/// A panel of the list.
+pub(super) struct Listed {
+    panel: Box<dyn Panel>,
+    /// It is not one of the window's own.
+    guest: bool,
+    /// It may panic.
+    guarded: bool,
     /// The message of its panic.
     stopped: Option<String>,
 }
 
-impl<P: Panel> Panel for Guarded<P> {
-    fn id(&self) -> &'static str {
-        self.panel.id()
+impl Listed {
+    fn info(&self) -> PanelInfo {
+        let panel = &self.panel;
+        PanelInfo { id: panel.id(), title: panel.title(), place: panel.place(), guest: self.guest }
     }
 
-    fn title(&self) -> &'static str {
-        self.panel.title()
-    }
-
-    fn place(&self) -> Place {
-        self.panel.place()
-    }
-
-    fn is_open(&self, session: &Session) -> bool {
-        self.panel.is_open(session)
-    }
-
-    fn note(&self, session: &Session) -> Option<(Severity, String)> {
+    pub(super) fn note(&self, session: &Session) -> Option<(Severity, String)> {
         self.panel.note(session)
     }
 
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+    /// Shows the panel. One of others that panics is shown no more, and the window goes on.
+    pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        if !self.guarded {
+            return self.panel.show(ui, context);
+        }
         if let Some(why) = &self.stopped {
             ui.colored_label(Palette::here(ui).error, format!("This panel stopped: {why}"));
             if ui.button("Show it again").clicked() {
@@ -191,27 +213,6 @@ impl<P: Panel> Panel for Guarded<P> {
     }
 }
 
-/// The panels of the window.
-#[derive(Default, Resource)]
-pub struct Panels {
-    list: Vec<Listed>,
-    /// The commands queued when the panels were last shown.
-    queue: Vec<Command>,
-}
-
-struct Listed {
-    panel: Box<dyn Panel>,
-    /// It is not one of the window's own.
-    guest: bool,
-}
-
-impl Listed {
-    fn info(&self) -> PanelInfo {
-        let panel = &self.panel;
-        PanelInfo { id: panel.id(), title: panel.title(), place: panel.place(), guest: self.guest }
-    }
-}
-
 impl std::fmt::Debug for Panels {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_list().entries(self.list.iter().map(|p| p.panel.id())).finish()
@@ -222,7 +223,7 @@ impl Panels {
     /// Adds a panel; one with the same id is replaced, and the new one stands in its place. One that panics is shown no
     /// more, and the window goes on.
     pub fn add(&mut self, panel: impl Panel) {
-        self.put(Box::new(Guarded { panel, stopped: None }), true);
+        self.put(Box::new(panel), true);
     }
 
     /// Adds a panel of the window itself.
@@ -231,9 +232,10 @@ impl Panels {
     }
 
     fn put(&mut self, panel: Box<dyn Panel>, guest: bool) {
-        match self.list.iter_mut().find(|p| p.panel.id() == panel.id()) {
-            Some(known) => known.panel = panel,
-            None => self.list.push(Listed { panel, guest }),
+        let new = Listed { panel, guest, guarded: guest, stopped: None };
+        match self.list.iter_mut().find(|p| p.panel.id() == new.panel.id()) {
+            Some(known) => *known = Listed { guest: known.guest, ..new },
+            None => self.list.push(new),
         }
     }
 
@@ -247,11 +249,11 @@ impl Panels {
         &mut self,
         place: Place,
         session: &Session,
-    ) -> impl DoubleEndedIterator<Item = (PanelInfo, &mut dyn Panel)> {
+    ) -> impl DoubleEndedIterator<Item = (PanelInfo, &mut Listed)> {
         self.list
             .iter_mut()
-            .map(|listed| (listed.info(), &mut *listed.panel))
-            .filter(move |(info, _)| info.place == place && !(info.guest && session.view.hides(info.id)))
+            .map(|listed| (listed.info(), listed))
+            .filter(move |(info, _)| info.place == place && !(info.guest && session.settings.hides(info.id)))
     }
 
     /// Shows the panels at a place.

@@ -1,6 +1,8 @@
 //! The pointer belongs to the picture where no panel, menu or dialog covers it.
 
-use bevy_egui::egui::{Context, Id, Order, Pos2, Rect};
+use bevy_egui::egui::Order;
+
+use super::prelude::*;
 
 /// Areas that keep the pointer from the picture, as last shown.
 #[derive(Clone, Debug, Default)]
@@ -11,13 +13,9 @@ struct Cover {
     busy: bool,
 }
 
-fn memory() -> Id {
-    Id::new("cover of the picture")
-}
-
 /// Keeps the cover of this frame.
 pub(super) fn keep(ctx: &Context, places: Vec<Rect>, busy: bool) {
-    ctx.data_mut(|d| d.insert_temp(memory(), Cover { places, busy }));
+    kept::set(ctx, Cover { places, busy });
 }
 
 /// True if a position, in points of the panels, is over the picture and no panel, menu or dialog is in between; `frame`
@@ -25,13 +23,13 @@ pub(super) fn keep(ctx: &Context, places: Vec<Rect>, busy: bool) {
 /// made, even before the next frame.
 #[must_use]
 pub fn is_over_picture(ctx: &Context, frame: Rect, at: Pos2) -> bool {
-    let cover: Cover = ctx.data(|d| d.get_temp(memory())).unwrap_or_default();
+    let cover: Cover = kept::get(ctx);
     is_in_sight(ctx, frame, at) && !cover.places.iter().any(|place| place.contains(at))
 }
 
 /// True if a position is over the visible picture, even where something over the picture can be clicked.
 pub(super) fn is_in_sight(ctx: &Context, frame: Rect, at: Pos2) -> bool {
-    let cover: Cover = ctx.data(|d| d.get_temp(memory())).unwrap_or_default();
+    let cover: Cover = kept::get(ctx);
     // Panels are not separate layers; menus, popups, windows and dialogs are.
     frame.contains(at)
         && !cover.busy

@@ -1,29 +1,22 @@
 //! The file dialogs.
 
 use std::{
-    ops::{Deref, DerefMut},
+    collections::HashMap,
+    ops::DerefMut,
     path::{Path, PathBuf},
 };
 
-use bevy_egui::egui::{
-    self, Align2, Color32, Context, Event, Id, Key, Label, LayerId, Modifiers, Order, Rect, Sense, Shape,
-    Stroke, TextStyle, Ui, containers::panel::PanelState, pos2, vec2,
-};
-use egui_file_dialog::{DialogMode, DialogState, FileDialog, FileDialogLabels};
+use bevy_egui::egui::{Event, LayerId, Modifiers, Order, containers::panel::PanelState};
+use egui_file_dialog::{DialogMode, DialogState, FileDialog, FileDialogLabels, FileDialogStorage};
 
 use super::{
+    prelude::*,
     preview::{self, Preview, Source},
-    state::{
-        Action, Effect, ExportCommand, LessonCommand, LessonSource, ModelCommand, PictureCommand,
-        PlotCommand, Session,
-    },
-    theme::{self, Palette},
+    state::{Effect, ExportCommand, LessonSource, Pick},
 };
 use crate::{
-    document::Selection,
     export::form,
-    parameter::{FileFormat, Parameter, ParameterKind},
-    registry::Registry,
+    parameter::{Outside, Parameter},
     scene::{
         formats::{self, SceneFormat},
         save::as_json,
@@ -41,48 +34,22 @@ const NARROW: f32 = 1000.0;
 /// Number of frames after which an empty list is taken to be final.
 const BLANK_FRAMES: u8 = 3;
 
-/// The file dialogs of the window, with their state.
-#[derive(Debug)]
+/// The file dialogs of the window, one at a time.
+#[derive(Debug, Default)]
 pub struct Dialogs {
-    open: FileDialog,
-    save: FileDialog,
-    folder: FileDialog,
-    /// Selects files for parameters of lights and objects.
-    file: FileDialog,
-    /// Selects a lesson.
-    lesson: FileDialog,
-    /// Selects the destination of an export.
-    export: FileDialog,
-    /// The export for which a destination is being selected.
-    exporting: Option<Exported>,
-    /// The part and the parameter for which a file is being selected.
-    wanted: Option<(Selection, &'static Parameter)>,
+    dialog: FileDialog,
+    /// Id of the dialog.
+    id: &'static str,
+    /// What is being selected.
+    asked: Option<Pick>,
+    /// What earlier dialogs remember, by their ids.
+    kept: HashMap<&'static str, FileDialogStorage>,
     /// The dialog field that had the focus at the end of the previous frame.
     typed_into: Option<Field>,
     /// A key to repeat in the next frame.
     again: Option<Key>,
     /// Number of frames for which the list has been empty.
     blank: u8,
-}
-
-/// The subject of an export: a file in a format (by its id), the picture of one view or of all, or the plot.
-#[derive(Clone, Copy, Debug)]
-enum Exported {
-    Form(&'static str),
-    Picture(Option<usize>),
-    Plot,
-}
-
-impl Exported {
-    /// The subject of the export for which an effect requests a destination.
-    fn of(effect: &Effect) -> Option<Self> {
-        match effect {
-            Effect::PickExport(id) => Some(Self::Form(id)),
-            Effect::PickPicture(view) => Some(Self::Picture(*view)),
-            Effect::PickPlot => Some(Self::Plot),
-            _ => None,
-        }
-    }
 }
 
 /// Dialog fields that pass keys on to the dialog.
@@ -92,55 +59,30 @@ enum Field {
     Name,
 }
 
-impl Default for Dialogs {
-    fn default() -> Self {
-        let own = FileDialogLabels { open_button: "Export here".to_owned(), ..FileDialogLabels::default() };
-        let lessons = "Lessons (*.md)";
-        Self {
-            open: picker("Open a scene", "open dialog").default_file_name("scene.json"),
-            save: dialog("Save the scene as", "save dialog", labels()).default_file_name("scene.json"),
-            folder: dialog("Export the shaders to which folder?", "folder dialog", own),
-            file: FileDialog::new(),
-            lesson: picker("Open a lesson", "lesson dialog")
-                .add_file_filter_extensions(lessons, vec!["md"])
-                .default_file_filter(lessons),
-            export: FileDialog::new(),
-            exporting: None,
-            wanted: None,
-            typed_into: None,
-            again: None,
-            blank: 0,
-        }
-    }
-}
-
 /// Labels with a short caption below the list, which leaves room for the file name.
 fn labels() -> FileDialogLabels {
     FileDialogLabels { selected_file: "File:".to_owned(), ..FileDialogLabels::default() }
 }
 
 /// A dialog in the middle of the window.
-fn dialog(title: &str, id: &'static str, labels: FileDialogLabels) -> FileDialog {
-    FileDialog::new().title(title).id(id).labels(labels).anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
+fn dialog(title: &str, labels: FileDialogLabels) -> FileDialog {
+    FileDialog::new().title(title).labels(labels).anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
 }
 
 /// A dialog that selects a file to read: a new folder never contains one.
-fn picker(title: &str, id: &'static str) -> FileDialog {
-    let mut dialog = dialog(title, id, labels());
+fn picker(title: &str) -> FileDialog {
+    let mut dialog = dialog(title, labels());
     dialog.config_mut().show_new_folder_button = false;
     dialog.config_mut().keybindings.new_folder.clear();
     dialog
 }
 
 /// Makes a dialog offer the formats of scenes, starting with that of `file`, which may not exist yet.
-fn offer(dialog: &mut FileDialog, file: &Path, registry: &Registry) {
+fn offering(mut dialog: FileDialog, file: &Path, registry: &Registry) -> FileDialog {
     let extensions = formats::extensions(registry);
     let all: Vec<_> = extensions.iter().map(|extension| format!("*.{extension}")).collect();
     let filter = format!("Scenes ({})", all.join(", "));
-    let place = dialog.config_mut();
-    place.file_filters.clear();
-    place.save_extensions.clear();
-    let mut config = std::mem::take(place).add_file_filter_extensions(&filter, extensions);
+    let mut config = std::mem::take(dialog.config_mut()).add_file_filter_extensions(&filter, extensions);
     // The dialog shows the extension itself, and appends it to what is typed.
     let name = |format: &dyn SceneFormat| match format.name() {
         "JSON" => "Scene".to_owned(),
@@ -153,53 +95,106 @@ fn offer(dialog: &mut FileDialog, file: &Path, registry: &Registry) {
     }
     config.default_file_filter = Some(filter);
     config.default_save_extension = formats::of_path(file, registry).ok().map(name);
-    *place = config;
+    *dialog.config_mut() = config;
+    dialog
 }
 
 /// The dialog that selects a file for a parameter.
-fn file_dialog(format: &FileFormat) -> FileDialog {
+fn file_dialog(parameter: &Parameter) -> FileDialog {
+    let Some(format) = parameter.kind.format() else { return picker("") };
     let extensions: Vec<_> = format.extensions.iter().map(|extension| format!("*.{extension}")).collect();
     let filter = format!("Files ({})", extensions.join(", "));
-    picker(&format!("Choose {}", format.name), "file dialog")
+    picker(&format!("Choose {}", format.name))
         .add_file_filter_extensions(&filter, format.extensions.to_vec())
         .default_file_filter(&filter)
 }
 
 /// The dialog that selects the destination of an export, a picture or a plot.
-fn export_dialog(what: Exported, session: &Session, folder: Option<&Path>) -> FileDialog {
+fn export_dialog(what: Pick, session: &Session) -> FileDialog {
     let (title, button, name) = match what {
-        Exported::Form(id) => {
-            let form = form(id);
-            let stem = session.stem();
-            let name = form
-                .and_then(|form| Some(form.default_path(&stem).file_name()?.to_string_lossy().into_owned()));
-            let title = form.map_or_else(String::new, |form| format!("Export as {}", form.name));
-            (title, "Export", name.unwrap_or(stem))
-        }
-        Exported::Picture(view) => {
+        Pick::Picture(view) => {
             ("Save the picture".to_owned(), "Save", format!("{}.png", session.picture_stem(view)))
         }
-        Exported::Plot => ("Export the plot".to_owned(), "Export", super::plots::file_name(session)),
+        Pick::Export(id) => {
+            let (form, stem) = (form(id), session.stem());
+            let title = form.map_or_else(String::new, |form| format!("Export as {}", form.name));
+            let name = form
+                .and_then(|form| Some(form.default_path(&stem).file_name()?.to_string_lossy().into_owned()));
+            (title, "Export", name.unwrap_or(stem))
+        }
+        _ => ("Export the plot".to_owned(), "Export", super::plots::file_name(session)),
     };
     let (save_button, file_name) = (button.to_owned(), "Name:".to_owned());
     let labels = FileDialogLabels { save_button, file_name, ..FileDialogLabels::default() };
-    let mut dialog = dialog(&title, "export dialog", labels).default_file_name(&name);
-    if matches!(what, Exported::Plot) {
+    let mut dialog = dialog(&title, labels).default_file_name(&name);
+    if what == Pick::Plot {
         super::plots::offer(&mut dialog);
-    }
-    if let Some(folder) = folder {
-        dialog.config_mut().initial_directory = folder.to_owned();
     }
     dialog
 }
 
+/// The dialog for a selection: its id, and its mode.
+fn requested(what: Pick, session: &Session, registry: &Registry) -> (&'static str, FileDialog, DialogMode) {
+    // JSON replaces a read-only format.
+    let file = match session.path.as_deref() {
+        Some(path) if formats::can_write(path, registry) => path.to_owned(),
+        Some(path) => as_json(path),
+        None => PathBuf::from(format!("{}.json", session.stem())),
+    };
+    match what {
+        Pick::Open => {
+            let dialog = offering(picker("Open a scene"), &file, registry);
+            ("open dialog", dialog.default_file_name("scene.json"), DialogMode::PickFile)
+        }
+        Pick::Save => {
+            let dialog = offering(dialog("Save the scene as", labels()), &file, registry);
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            ("save dialog", dialog.default_file_name(&name), DialogMode::SaveFile)
+        }
+        Pick::File(_, parameter) => ("file dialog", file_dialog(parameter), DialogMode::PickFile),
+        Pick::Lesson => {
+            let lessons = "Lessons (*.md)";
+            let dialog = picker("Open a lesson").add_file_filter_extensions(lessons, vec!["md"]);
+            ("lesson dialog", dialog.default_file_filter(lessons), DialogMode::PickFile)
+        }
+        Pick::ShaderFolder => {
+            let open_button = "Export here".to_owned();
+            let labels = FileDialogLabels { open_button, ..FileDialogLabels::default() };
+            let dialog = dialog("Export the shaders to which folder?", labels);
+            ("folder dialog", dialog, DialogMode::PickDirectory)
+        }
+        Pick::Export(_) | Pick::Picture(_) | Pick::Plot => {
+            ("export dialog", export_dialog(what, session), DialogMode::SaveFile)
+        }
+    }
+}
+
+/// The action that a dialog was opened for, with what was selected.
+fn action(what: Pick, path: PathBuf, session: &Session) -> Option<Action> {
+    Some(match what {
+        // The user was asked about unsaved changes before the dialog opened.
+        Pick::Open => Action::Open(path),
+        Pick::Save => Action::SaveAs(path),
+        Pick::File(part, parameter) => {
+            return session.file_chosen(part, parameter, &path).map(Action::Edit);
+        }
+        Pick::Lesson => Action::Lesson(LessonCommand::Open(LessonSource::File(path))),
+        Pick::ShaderFolder => Action::Do(Effect::ExportShaders(path)),
+        Pick::Export(form) => Action::Export(ExportCommand::To { form, path }),
+        Pick::Picture(view) => {
+            // The dialog asked about the name as typed, but not about the name with an extension.
+            let overwrite = path.extension().is_some();
+            Action::Do(Effect::Picture { view, file: Some(path), overwrite })
+        }
+        Pick::Plot => Action::Do(Effect::WritePlot(path)),
+    })
+}
+
 impl Dialogs {
-    /// True if any dialog is open.
+    /// True if a dialog is open.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        [&self.open, &self.save, &self.folder, &self.file, &self.lesson, &self.export]
-            .into_iter()
-            .any(|d| *d.state() == DialogState::Open)
+        *self.dialog.state() == DialogState::Open
     }
 
     /// Opens the dialog that an effect requests. Returns false if the effect requests none.
@@ -210,58 +205,31 @@ impl Dialogs {
         session: &Session,
         registry: &Registry,
     ) -> bool {
-        let folder = session.path.as_ref().and_then(|p| p.parent()).filter(|p| p.is_dir());
-        if let Some(what) = Exported::of(effect) {
-            self.exporting = Some(what);
-            self.export = export_dialog(what, session, folder);
-            self.export.save_file();
-            return true;
+        let Effect::Pick(what) = *effect else { return false };
+        let (id, dialog, mode) = requested(what, session, registry);
+        if what == Pick::Open {
+            preview::forget_files(ctx);
         }
-        let (dialog, save) = match effect {
-            Effect::PickOpen => {
-                preview::forget_files(ctx);
-                (&mut self.open, false)
-            }
-            Effect::PickSave => (&mut self.save, true),
-            Effect::PickFile(part, parameter) => {
-                self.wanted = Some((*part, *parameter));
-                if let ParameterKind::File { format, .. } = parameter.kind {
-                    self.file = file_dialog(format);
-                }
-                (&mut self.file, false)
-            }
-            Effect::PickLesson => {
-                if let Some(folder) = session.lesson_folder().or(folder).filter(|folder| folder.is_dir()) {
-                    self.lesson.config_mut().initial_directory = folder.to_owned();
-                }
-                self.lesson.pick_file();
-                return true;
-            }
-            Effect::PickShaderFolder => {
-                self.folder.pick_directory();
-                return true;
-            }
-            _ => return false,
+        // Dialogs that depend on what is exported or chosen begin anew.
+        let remembers = !matches!(id, "file dialog" | "export dialog");
+        self.kept.insert(self.id, std::mem::take(self.dialog.storage_mut()));
+        let storage = self.kept.remove(id).filter(|_| remembers).unwrap_or_default();
+        (self.id, self.dialog) = (id, dialog.id(id).storage(storage));
+        let folder = session.path.as_ref().and_then(|p| p.parent());
+        let folder = match what {
+            Pick::ShaderFolder => None,
+            Pick::Lesson => session.lesson_folder().or(folder.filter(|folder| folder.is_dir())),
+            _ => folder,
         };
-        if let Some(folder) = folder {
-            dialog.config_mut().initial_directory = folder.to_owned();
+        if let Some(folder) = folder.filter(|folder| folder.is_dir()) {
+            self.dialog.config_mut().initial_directory = folder.to_owned();
         }
-        // JSON replaces a read-only format.
-        let file = match session.path.as_deref() {
-            Some(path) if formats::can_write(path, registry) => path.to_owned(),
-            Some(path) => as_json(path),
-            None => PathBuf::from(format!("{}.json", session.stem())),
-        };
-        if !matches!(effect, Effect::PickFile(..)) {
-            offer(dialog, &file, registry);
+        match mode {
+            DialogMode::SaveFile => self.dialog.save_file(),
+            DialogMode::PickDirectory => self.dialog.pick_directory(),
+            _ => self.dialog.pick_file(),
         }
-        if save {
-            let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            dialog.config_mut().default_file_name = name;
-            dialog.save_file();
-        } else {
-            dialog.pick_file();
-        }
+        self.asked = Some(what);
         true
     }
 
@@ -279,149 +247,87 @@ impl Dialogs {
         }
         self.pass_keys_on(ctx);
         let plain = ctx.global_style();
-        let palette = Palette::of(&session.view);
+        let palette = Palette::of(&session.settings);
         ctx.global_style_mut(|style| {
             let selection = &mut style.visuals.selection;
             (selection.bg_fill, selection.stroke) = (palette.accent, Stroke::new(1.0, palette.panel));
         });
         self.arrange(ctx);
-        self.show_scenes(ctx, session, registry, &mut actions);
-        self.show_others(ctx, session, &mut actions);
+        if self.asked == Some(Pick::Open) {
+            self.dialog.update_with_right_panel_ui(ctx, &mut |ui, dialog| {
+                let file = dialog.selected_entry().filter(|entry| entry.is_file());
+                let file = file.map(|entry| Source::File(entry.to_path_buf()));
+                show_preview(ui, file, registry, &session.outside);
+            });
+        } else {
+            self.dialog.update(ctx);
+        }
         self.finish(ctx, &palette);
         ctx.set_global_style(plain);
-        actions.extend(self.folder.take_picked().map(|folder| Action::Model(ModelCommand::Export(folder))));
+        if let (Some(path), Some(what)) = (self.dialog.take_picked(), self.asked) {
+            actions.extend(action(what, path, session));
+        } else if *self.dialog.state() == DialogState::Cancelled {
+            match self.asked {
+                Some(Pick::Open) => session.questions.not_opened(),
+                Some(Pick::Save) => session.questions.not_saved(),
+                _ => {}
+            }
+        }
         actions
     }
 
-    fn all(&mut self) -> [&mut FileDialog; 6] {
-        let Self { open, save, folder, file, lesson, export, .. } = self;
-        [open, save, folder, file, lesson, export]
-    }
-
-    /// Fits the dialogs to the window.
+    /// Fits the dialog to the window.
     fn arrange(&mut self, ctx: &Context) {
         let screen = ctx.content_rect().size();
         let narrow = screen.x < NARROW;
         let size = if narrow { ALL } else { SHARE } * screen;
-        for dialog in self.all() {
-            let config = dialog.config_mut();
-            (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
-            // Leaves enough width for the buttons below the list.
-            config.right_panel_width = Some(if narrow { 0.28 } else { 0.34 } * size.x);
-            // The confirm button repeats the title.
-            config.title_bar = !narrow;
-        }
+        let config = self.dialog.config_mut();
+        (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
+        // Leaves enough width for the buttons below the list.
+        config.right_panel_width = Some(if narrow { 0.28 } else { 0.34 } * size.x);
+        // The confirm button repeats the title.
+        config.title_bar = !narrow;
     }
 
-    /// Shows the dialogs that open and save scenes.
-    fn show_scenes(
-        &mut self,
-        ctx: &Context,
-        session: &mut impl DerefMut<Target = Session>,
-        registry: &Registry,
-        actions: &mut Vec<Action>,
-    ) {
-        let was_open = *self.open.state() == DialogState::Open;
-        self.open.update_with_right_panel_ui(ctx, &mut |ui, dialog| {
-            let file =
-                dialog.selected_entry().filter(|entry| entry.is_file()).map(|entry| entry.to_path_buf());
-            show_preview(ui, file.map(Source::File), registry);
-        });
-        if let Some(path) = self.open.take_picked() {
-            // The user was asked about unsaved changes before the dialog opened.
-            actions.push(Action::Open(path));
-        } else if was_open && *self.open.state() == DialogState::Cancelled {
-            session.questions.not_opened();
-        }
-        let was_open = *self.save.state() == DialogState::Open;
-        self.save.update(ctx);
-        if let Some(path) = self.save.take_picked() {
-            actions.push(Action::SaveAs(path));
-        } else if was_open && *self.save.state() == DialogState::Cancelled {
-            session.questions.not_saved();
-        }
-    }
-
-    /// Shows the dialogs for folders, files of parameters, lessons and exports.
-    fn show_others(
-        &mut self,
-        ctx: &Context,
-        session: &impl Deref<Target = Session>,
-        actions: &mut Vec<Action>,
-    ) {
-        self.folder.update(ctx);
-        self.file.update(ctx);
-        if let (Some(path), Some((part, parameter))) = (self.file.take_picked(), self.wanted) {
-            actions.extend(session.file_chosen(part, parameter, &path).map(Action::Edit));
-        }
-        self.lesson.update(ctx);
-        if let Some(path) = self.lesson.take_picked() {
-            actions.push(Action::Lesson(LessonCommand::Open(LessonSource::File(path))));
-        }
-        self.export.update(ctx);
-        if let (Some(path), Some(what)) = (self.export.take_picked(), self.exporting) {
-            actions.push(match what {
-                Exported::Form(form) => Action::Export(ExportCommand::To { form, path }),
-                Exported::Picture(view) => Action::Picture(PictureCommand::To { view, path }),
-                Exported::Plot => Action::Plot(PlotCommand::To(path)),
-            });
-        }
-    }
-
-    /// Adds to the dialogs, once shown, what they lack.
+    /// Adds to the dialog, once shown, what it lacks.
     fn finish(&mut self, ctx: &Context, palette: &Palette) {
-        let (mut entered, mut aids) = (false, (self.typed_into, self.blank));
-        for dialog in self.all() {
-            let layer = LayerId::new(Order::Middle, dialog.get_window_id());
-            lighten(ctx, layer, palette);
-            if *dialog.state() == DialogState::Open {
-                entered |= aid(ctx, layer, dialog, palette, &mut aids);
-            }
-        }
-        (self.typed_into, self.blank) = aids;
-        if entered {
+        let layer = LayerId::new(Order::Middle, self.dialog.get_window_id());
+        lighten(ctx, layer, palette);
+        if self.is_open() && self.aid(ctx, layer, palette) {
             // As with the keyboard: the dialog shows the contents of the folder.
             ctx.memory_mut(|m| m.focused().into_iter().for_each(|focus| m.surrender_focus(focus)));
             self.again = Some(Key::Enter);
             ctx.request_repaint();
         }
     }
-}
 
-/// Aids of an open dialog: names of its icons, folders that open, and a word about an empty list. Updates the field
-/// that has the focus and the number of frames without entries. Returns true if a folder is to be opened.
-fn aid(
-    ctx: &Context,
-    layer: LayerId,
-    dialog: &mut FileDialog,
-    palette: &Palette,
-    (typed_into, blank): &mut (Option<Field>, u8),
-) -> bool {
-    // The dialog blocks the pointer, but not the keys.
-    ctx.memory_mut(|m| m.set_modal_layer(layer));
-    let list = Places::of(ctx, layer.id);
-    let mut entered = false;
-    if let Some(places) = &list {
-        aids::name_icons(ctx, layer, places.top, dialog.config_mut());
-        let selected = dialog.selected_entry();
-        let is_folder = selected.is_some_and(egui_file_dialog::DirectoryEntry::is_dir);
-        if is_folder && dialog.mode() == DialogMode::PickFile {
-            let label = dialog.config_mut().labels.open_button.clone();
-            entered = aids::open_folder(ctx, layer, places.bottom, &label);
+    /// Aids of an open dialog: names of its icons, folders that open, and a word about an empty list. Updates the field
+    /// that has the focus and the number of frames without entries. Returns true if a folder is to be opened.
+    fn aid(&mut self, ctx: &Context, layer: LayerId, palette: &Palette) -> bool {
+        // The dialog blocks the pointer, but not the keys.
+        ctx.memory_mut(|m| m.set_modal_layer(layer));
+        let (dialog, list) = (&mut self.dialog, Places::of(ctx, layer.id));
+        let mut entered = false;
+        if let Some(places) = &list {
+            aids::name_icons(ctx, layer, places.top, dialog.config_mut());
+            let selected = dialog.selected_entry();
+            let is_folder = selected.is_some_and(egui_file_dialog::DirectoryEntry::is_dir);
+            if is_folder && dialog.mode() == DialogMode::PickFile {
+                let label = dialog.config_mut().labels.open_button.clone();
+                entered = aids::open_folder(ctx, layer, places.bottom, &label);
+            }
         }
+        self.typed_into = list.as_ref().and_then(|places| places.focused(ctx));
+        let is_blank = list.as_ref().is_some_and(|places| places.is_blank(ctx, layer));
+        self.blank = if is_blank { self.blank.saturating_add(1).min(BLANK_FRAMES) } else { 0 };
+        match list {
+            Some(places) if self.blank == BLANK_FRAMES => places.say_empty(ctx, layer, palette),
+            _ if is_blank => ctx.request_repaint(),
+            _ => {}
+        }
+        entered
     }
-    *typed_into = list.as_ref().and_then(|places| places.focused(ctx));
-    let is_blank = list.as_ref().is_some_and(|places| places.is_blank(ctx, layer));
-    *blank = if is_blank { blank.saturating_add(1).min(BLANK_FRAMES) } else { 0 };
-    match list {
-        Some(places) if *blank == BLANK_FRAMES => places.say_empty(ctx, layer, palette),
-        _ if is_blank => ctx.request_repaint(),
-        _ => {}
-    }
-    entered
-}
 
-impl Dialogs {
     /// Passes keys on to the dialogs, which handle Enter and Escape only while nothing has the focus: pressed in a
     /// field, these keys would only leave it. Also keeps shortcuts out of the search, which takes every typed
     /// character.
@@ -436,7 +342,7 @@ impl Dialogs {
         } else {
             // In the name field, Enter saves.
             let passed: &[Key] = match self.typed_into {
-                Some(Field::Search) if *self.save.state() != DialogState::Open => &[Key::Enter, Key::Escape],
+                Some(Field::Search) if self.asked != Some(Pick::Save) => &[Key::Enter, Key::Escape],
                 Some(_) => &[Key::Escape],
                 None => &[],
             };
@@ -509,7 +415,7 @@ impl Places {
 }
 
 /// Shows the preview beside the list.
-fn show_preview(ui: &mut Ui, source: Option<Source>, registry: &Registry) {
+fn show_preview(ui: &mut Ui, source: Option<Source>, registry: &Registry, outside: &Outside) {
     let width = ui.available_width();
     let (place, _) = ui.allocate_exact_size(vec2(width, width * 9.0 / 16.0), Sense::hover());
     let Some(source) = source else {
@@ -517,18 +423,17 @@ fn show_preview(ui: &mut Ui, source: Option<Source>, registry: &Registry) {
         ui.add(Label::new(theme::small(ui, "Select a scene to see what is in it.")).wrap());
         return;
     };
-    let preview = preview::of(ui.ctx(), &source, registry);
+    let preview = preview::of(ui.ctx(), &source, registry, outside);
     preview::paint(ui, place, &preview);
     // The full name, for which the line below the list may have no room.
     if let Source::File(path) = &source {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         ui.add(Label::new(theme::small(ui, name)).wrap_mode(egui::TextWrapMode::Wrap));
     }
-    egui::ScrollArea::vertical().show(ui, |ui| match preview {
+    ScrollArea::vertical().show(ui, |ui| match preview {
         Preview::Waiting => {}
         Preview::Failed(why) => {
-            let text = egui::RichText::new(&*why).color(Palette::here(ui).error);
-            ui.add(Label::new(text).wrap());
+            ui.add(Label::new(RichText::new(&*why).color(Palette::here(ui).error)).wrap());
         }
         Preview::Ready(shown) => {
             if let Some(name) = &shown.name {

@@ -1,32 +1,38 @@
 //! Windows that ask for something beside the picture, without blocking it.
 
-use bevy_egui::egui::{Align2, Id, Key, RichText, Ui, Window};
+use bevy_egui::egui::Window;
 
-use super::PanelContext;
+use super::prelude::*;
 
 /// Width of such a window, in points.
 const WIDTH: f32 = 440.0;
 
-/// Shows such a window. Returns false if the user closes it.
-pub(super) fn window(
-    ui: &Ui,
-    id: &str,
-    title: String,
-    context: &PanelContext<'_>,
-    content: impl FnOnce(&mut Ui),
-) -> bool {
-    let mut open = true;
-    Window::new(RichText::new(title).heading())
-        .id(Id::new(id))
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .default_width(WIDTH)
-        .pivot(Align2::CENTER_CENTER)
-        .default_pos(context.area().rect.center())
-        .show(ui.ctx(), |ui| {
-            ui.set_width(WIDTH);
-            content(ui);
-        });
-    open && !ui.input(|i| i.key_pressed(Key::Escape))
+/// Shows such a window around a point. Returns false if the user closes it.
+pub(super) fn window(ui: &Ui, id: &str, title: String, centre: Pos2, content: impl FnOnce(&mut Ui)) -> bool {
+    let size = |window: Window<'static>| {
+        window.default_width(WIDTH).pivot(Align2::CENTER_CENTER).default_pos(centre)
+    };
+    theme::window(ui, id, title, true, size, |ui| {
+        ui.set_width(WIDTH);
+        content(ui);
+    })
+}
+
+/// The buttons of such a window: what it is for, which stands out if it is possible now, and *Cancel*.
+pub(super) fn buttons(ui: &mut Ui, does: &str, possible: bool) -> [Response; 2] {
+    let (line, size) = (vec2(ui.available_width(), 28.0), vec2(80.0, 28.0));
+    let layout = Layout::right_to_left(Align::Center);
+    let buttons = ui.allocate_ui_with_layout(line, layout, |ui| {
+        let button = theme::action_button(ui, does, possible, size);
+        [ui.add_enabled(possible, button), ui.add(Button::new("Cancel").min_size(size))]
+    });
+    buttons.inner
+}
+
+/// True when a window was not shown in the pass before.
+pub(super) fn is_new(ui: &Ui, id: &str) -> bool {
+    let pass = ui.ctx().cumulative_pass_nr();
+    let last: Option<u64> =
+        ui.data_mut(|d| d.get_temp_mut_or_default::<Option<u64>>(Id::new((id, "shown"))).replace(pass));
+    last.is_none_or(|last| last + 1 < pass)
 }

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use super::{
     files::{Files, Opened, Saved},
+    prelude::*,
     progress, reload, settings,
-    state::{Effect, LessonSource, Question, Session, Severity},
+    state::{Effect, LessonSource, Pick, Question},
 };
-use crate::files::Shown as _;
-use crate::{lesson::Lesson, registry::Registry};
+use crate::lesson::Lesson;
 
 /// Carries out an effect that needs files. Returns the effects that follow, or the given effect unchanged if this
 /// module does not handle it.
@@ -24,28 +24,28 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
         Effect::ExpectFile { path, version } => files.expect(&path, Some(version)),
         Effect::SaveSettings => settings::save_settings(session),
         Effect::OpenLesson(path) => {
-            let read = Lesson::read(&path, registry);
-            return session.lesson_read(path, read, registry);
+            let read = Lesson::read(&path, registry, &session.outside);
+            session.lesson_read(path, read, registry);
         }
         Effect::LookAtLesson => {
             if let Some(LessonSource::File(path)) = session.lesson.as_ref().map(|open| open.source.clone()) {
-                let read = Lesson::read(&path, registry);
-                return session.lesson_edited(read, registry);
+                let read = Lesson::read(&path, registry, &session.outside);
+                session.lesson_edited(read, registry);
             }
         }
         Effect::SaveProgress(name) => progress::save_progress(session, &name),
         other => return vec![other],
     }
-    Vec::new()
+    session.requests()
 }
 
 fn open(session: &mut Session, registry: &Registry, path: PathBuf, files: &mut dyn Files) -> Vec<Effect> {
-    match files.open(&path, registry) {
+    match files.open(&path, registry, &session.outside) {
         Opened::Scene(scene) => return session.opened(path, *scene),
         Opened::Incomplete { scene, parts } => {
             session.questions.ask(Question::MissingParts { path, scene, parts });
         }
-        Opened::Empty => session.questions.ask(Question::EmptyFile { path }),
+        Opened::Empty => session.questions.ask(Question::EmptyFile(path)),
         Opened::Failed(problems) => {
             // A second attempt may have other problems.
             session.healed(&path);
@@ -53,11 +53,8 @@ fn open(session: &mut Session, registry: &Registry, path: PathBuf, files: &mut d
             for problem in problems.into_iter().rev() {
                 session.say_about(&path, Severity::Error, problem);
             }
-            session.say_about(
-                &path,
-                Severity::Error,
-                format!("{} was not opened; {} is still shown.", path.shown(), session.title()),
-            );
+            let text = format!("{} was not opened; {} is still shown.", path.shown(), session.title());
+            session.say_about(&path, Severity::Error, text);
         }
     }
     Vec::new()
@@ -80,12 +77,12 @@ fn save(
     match saved {
         Saved::Done if is_copy => return session.copy_saved(&path),
         Saved::Done => return session.saved(path, registry),
-        Saved::ChangedOnDisk if is_copy => session.questions.ask(Question::ReplaceScene { path }),
-        Saved::ChangedOnDisk => session.questions.ask(Question::ChangedOnDisk { path }),
+        Saved::ChangedOnDisk if is_copy => session.questions.ask(Question::ReplaceScene(path)),
+        Saved::ChangedOnDisk => session.questions.ask(Question::ChangedOnDisk(path)),
         // Asks for a file that can be written. A pending action stays pending.
         Saved::OtherFormat(why) => {
             session.say(Severity::Warning, why);
-            return vec![Effect::PickSave];
+            return vec![Effect::Pick(Pick::Save)];
         }
         Saved::Failed(why) => {
             session.questions.not_saved();

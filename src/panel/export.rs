@@ -1,15 +1,10 @@
 //! Exports: their menu, the progress of the running export, and shaders for the clipboard.
 
-use bevy_egui::egui::{Button, ProgressBar, Ui};
+use bevy_egui::egui::ProgressBar;
 
-use super::{
-    state::{Action, ExportCommand, Session, Severity},
-    theme,
-};
+use super::{prelude::*, state::Effect};
 use crate::{
-    document::Selection,
     export::{FORMS, Form, Request, shaders},
-    registry::Registry,
     text::capitalised,
 };
 
@@ -44,11 +39,11 @@ fn name(session: &Session, i: usize) -> String {
 }
 
 /// The progress of the running export, with a button that stops it.
-pub(super) fn progress(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let Some(export) = &session.facts.export else { return };
-    let name = format!("Exporting as {}", export.name);
+pub(super) fn progress(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let Some(export) = &context.session().facts.export else { return };
+    let name = format!("Exporting as {}", export.label);
     if strip(ui, &name, (export.done, &export.step), "Stop the export; nothing of it stays on disk") {
-        actions.push(Action::Export(ExportCommand::Cancel));
+        context.act(Action::Do(Effect::CancelExport));
     }
 }
 
@@ -64,7 +59,8 @@ pub(super) fn strip(ui: &mut Ui, name: &str, (done, step): (f32, &str), stop: &s
 }
 
 /// The menu that copies the shader of the object to the clipboard, in each text-based shader language.
-pub(super) fn copy_menu(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+pub(super) fn copy_menu(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let Some(object) = object(session) else { return };
     let help = format!(
         "Copy the shader of {}, lit by the lights of this scene: alone, without what it does not use",
@@ -73,7 +69,7 @@ pub(super) fn copy_menu(ui: &mut Ui, session: &Session, registry: &Registry, act
     let menu = ui.menu_button("Copy as…", |ui| {
         for form in FORMS.iter().filter(|form| shaders::is_text(form)) {
             if ui.button(form.name).clicked() {
-                actions.extend(copied(form, object, session, registry));
+                context.actions.extend(copied(form, object, session, registry));
                 ui.close();
             }
         }
@@ -86,7 +82,10 @@ fn copied(form: &Form, object: usize, session: &Session, registry: &Registry) ->
     let scene = &session.document;
     let request = Request { scene, registry, stem: "scene", size: SIZE, object, point: None };
     match shaders::text(form, &request) {
-        Ok(text) => vec![Action::Copy(text), Action::Say(Severity::Info, format!("Copied: {}.", form.name))],
+        Ok(text) => vec![
+            Action::Do(Effect::CopyText(text)),
+            Action::Say(Severity::Info, format!("Copied: {}.", form.name)),
+        ],
         Err(error) => vec![Action::Say(Severity::Error, format!("Not copied: {error}."))],
     }
 }

@@ -2,24 +2,21 @@
 
 use std::path::Path;
 
-use super::state::MissingPart;
-use crate::{
-    registry::Registry,
-    scene::{Scene, load::Stamp},
-};
+use super::{prelude::*, state::MissingPart};
+use crate::{parameter::Outside, scene::load::Stamp};
 
 /// Reading and writing scene files.
 pub trait Files: Send + Sync + 'static {
-    /// Reads a scene file.
-    fn open(&mut self, path: &Path, registry: &Registry) -> Opened;
+    /// Reads a scene file, which may name the files `outside` its folder.
+    fn open(&mut self, path: &Path, registry: &Registry, outside: &Outside) -> Opened;
     /// Writes a scene file completely or not at all. Without `overwrite`, leaves alone a file that changed on disk
     /// since it was opened or saved.
     fn save(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved;
     /// Writes a scene file other than the document's, completely or not at all. Without `overwrite`, leaves an existing
     /// file alone.
     fn save_copy(&mut self, path: &Path, scene: &Scene, registry: &Registry, overwrite: bool) -> Saved;
-    /// Reads a scene file if its content differs from when it was opened or saved.
-    fn check(&mut self, path: &Path, registry: &Registry) -> OnDisk;
+    /// Like [`open`](Self::open) if the content differs from when it was opened or saved.
+    fn check(&mut self, path: &Path, registry: &Registry, outside: &Outside) -> OnDisk;
     /// Sets the state of the file that saving may replace: its content, or its absence.
     fn expect(&mut self, path: &Path, version: Option<Stamp>);
 }

@@ -3,23 +3,19 @@
 
 use std::cell::Cell;
 
-use bevy_egui::egui::{Context, Frame, Id, LayerId, Popup, PopupCloseBehavior, RectAlign, Ui, pos2};
+use bevy_egui::egui::{Frame, LayerId, PopupCloseBehavior, RectAlign};
 
 use super::{
-    Panel, PanelContext, Place,
     chooser::{self, Entry, Words},
     command::{self, Command, Mark, Menu},
     explain::has_sides,
-    is_panel,
     lesson::point,
+    prelude::*,
     rank::rank,
-    state::{Action, Over, Session, ViewChange},
 };
 use crate::{
-    document::Selection,
-    parameter::{Parameter, ParameterKind, Values},
+    parameter::{Parameter, Values},
     reflection::usage,
-    registry::Registry,
     text::capitalised,
 };
 
@@ -89,28 +85,23 @@ enum Does {
 pub(super) struct Finder;
 
 impl Panel for Finder {
-    is_panel!("finder", WORDS.label, Place::Over(Over::List));
-
-    fn is_open(&self, session: &Session) -> bool {
-        session.view.finder_open
-    }
+    is_panel!("finder", WORDS.label, Place::Over(Over::List), |session| session.view.finder_open);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         if self.is_open(context.session()) {
-            context.actions.extend(show(ui.ctx(), context.session(), context.registry()));
+            show(ui.ctx(), context);
         } else {
             chooser::forget(ui.ctx(), id());
         }
     }
 }
 
-fn show(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Action> {
-    let all = everything(ctx, session, registry);
+fn show(ctx: &Context, context: &mut PanelContext<'_>) {
+    let all = everything(ctx, context.session(), context.registry());
     let screen = ctx.content_rect();
     let width = WIDTH.min(screen.width() - 2.0 * MARGIN);
     let at = pos2(screen.center().x, screen.top() + ABOVE * screen.height());
-    let mut open = true;
-    let mut chosen = None;
+    let (mut open, mut chosen) = (true, None);
     Popup::new(id(), ctx.clone(), at, LayerId::background())
         .align(RectAlign::BOTTOM)
         .open_bool(&mut open)
@@ -135,22 +126,18 @@ fn show(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Action> {
                 |ui, (_, found)| _ = ui.label(&found.tip),
             );
         });
-    let mut actions = Vec::new();
-    if let Some((_, found)) = chosen {
-        remember(ctx, &found.id);
-        match &found.does {
-            Does::Act(action) => actions.push(action.clone()),
-            Does::Seek(knob) => {
-                actions.push(Action::View(ViewChange::Right(true)));
-                point::seek(ctx, knob);
-            }
+    if !open || chosen.is_some() {
+        context.act(Action::View(ViewChange::Finder(false)));
+    }
+    let Some((_, found)) = chosen else { return };
+    remember(ctx, &found.id);
+    match &found.does {
+        Does::Act(action) => context.act(action.clone()),
+        Does::Seek(knob) => {
+            context.act(Action::View(ViewChange::Right(true)));
+            point::seek(ctx, knob);
         }
-        open = false;
     }
-    if !open {
-        actions.insert(0, Action::View(ViewChange::Finder(false)));
-    }
-    actions
 }
 
 /// The ids of the latest commands, the last one first.
@@ -250,7 +237,7 @@ fn commands(root: &Menu, session: &Session, registry: &Registry) -> Vec<Found> {
 fn parameters(session: &Session, registry: &Registry) -> Vec<Found> {
     let name = session.name_of(session.selection, registry);
     let of = |parameters: &'static [Parameter], values: &Values, beginning: &str| -> Vec<Found> {
-        let knobs = parameters.iter().filter(|p| !matches!(p.kind, ParameterKind::File { .. }));
+        let knobs = parameters.iter().filter(|p| p.kind.format().is_none());
         knobs.map(|p| parameter(p, &name, beginning, usage::unused(parameters, p, values))).collect()
     };
     match session.selection {

@@ -1,11 +1,8 @@
 //! The keyboard focus: navigation with F6, and a visible frame.
 
-use bevy_egui::egui::{
-    self, Context, Event, EventFilter, Id, Key, Order, Rect, Response, Stroke, StrokeKind, Ui, WidgetRect,
-    accesskit,
-};
+use bevy_egui::egui::{Event, EventFilter, Order, WidgetRect, accesskit};
 
-use super::{Place, theme::Palette};
+use super::prelude::*;
 
 /// A region of the window, in the order of F6.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -16,41 +13,49 @@ pub(super) enum Region {
     Picture,
 }
 
-/// The regions of the window, as last shown.
+/// The regions of the window, and the targets of F6 in them.
 #[derive(Clone, Debug, Default)]
-struct Regions(Vec<(Region, Rect)>);
+struct Regions(Vec<(Region, Rect)>, Vec<Id>);
 
-fn memory() -> Id {
-    Id::new("regions of the window")
+/// What is known of the focus.
+#[derive(Clone, Debug, Default)]
+struct Known {
+    /// The regions as last shown, and those of this frame.
+    shown: Regions,
+    next: Regions,
+    /// True if the user has moved the keyboard focus to the picture.
+    picture: bool,
+    /// The focused widget that is scrolled out of view.
+    hidden: Option<Id>,
+    /// The widget that had the focus at the last check.
+    looked_for: Option<Id>,
+}
+
+fn with<R>(ctx: &Context, of: impl FnOnce(&mut Known) -> R) -> R {
+    kept::with(ctx, of)
 }
 
 /// Starts to collect the regions of the window.
 pub(super) fn forget_regions(ctx: &Context) {
-    ctx.data_mut(|d| {
-        d.insert_temp(memory().with("next"), Regions::default());
-        d.insert_temp(memory().with("next firsts"), Vec::<Id>::new());
-    });
+    with(ctx, |known| known.next = Regions::default());
 }
 
 /// Registers a region shown in this frame.
 pub(super) fn region(ctx: &Context, region: Region, rect: Rect) {
-    ctx.data_mut(|d| d.get_temp_mut_or_default::<Regions>(memory().with("next")).0.push((region, rect)));
+    with(ctx, |known| known.next.0.push((region, rect)));
 }
 
 /// Completes the collection of regions.
 pub(super) fn remember_regions(ctx: &Context) {
-    ctx.data_mut(|d| {
-        let mut regions: Regions = d.get_temp(memory().with("next")).unwrap_or_default();
-        regions.0.sort_by_key(|(region, _)| *region);
-        d.insert_temp(memory(), regions);
-        let firsts: Vec<Id> = d.get_temp(memory().with("next firsts")).unwrap_or_default();
-        d.insert_temp(memory().with("firsts"), firsts);
+    with(ctx, |known| {
+        known.shown = known.next.clone();
+        known.shown.0.sort_by_key(|(region, _)| *region);
     });
 }
 
 /// Sets the target of F6 in its region, instead of the first widget: the selected row. The latest call counts.
 pub(super) fn first(ctx: &Context, id: Id) {
-    ctx.data_mut(|d| d.get_temp_mut_or_default::<Vec<Id>>(memory().with("next firsts")).insert(0, id));
+    with(ctx, |known| known.next.1.insert(0, id));
 }
 
 /// Focusable widgets in the order of the Tab key, as last shown, including those scrolled out of view.
@@ -72,11 +77,8 @@ fn drawn(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<WidgetRect> {
 /// Focusable widgets in reading order.
 pub(super) fn stops(ctx: &Context, keep: impl Fn(&WidgetRect) -> bool) -> Vec<WidgetRect> {
     let mut stops = drawn(ctx, keep);
-    stops.sort_by(|a, b| {
-        (a.rect.center().y.round(), a.rect.left())
-            .partial_cmp(&(b.rect.center().y.round(), b.rect.left()))
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
+    let place = |w: &WidgetRect| (w.rect.center().y.round(), w.rect.left());
+    stops.sort_by(|a, b| place(a).partial_cmp(&place(b)).unwrap_or(std::cmp::Ordering::Equal));
     stops
 }
 
@@ -100,16 +102,10 @@ pub(super) fn focused(ctx: &Context) -> Option<WidgetRect> {
     ctx.viewport(|viewport| viewport.prev_pass.widgets.get(id).copied())
 }
 
-/// Key of the flag that the user has moved the keyboard focus to the picture.
-fn picture() -> Id {
-    Id::new("keys sent to the picture")
-}
-
 /// Moves the focus to the next or previous region of the window. After the last panel, the picture has the focus, then
 /// the widgets over it.
 pub(super) fn next_region(ctx: &Context, back: bool) {
-    let Regions(regions) = ctx.data(|d| d.get_temp(memory())).unwrap_or_default();
-    let wanted: Vec<Id> = ctx.data(|d| d.get_temp(memory().with("firsts"))).unwrap_or_default();
+    let Known { shown: Regions(regions, wanted), picture: sent, .. } = kept::get(ctx);
     let firsts: Vec<Option<WidgetRect>> = regions
         .iter()
         .map(|(region, rect)| {
@@ -130,7 +126,6 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
     // The widgets over the picture come after the picture itself.
     let over = regions.iter().position(|(region, _)| *region == Region::Picture);
     let count = over.unwrap_or(regions.len());
-    let sent = ctx.data(|d| d.get_temp(picture())).unwrap_or(false);
     let order: Vec<usize> = match (here, back) {
         (None, false) if sent => over.into_iter().chain(0..count).collect(),
         (None, false) => (0..count).collect(),
@@ -141,7 +136,7 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
         (Some(at), true) => (0..at).rev().collect(),
     };
     let next = order.into_iter().find_map(|i| firsts[i]);
-    ctx.data_mut(|d| d.insert_temp(picture(), next.is_none()));
+    with(ctx, |known| known.picture = next.is_none());
     ctx.memory_mut(|m| match next {
         Some(widget) => m.request_focus(widget.id),
         None => {
@@ -154,7 +149,7 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
 
 /// Scrolls to a widget that got the focus by keyboard, in any scroll area. Call before the widgets are shown.
 pub(super) fn reveal(ctx: &Context) {
-    let Some(id) = ctx.data_mut(|d| d.remove_temp::<Option<Id>>(hidden()).flatten()) else { return };
+    let Some(id) = with(ctx, |known| known.hidden.take()) else { return };
     // Every widget follows this request, including those of third-party dialogs.
     let request = accesskit::ActionRequest {
         action: accesskit::Action::ScrollIntoView,
@@ -165,25 +160,14 @@ pub(super) fn reveal(ctx: &Context) {
     ctx.input_mut(|input| input.events.push(Event::AccessKitActionRequest(request)));
 }
 
-/// Key of the focused widget that is scrolled out of view.
-fn hidden() -> Id {
-    Id::new("focus out of sight")
-}
-
-/// Key of the widget that had the focus at the last check.
-fn looked_for() -> Id {
-    Id::new("focus looked for")
-}
-
 /// Records a widget that got the focus outside the visible area. Focus by pointer scrolls nothing.
 fn look_for(ctx: &Context, widget: &WidgetRect) {
-    if ctx.data(|d| d.get_temp(looked_for())) == Some(widget.id) {
+    if with(ctx, |known| known.looked_for.replace(widget.id)) == Some(widget.id) {
         return;
     }
-    ctx.data_mut(|d| d.insert_temp(looked_for(), widget.id));
     let pointer = ctx.input(|input| input.pointer.any_down() || input.pointer.any_released());
     if !pointer && !widget.interact_rect.expand(0.5).contains_rect(widget.rect) {
-        ctx.data_mut(|d| d.insert_temp(hidden(), Some(widget.id)));
+        with(ctx, |known| known.hidden = Some(widget.id));
         ctx.request_repaint();
     }
 }
@@ -192,11 +176,13 @@ fn look_for(ctx: &Context, widget: &WidgetRect) {
 pub(super) fn show(ctx: &Context, palette: &Palette, rect: Rect) {
     let stroke = Stroke::new(1.5, palette.accent);
     let Some(id) = ctx.memory(egui::Memory::focused) else {
-        ctx.data_mut(|d| d.remove::<Id>(looked_for()));
-        if ctx.input(|input| input.pointer.any_pressed()) {
-            ctx.data_mut(|d| d.remove::<bool>(picture()));
-        }
-        if ctx.data(|d| d.get_temp(picture())).unwrap_or(false) {
+        let pressed = ctx.input(|input| input.pointer.any_pressed());
+        let in_picture = with(ctx, |known| {
+            known.looked_for = None;
+            known.picture &= !pressed;
+            known.picture
+        });
+        if in_picture {
             let painter = ctx.layer_painter(egui::LayerId::background());
             painter.rect_stroke(rect.shrink(1.0), 0.0, stroke, StrokeKind::Inside);
         }
@@ -208,10 +194,6 @@ pub(super) fn show(ctx: &Context, palette: &Palette, rect: Rect) {
         return;
     }
     let painter = ctx.layer_painter(widget.layer_id).with_clip_rect(widget.interact_rect.expand(3.0));
-    painter.rect_stroke(
-        widget.rect.intersect(widget.interact_rect).expand(1.0),
-        4.0,
-        stroke,
-        StrokeKind::Outside,
-    );
+    let frame = widget.rect.intersect(widget.interact_rect).expand(1.0);
+    painter.rect_stroke(frame, 4.0, stroke, StrokeKind::Outside);
 }

@@ -60,9 +60,9 @@ pub fn tree(text: &str) -> Vec<Node> {
             stack.push((atom, std::mem::take(&mut here)));
         } else if closes && let Some((open, before)) = stack.pop() {
             let body = fractions(std::mem::replace(&mut here, before));
-            let root = matches!(here.last(), Some(Node::Atom(Atom::Upright { base, sub, sup }))
-                if base == "√" && sub.is_empty() && sup.is_empty());
-            let plain = matches!(&atom, Atom::Upright { sub, sup, .. } if sub.is_empty() && sup.is_empty());
+            let root = here.last() == Some(&Node::Atom(Atom::upright("√")));
+            let plain =
+                atom.sub().is_empty() && atom.sup().is_empty() && matches!(atom, Atom::Upright { .. });
             if root && plain {
                 here.pop();
                 here.push(Node::Root(body));
@@ -182,9 +182,7 @@ fn split(nodes: &[Node], at: impl Fn(usize) -> bool) -> Vec<&[Node]> {
 
 /// Flattens the tree into single signs, for pieces that are too wide for a line.
 pub(super) fn flattened(nodes: &[Node]) -> Vec<Node> {
-    let upright = |base: &str| {
-        Node::Atom(Atom::Upright { base: base.to_owned(), sub: String::new(), sup: String::new() })
-    };
+    let upright = |base: &str| Node::Atom(Atom::upright(base));
     let mut out = Vec::new();
     for node in nodes {
         match node {

@@ -30,7 +30,7 @@ pub fn show(
     world: &World,
 ) -> Vec<Effect> {
     let ctx = ui.ctx().clone();
-    if !theme::apply(&ctx, &session.view) {
+    if !theme::apply(&ctx, &session.settings) {
         return Vec::new();
     }
     let style = ctx.global_style();
@@ -71,7 +71,7 @@ pub fn show(
     *area = now;
     focus::remember_regions(&ctx);
     linked::end(&ctx);
-    let palette = Palette::of(&session.view);
+    let palette = Palette::of(&session.settings);
     lesson::point::show(&ctx, &palette);
     focus::show(&ctx, &palette, area.frame);
     effects.extend(apply(&ctx, &mut session, actions, registry));
@@ -94,7 +94,7 @@ fn absorb(
         let first = session.panels.is_empty();
         session.panels = panels.infos().collect();
         // The guest panel that was open when the window was closed.
-        if let Some(tab) = session.view.guest_tab.clone().filter(|_| first)
+        if let Some(tab) = session.settings.guest_tab.clone().filter(|_| first)
             && session.panels.iter().any(|panel| panel.id == tab)
         {
             session.view.unfold(&tab);
@@ -103,7 +103,11 @@ fn absorb(
     keys::check(session, registry);
     keys::remember(ctx, session, registry);
     author::notice_shaders(session, registry);
-    if session.is_lesson_due() { session.resume_lesson() } else { Vec::new() }
+    if !session.is_lesson_due() {
+        return Vec::new();
+    }
+    session.resume_lesson();
+    session.requests()
 }
 
 /// Adds the actions of keys, and of clicks into the picture.
@@ -126,7 +130,7 @@ fn pressed(ctx: &Context, context: &mut PanelContext<'_>, dialog: bool) {
 fn lesson_alone(ui: &mut Ui, panels: &mut Panels, context: &mut PanelContext<'_>) {
     let session = context.session();
     if session.lesson.is_some() && session.view.left_open {
-        let frame = theme::panel_frame(&Palette::of(&session.view), vec2(0.0, 4.0));
+        let frame = theme::panel_frame(&Palette::of(&session.settings), vec2(0.0, 4.0));
         let edge = egui::Panel::left("lesson presented").frame(frame).resizable(false);
         let edge = edge.exact_size(lesson::SHARE * ui.available_rect_before_wrap().width());
         sides::side(ui, edge, Place::Left, panels, context);
@@ -136,7 +140,7 @@ fn lesson_alone(ui: &mut Ui, panels: &mut Panels, context: &mut PanelContext<'_>
 /// The panels around the picture.
 fn around(ui: &mut Ui, panels: &mut Panels, context: &mut PanelContext<'_>) {
     let (ctx, session, whole) = (ui.ctx().clone(), context.session(), ui.available_rect_before_wrap());
-    let palette = Palette::of(&session.view);
+    let palette = Palette::of(&session.settings);
     for (place, padding) in [(Place::Top, 4.0), (Place::Status, 2.0)] {
         for (info, panel) in panels.at(place, session) {
             let top = place == Place::Top;
@@ -149,7 +153,7 @@ fn around(ui: &mut Ui, panels: &mut Panels, context: &mut PanelContext<'_>) {
     // Panel widths are stored per zoom level. A zoom takes effect a frame after it is chosen.
     let zoom = zoom_percent(&ctx);
     let widths = Widths::of(&ctx, session, whole.width());
-    let mut sizes = (widths.left.default, widths.right.default, session.view.bottom_height);
+    let mut sizes = (widths.left.default, widths.right.default, session.settings.bottom_height);
     // A lesson takes the full height: it is read while the strip explains.
     let (order, left) = match session.lesson {
         Some(_) => ([Place::Left, Place::Bottom, Place::Right], "lesson at the left"),

@@ -2,8 +2,8 @@
 
 use std::{borrow::Cow, collections::HashSet};
 
+use super::prelude::*;
 use bevy::log::warn;
-use bevy_egui::egui::{Id, TextStyle, Ui};
 
 /// Replaces each character that the fonts lack by letters of similar sound. `owner` names the origin of the text in the
 /// log.

@@ -1,16 +1,8 @@
 //! The list of keys, and "about".
 
-use bevy_egui::egui::{
-    self, Align2, Color32, Id, Label, RichText, ScrollArea, Sense, TextStyle, Ui, Vec2, WidgetInfo,
-    WidgetType, Window, vec2,
-};
+use bevy_egui::egui::Window;
 
-use super::{
-    Panel, PanelContext, Place, is_panel, keys,
-    state::{Action, Over, Session, ViewChange},
-    theme,
-};
-use crate::registry::Registry;
+use super::{keys, prelude::*};
 
 /// The least width of the window in which the list has two columns, points.
 const TWO_COLUMNS: f32 = 1000.0;
@@ -23,11 +15,7 @@ const EDGE: f32 = 1.0;
 pub struct Keys;
 
 impl Panel for Keys {
-    is_panel!("keys", "Keys and mouse", Place::Over(Over::Window));
-
-    fn is_open(&self, session: &Session) -> bool {
-        session.view.keys_open
-    }
+    is_panel!("keys", "Keys and mouse", Place::Over(Over::Window), |session| session.view.keys_open);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry, screen) = (context.session(), context.registry(), ui.ctx().content_rect());
@@ -36,18 +24,12 @@ impl Panel for Keys {
         // It would stay as wide as it was at another size of everything.
         let most = wide + ui.ctx().global_style().spacing.window_margin.sum().x + 2.0 * EDGE;
         let high = screen.height() - 140.0;
-        window(
-            ui,
-            self,
-            context,
-            ViewChange::Keys(false),
-            |window| window.max_width(most),
-            |ui| {
-                ui.set_width(wide);
-                let scroll = ScrollArea::vertical().auto_shrink([false, true]).min_scrolled_height(high);
-                scroll.max_height(high).show(ui, |ui| key_list(ui, session, registry));
-            },
-        );
+        let size = |window: Window<'static>| window.max_width(most);
+        window(ui, self, context, ViewChange::Keys(false), size, |ui| {
+            ui.set_width(wide);
+            let scroll = ScrollArea::vertical().auto_shrink([false, true]).min_scrolled_height(high);
+            scroll.max_height(high).show(ui, |ui| key_list(ui, session, registry));
+        });
     }
 }
 
@@ -56,11 +38,7 @@ impl Panel for Keys {
 pub struct About;
 
 impl Panel for About {
-    is_panel!("about", "About", Place::Over(Over::Window));
-
-    fn is_open(&self, session: &Session) -> bool {
-        session.view.about_open
-    }
+    is_panel!("about", "About", Place::Over(Over::Window), |session| session.view.about_open);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry) = (context.session(), context.registry());
@@ -79,14 +57,8 @@ fn window(
     content: impl FnOnce(&mut Ui),
 ) {
     let is_open = panel.is_open(context.session());
-    let mut open = is_open;
-    let window = Window::new(RichText::new(panel.title()).heading())
-        .id(Id::new(panel.id()))
-        .collapsible(false)
-        .resizable(false)
-        .anchor(Align2::CENTER_CENTER, Vec2::ZERO);
-    size(window).open(&mut open).show(ui.ctx(), content);
-    if is_open && (!open || ui.input(|i| i.key_pressed(egui::Key::Escape))) {
+    let anchored = |window: Window<'static>| size(window.anchor(Align2::CENTER_CENTER, Vec2::ZERO));
+    if !theme::window(ui, panel.id(), panel.title(), is_open, anchored, content) && is_open {
         context.act(Action::View(close));
     }
 }
@@ -97,9 +69,7 @@ type Row = (&'static str, String, String);
 fn key_list(ui: &mut Ui, session: &Session, registry: &Registry) {
     let bindings = keys::bindings(session, registry).into_iter();
     let mut rows: Vec<Row> = bindings.map(|b| (b.group.name(), b.keys(), b.label)).collect();
-    rows.extend(
-        keys::ELSEWHERE.iter().map(|(group, key, label)| (*group, (*key).to_owned(), (*label).to_owned())),
-    );
+    rows.extend(keys::ELSEWHERE.iter().map(|(group, key, label)| (*group, (*key).into(), (*label).into())));
     let [left, right] = halves(&rows);
     ui.spacing_mut().interact_size.y = 20.0;
     // The scroll bar floats over this margin.
@@ -134,17 +104,15 @@ fn column(ui: &mut Ui, groups: &[&str], rows: &[Row]) {
     let line = ui.text_style_height(&TextStyle::Body);
     // Descriptions begin in line in all groups.
     let here = rows.iter().filter(|row| groups.contains(&row.0));
-    let width = |key: &str| {
-        let text = ui.painter().layout_no_wrap(key.to_owned(), font.clone(), Color32::WHITE);
-        text.size().x
-    };
+    let width =
+        |key: &str| ui.painter().layout_no_wrap(key.to_owned(), font.clone(), Color32::WHITE).size().x;
     let keys = here.map(|row| width(&row.1)).fold(0.0, f32::max).ceil();
     for group in groups {
         ui.label(theme::strong(ui, *group));
         for (_, key, label) in rows.iter().filter(|row| row.0 == *group) {
             ui.horizontal_top(|ui| {
                 let (place, response) = ui.allocate_exact_size(vec2(keys, line), Sense::hover());
-                response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, key));
+                theme::says(&response, WidgetType::Label, key);
                 ui.painter().text(place.min, Align2::LEFT_TOP, key, font.clone(), colour);
                 ui.add(Label::new(label).wrap());
             });
@@ -155,7 +123,7 @@ fn column(ui: &mut Ui, groups: &[&str], rows: &[Row]) {
 
 fn about(ui: &mut Ui, session: &Session, registry: &Registry) {
     ui.label(theme::strong(ui, format!("Lights, Camera, Models!  {}", env!("CARGO_PKG_VERSION"))));
-    ui.add(egui::Label::new(env!("CARGO_PKG_DESCRIPTION")).wrap());
+    ui.add(Label::new(env!("CARGO_PKG_DESCRIPTION")).wrap());
     ui.add_space(8.0);
     let line = format!(
         "{} reflection models · {} shading models · {} light types · {} object types",
@@ -164,17 +132,11 @@ fn about(ui: &mut Ui, session: &Session, registry: &Registry) {
         registry.lights().len(),
         registry.shapes().len()
     );
-    ui.add(egui::Label::new(theme::small(ui, line)).wrap());
+    theme::note(ui, line);
     if !session.facts.adapter.is_empty() {
-        ui.add(
-            egui::Label::new(theme::small(
-                ui,
-                format!("{} · {}", session.facts.adapter, session.facts.backend),
-            ))
-            .wrap(),
-        );
+        theme::note(ui, format!("{} · {}", session.facts.adapter, session.facts.backend));
     }
     let licence =
         format!("Licence: {}. Type: Inter and STIX, SIL Open Font License 1.1.", env!("CARGO_PKG_LICENSE"));
-    ui.add(egui::Label::new(theme::small(ui, licence)).wrap());
+    theme::note(ui, licence);
 }

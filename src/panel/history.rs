@@ -1,8 +1,6 @@
 //! The edit history as a list: a click undoes or redoes up to a step.
 
-use bevy_egui::egui::{self, Align, RichText, ScrollArea, Ui};
-
-use super::{Panel, PanelContext, Place, is_panel, state::Action, theme::Palette};
+use super::prelude::*;
 
 /// Id of the tab.
 pub const HISTORY_TAB: &str = "history";
@@ -15,7 +13,7 @@ impl Panel for History {
     is_panel!(HISTORY_TAB, "History", Place::Bottom);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, actions) = (context.session(), &mut context.actions);
+        let session = context.session();
         let palette = Palette::here(ui);
         let done = session.document.done();
         let steps: Vec<_> =
@@ -29,19 +27,15 @@ impl Panel for History {
             for (i, name) in steps.into_iter().enumerate() {
                 let colour = if i > done { palette.weak } else { palette.text };
                 let text = RichText::new(name).color(colour);
-                let row = egui::Button::selectable(i == done, text)
-                    .min_size(egui::vec2(ui.available_width(), height));
-                let row = ui.add(row.truncate());
+                let size = vec2(ui.available_width(), height);
+                let row = ui.add(Button::selectable(i == done, text).min_size(size).truncate());
                 if i == done && news {
                     row.scroll_to_me(Some(Align::Center));
                 }
-                let help = if i > done {
-                    "Undone: click to redo up to here"
-                } else {
-                    "Click to undo what came after"
-                };
+                let undone = "Undone: click to redo up to here";
+                let help = if i > done { undone } else { "Click to undo what came after" };
                 if row.on_hover_text(help).clicked() && i != done {
-                    actions.push(Action::GoToStep(i));
+                    context.act(Action::GoToStep(i));
                 }
             }
         });

@@ -2,10 +2,14 @@
 //! screen readers.
 
 use bevy_egui::egui::{
-    Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2,
+    Color32, Id, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Widget, WidgetInfo, WidgetType,
+    collapsing_header::paint_default_icon, pos2, vec2,
 };
 
-use super::{state::Severity, theme::Palette};
+use super::{
+    state::Severity,
+    theme::{self, Palette},
+};
 use crate::shading::Stage;
 
 /// An icon.
@@ -72,54 +76,43 @@ pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
         }
         _ => {}
     }
-    let slash: Line = &[(0.06, 0.94), (0.94, 0.06)];
-    let off = matches!(icon, Icon::LampOff | Icon::EyeOff).then_some(slash);
-    for points in lines(icon).iter().copied().chain(off) {
-        line(&mut points.iter().copied());
+    let off = matches!(icon, Icon::LampOff | Icon::EyeOff).then_some("0.06 0.94 0.94 0.06");
+    for points in lines(icon).split(',').filter(|points| !points.is_empty()).chain(off) {
+        let numbers: Vec<f32> = points.split_whitespace().filter_map(|number| number.parse().ok()).collect();
+        line(&mut numbers.chunks_exact(2).map(|at| (at[0], at[1])));
     }
 }
 
-/// The corners of a line, in a square with side 1.
-type Line = &'static [(f32, f32)];
-
-/// The straight lines of an icon, apart from the one through what is off.
-fn lines(icon: Icon) -> &'static [Line] {
+/// The straight lines of an icon in a square with side 1, apart from the one through what is off: the coordinates of their
+/// corners.
+fn lines(icon: Icon) -> &'static str {
     match icon {
-        Icon::Plus => &[&[(0.5, 0.16), (0.5, 0.84)], &[(0.16, 0.5), (0.84, 0.5)]],
-        Icon::Cross => &[&[(0.22, 0.22), (0.78, 0.78)], &[(0.78, 0.22), (0.22, 0.78)]],
-        Icon::Bin => &[
-            &[(0.14, 0.26), (0.86, 0.26)],
-            &[(0.38, 0.26), (0.38, 0.12), (0.62, 0.12), (0.62, 0.26)],
-            &[(0.24, 0.26), (0.3, 0.9), (0.7, 0.9), (0.76, 0.26)],
-        ],
-        Icon::Copy => &[
-            &[(0.34, 0.34), (0.9, 0.34), (0.9, 0.9), (0.34, 0.9), (0.34, 0.34)],
-            &[(0.66, 0.34), (0.66, 0.1), (0.1, 0.1), (0.1, 0.66), (0.34, 0.66)],
-        ],
-        Icon::Duplicate => &[
-            &[(0.34, 0.34), (0.9, 0.34), (0.9, 0.9), (0.34, 0.9), (0.34, 0.34)],
-            &[(0.66, 0.34), (0.66, 0.1), (0.1, 0.1), (0.1, 0.66), (0.34, 0.66)],
-            &[(0.62, 0.48), (0.62, 0.76)],
-            &[(0.48, 0.62), (0.76, 0.62)],
-        ],
-        Icon::Pencil => &[&[(0.14, 0.86), (0.2, 0.64), (0.7, 0.14), (0.86, 0.3), (0.36, 0.8), (0.14, 0.86)]],
-        Icon::Down => &[&[(0.2, 0.36), (0.5, 0.66), (0.8, 0.36)]],
-        Icon::Up => &[&[(0.2, 0.64), (0.5, 0.34), (0.8, 0.64)]],
-        Icon::Lamp | Icon::LampOff => &[&[(0.36, 0.78), (0.64, 0.78)], &[(0.4, 0.94), (0.6, 0.94)]],
-        Icon::Eye | Icon::EyeOff => &[],
-        Icon::Room => &[
-            &[(0.12, 0.34), (0.66, 0.34), (0.66, 0.9), (0.12, 0.9), (0.12, 0.34)],
-            &[(0.12, 0.34), (0.36, 0.1), (0.9, 0.1), (0.66, 0.34)],
-            &[(0.9, 0.1), (0.9, 0.64), (0.66, 0.9)],
-        ],
-        Icon::Check => &[&[(0.12, 0.54), (0.4, 0.82), (0.9, 0.2)]],
-        Icon::Reset => &[&[(0.1, 0.12), (0.18, 0.38), (0.44, 0.32)]],
-        Icon::Target => &[
-            &[(0.5, 0.02), (0.5, 0.3)],
-            &[(0.5, 0.7), (0.5, 0.98)],
-            &[(0.02, 0.5), (0.3, 0.5)],
-            &[(0.7, 0.5), (0.98, 0.5)],
-        ],
+        Icon::Plus => "0.5 0.16 0.5 0.84, 0.16 0.5 0.84 0.5",
+        Icon::Cross => "0.22 0.22 0.78 0.78, 0.78 0.22 0.22 0.78",
+        Icon::Bin => {
+            "0.14 0.26 0.86 0.26, 0.38 0.26 0.38 0.12 0.62 0.12 0.62 0.26, \
+             0.24 0.26 0.3 0.9 0.7 0.9 0.76 0.26"
+        }
+        Icon::Copy => {
+            "0.34 0.34 0.9 0.34 0.9 0.9 0.34 0.9 0.34 0.34, \
+             0.66 0.34 0.66 0.1 0.1 0.1 0.1 0.66 0.34 0.66"
+        }
+        Icon::Duplicate => {
+            "0.34 0.34 0.9 0.34 0.9 0.9 0.34 0.9 0.34 0.34, \
+             0.66 0.34 0.66 0.1 0.1 0.1 0.1 0.66 0.34 0.66, 0.62 0.48 0.62 0.76, 0.48 0.62 0.76 0.62"
+        }
+        Icon::Pencil => "0.14 0.86 0.2 0.64 0.7 0.14 0.86 0.3 0.36 0.8 0.14 0.86",
+        Icon::Down => "0.2 0.36 0.5 0.66 0.8 0.36",
+        Icon::Up => "0.2 0.64 0.5 0.34 0.8 0.64",
+        Icon::Lamp | Icon::LampOff => "0.36 0.78 0.64 0.78, 0.4 0.94 0.6 0.94",
+        Icon::Eye | Icon::EyeOff => "",
+        Icon::Room => {
+            "0.12 0.34 0.66 0.34 0.66 0.9 0.12 0.9 0.12 0.34, 0.12 0.34 0.36 0.1 0.9 0.1 0.66 0.34, \
+             0.9 0.1 0.9 0.64 0.66 0.9"
+        }
+        Icon::Check => "0.12 0.54 0.4 0.82 0.9 0.2",
+        Icon::Reset => "0.1 0.12 0.18 0.38 0.44 0.32",
+        Icon::Target => "0.5 0.02 0.5 0.3, 0.5 0.7 0.5 0.98, 0.02 0.5 0.3 0.5, 0.7 0.5 0.98 0.5",
     }
 }
 
@@ -142,6 +135,33 @@ pub fn button(ui: &mut Ui, icon: Icon, says: &str) -> Response {
     response.on_hover_text(says)
 }
 
+/// The triangle and the background of a row that folds what is below it. The row takes the whole of `rect`, and its name
+/// for screen readers is `says`.
+pub(super) fn fold(ui: &mut Ui, rect: Rect, id: Id, says: &str, open: bool) -> Response {
+    let response = ui.interact(rect, id, Sense::click());
+    theme::says_chosen(&response, WidgetType::CollapsingHeader, open, says);
+    let sign = Rect::from_center_size(rect.left_center() + vec2(8.0, 0.0), vec2(8.0, 8.0));
+    let openness = if open { 1.0 } else { 0.0 };
+    paint_default_icon(ui, openness, &response.clone().with_new_rect(sign));
+    response
+}
+
+/// The icon of a severity as a widget of this size.
+pub(super) fn sign(ui: &mut Ui, size: [f32; 2], radius: f32, severity: Severity) -> Response {
+    let (rect, response) = ui.allocate_exact_size(size.into(), Sense::hover());
+    self::severity(ui.painter(), rect.center(), radius, severity, &Palette::here(ui));
+    response
+}
+
+/// A label behind the icon of a severity.
+pub(super) fn remark(ui: &mut Ui, size: [f32; 2], severity: Severity, label: impl Widget) {
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        sign(ui, size, 5.5, severity);
+        ui.add(label);
+    });
+}
+
 /// The icon of a severity: its shape says as much as its colour.
 pub fn severity(painter: &Painter, centre: Pos2, radius: f32, severity: Severity, palette: &Palette) {
     severity_in(painter, centre, radius, severity, palette.severity(severity));
@@ -161,12 +181,9 @@ pub fn severity_in(painter: &Painter, centre: Pos2, radius: f32, severity: Sever
             mark(-0.05, 0.55, -0.45);
         }
         Severity::Warning => {
-            let corners = vec![
-                centre + vec2(0.0, -r),
-                centre + vec2(1.05 * r, 0.85 * r),
-                centre + vec2(-1.05 * r, 0.85 * r),
-            ];
-            painter.add(Shape::closed_line(corners, stroke));
+            let corners = [vec2(0.0, -r), vec2(1.05 * r, 0.85 * r), vec2(-1.05 * r, 0.85 * r)];
+            let corners = corners.map(|corner| centre + corner);
+            painter.add(Shape::closed_line(corners.to_vec(), stroke));
             mark(-0.35, 0.25, 0.55);
         }
         Severity::Error => {
@@ -191,10 +208,10 @@ pub fn stage(painter: &Painter, rect: Rect, stage: Stage, palette: &Palette) {
     };
     let unit = rect.width() / 48.0;
     match stage {
-        Stage::Polygon => dot(
-            ((corners[0].to_vec2() + corners[1].to_vec2() + corners[2].to_vec2()) / 3.0).to_pos2(),
-            3.5 * unit,
-        ),
+        Stage::Polygon => {
+            let sum = corners[0].to_vec2() + corners[1].to_vec2() + corners[2].to_vec2();
+            dot((sum / 3.0).to_pos2(), 3.5 * unit);
+        }
         Stage::Vertex => corners.into_iter().for_each(|p| dot(p, 3.0 * unit)),
         Stage::Pixel => {
             let (rows, height) = (6, corners[1].y - corners[0].y);
@@ -205,11 +222,8 @@ pub fn stage(painter: &Painter, rect: Rect, stage: Stage, palette: &Palette) {
                 let count = (2.0 * half / step).floor().max(0.0) as i32;
                 for k in 0..=count {
                     let x = rect.center().x + (k as f32 - 0.5 * count as f32) * step;
-                    painter.rect_filled(
-                        Rect::from_center_size(pos2(x, y), vec2(0.55, 0.55) * step),
-                        0.0,
-                        palette.accent,
-                    );
+                    let dot = Rect::from_center_size(pos2(x, y), vec2(0.55, 0.55) * step);
+                    painter.rect_filled(dot, 0.0, palette.accent);
                 }
             }
         }

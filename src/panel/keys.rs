@@ -1,15 +1,15 @@
 //! The keyboard: the keys of commands as they are pressed and as texts name them.
 
-use std::{collections::BTreeMap, ops::DerefMut, sync::Arc};
-
-use bevy_egui::egui::{self, Context, Id, Key};
+use std::{collections::BTreeMap, ops::DerefMut, sync::LazyLock};
 
 use super::{
     command::{self, Command, Group, own},
-    focus, settings,
-    state::{Action, PictureArea, Replaced, Session, Severity, Shortcut},
+    focus,
+    kept::Same,
+    prelude::*,
+    settings,
+    state::{Replaced, Shortcut},
 };
-use crate::{files::Shown as _, registry::Registry};
 
 /// A key and its command.
 #[derive(Clone, Debug)]
@@ -76,40 +76,22 @@ pub fn bindings(session: &Session, registry: &Registry) -> Vec<Binding> {
 }
 
 /// Actions of the mouse, and keys that belong to a widget: for the list.
-pub const ELSEWHERE: &[(&str, &str, &str)] = &[
-    ("Window", "F6, Shift+F6", "To the next panel, to the one before; Tab moves on within it, Esc leaves"),
-    ("Window", "F10, Alt and a letter", "The menus; arrows walk, Enter chooses"),
-    ("In the scene list", "↑ ↓", "Select the part above, the one below"),
-    (
-        "Lessons",
-        "Page Up, Page Down",
-        "Scroll the text, with the focus in the lesson; in a presentation: the steps",
-    ),
-    ("In a field", "↑ ↓", "A little more, a little less; with Shift ten times that"),
-    ("In a field", "Enter, Esc", "Keep the value; go back to the one before"),
-    ("On a slider", "← →", "A little less, a little more; Home and End: the ends"),
-    ("On a slider", "double-click", "The default; Backspace does it too"),
-    (
-        "In the plots",
-        "← →",
-        "Move the light or the reading by 1°, with Shift by 10°; Tab goes from one to the other",
-    ),
-    ("Mouse in the picture", "left drag", "Turn about what is looked at"),
-    ("Mouse in the picture", "right drag", "Move sideways; Shift and left drag does it too"),
-    ("Mouse in the picture", "wheel", "Nearer, farther"),
-    ("Mouse in the picture", "click", "Select"),
-    ("Mouse in the picture", "Alt and click", "Explain the pixel; again: let go of it, as Esc does"),
-    ("Mouse in the picture", "drag of a handle", "Move, turn, resize; with Ctrl in steps, Esc takes it back"),
-];
+pub static ELSEWHERE: LazyLock<Vec<(&str, &str, &str)>> = LazyLock::new(|| {
+    let columns = |line: &'static str| {
+        let (group, rest) = line.split_once('\t')?;
+        rest.split_once('\t').map(|(key, label)| (group, key, label))
+    };
+    include_str!("../../assets/text/keys.tsv").lines().filter_map(columns).collect()
+});
 
 /// True if Escape was pressed and nothing that is open over the picture takes it.
-pub(super) fn escapes(ctx: &egui::Context, session: &Session, area: &PictureArea) -> bool {
+pub(super) fn escapes(ctx: &Context, session: &Session, area: &PictureArea) -> bool {
     let open = session.view.chooser_open
         || session.view.finder_open
         || session.view.keys_open
         || session.view.about_open
-        || session.draft.is_some();
-    let free = area.has_keys && !open && !egui::Popup::is_any_open(ctx);
+        || session.authoring.draft.is_some();
+    let free = area.has_keys && !open && !Popup::is_any_open(ctx);
     free && ctx.input(|i| i.key_pressed(Key::Escape))
 }
 
@@ -118,7 +100,7 @@ pub(super) fn check(session: &mut impl DerefMut<Target = Session>, registry: &Re
     if session.keys.checked.is_some() {
         return;
     }
-    let given = session.keys.given.clone();
+    let given = session.settings.keys.clone();
     let (own, problems) = if given.is_empty() {
         Default::default()
     } else {
@@ -133,37 +115,36 @@ pub(super) fn check(session: &mut impl DerefMut<Target = Session>, registry: &Re
 }
 
 /// The keys that tooltips and other texts name, by the ids of commands.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct Named {
     /// Made from these own keys, so many shading models and so many panels.
-    of: (Option<Arc<Replaced>>, usize, usize),
-    keys: Arc<BTreeMap<String, (Option<Shortcut>, String)>>,
-}
-
-fn memory() -> Id {
-    Id::new("keys that texts name")
+    of: Option<(Option<Same<Replaced>>, usize, usize)>,
+    keys: Arc<Names>,
 }
 
 /// Lets texts name the keys as they are now.
 pub(super) fn remember(ctx: &Context, session: &Session, registry: &Registry) {
-    let of = (session.keys.checked.clone(), registry.shading_models().len(), session.panels.len());
-    let same = |named: &Named| {
-        let own = named.of.0.as_ref().map(Arc::as_ptr) == of.0.as_ref().map(Arc::as_ptr);
-        own && (named.of.1, named.of.2) == (of.1, of.2)
-    };
-    if ctx.data(|d| d.get_temp::<Named>(memory())).as_ref().is_some_and(same) {
+    let own = session.keys.checked.clone().map(Same);
+    let of = Some((own, registry.shading_models().len(), session.panels.len()));
+    if kept::with(ctx, |named: &mut Named| named.of == of) {
         return;
     }
+    kept::set(ctx, Named { of, keys: Arc::new(names(session, registry)) });
+}
+
+/// The keys of commands and their titles, by the ids of commands.
+type Names = BTreeMap<String, (Option<Shortcut>, String)>;
+
+fn names(session: &Session, registry: &Registry) -> Names {
     let root = command::all(session, registry, false);
     let key = |(path, command): (Vec<&str>, &Command)| {
         (command.id.to_string(), (command.keys.first().copied(), command.title(&path)))
     };
-    let keys = Arc::new(root.commands().into_iter().map(key).collect());
-    ctx.data_mut(|d| d.insert_temp(memory(), Named { of, keys }));
+    root.commands().into_iter().map(key).collect()
 }
 
 fn named(ctx: &Context, id: &str) -> Option<(Option<Shortcut>, String)> {
-    ctx.data(|d| d.get_temp::<Named>(memory()))?.keys.get(id).cloned()
+    kept::with(ctx, |named: &mut Named| named.keys.get(id).cloned())
 }
 
 /// The key of a command.
@@ -192,25 +173,19 @@ fn with_key(text: &str, key: Option<Shortcut>) -> String {
 /// The keys that work beside the panels.
 #[must_use]
 pub fn hint_beside(session: &Session, registry: &Registry, text: &str, id: &str) -> String {
-    let root = command::all(session, registry, false);
-    let key = root
-        .commands()
-        .iter()
-        .find(|(_, command)| command.id == id)
-        .and_then(|(_, c)| c.keys.first().copied());
-    with_key(text, key)
+    with_key(text, names(session, registry).get(id).and_then(|(key, _)| *key))
 }
 
 /// Reads the keys that were pressed. Call before the widgets see them.
 #[must_use]
-pub fn pressed(ctx: &egui::Context, session: &Session, registry: &Registry) -> Vec<Action> {
+pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Action> {
     let any = ctx.input(|i| i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, .. })));
     if !any || session.questions.open.is_some() {
         return Vec::new();
     }
     let typing = ctx.text_edit_focused();
     let focused = ctx.memory(|m| m.focused());
-    let popup = egui::Popup::is_any_open(ctx);
+    let popup = Popup::is_any_open(ctx);
     let table = bindings(session, registry);
     let mut actions = Vec::new();
     let mut stop_tab = false;

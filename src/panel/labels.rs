@@ -1,17 +1,6 @@
 //! Labels in the picture: beside each object its name, reflection model and most telling values.
 
-use std::sync::Arc;
-
-use bevy_egui::egui::{FontId, Galley, Pos2, Rect, TextStyle, Ui, pos2, vec2};
-use glam::Vec3;
-
-use super::{
-    caption,
-    marks::Lens,
-    state::{Labels, Session},
-    theme::{self, Palette},
-};
-use crate::{document::Selection, registry::Registry, scene::Scene};
+use super::{caption, marks::Lens, prelude::*, state::Labels};
 
 /// Maximum number of labels; more would hide the picture.
 const MOST: usize = 16;

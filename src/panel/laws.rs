@@ -1,36 +1,27 @@
 //! The law check in the shader panel: button and findings.
 
-use bevy_egui::egui::{self, RichText, Sense, Ui, vec2};
-
-use super::{
-    icon,
-    state::{Action, LawCheck, ModelCommand, Session, Severity},
-    theme::{self, Palette},
-};
+use super::{prelude::*, state::LawCheck};
 use crate::{
     reflection::law_report::{LawReport, Sampling},
-    registry::Registry,
     text::capitalised,
 };
 
 /// The button, and a note about a check that runs or is out of date, laid out from right to left.
-pub fn button(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+pub fn button(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let name = |id: &str| registry.model(id).map(|m| m.declaration.name);
     let Some(shown) = name(session.model_shown()) else { return };
-    let running = session.laws.as_ref().filter(|check| check.outcome.is_none());
+    let running = session.authoring.laws.as_ref().filter(|check| check.outcome.is_none());
     let button = ui
-        .add_enabled(running.is_none(), egui::Button::new("Check laws"))
+        .add_enabled(running.is_none(), Button::new("Check laws"))
         .on_hover_text(format!(
             "Tries to find the laws broken that {shown} claims to keep: reciprocity, conservation of energy, no negative \
              values. Random directions and parameters, on the GPU, in a process of its own."
         ))
         .on_disabled_hover_text("A check is running.");
-    if button.clicked() {
-        actions.push(Action::Model(ModelCommand::CheckLaws));
-    }
+    context.on_click(&button, || Action::Model(ModelCommand::CheckLaws));
     if let Some(check) = running {
-        let name = name(&check.model).unwrap_or(&check.model);
-        ui.label(theme::small(ui, format!("Checking {name}…")));
+        ui.label(theme::small(ui, format!("Checking {}…", name(&check.model).unwrap_or(&check.model))));
     } else if of_shown(session).is_some_and(|check| check.since != session.shaders.last) {
         ui.label(theme::small(ui, "Findings from before the last change"));
     }
@@ -38,7 +29,7 @@ pub fn button(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut
 
 /// The check of the current model.
 fn of_shown(session: &Session) -> Option<&LawCheck> {
-    session.laws.as_ref().filter(|check| check.model == session.model_shown())
+    session.authoring.laws.as_ref().filter(|check| check.model == session.model_shown())
 }
 
 /// True if the current model violates a law that it claims, or returns values that are not numbers.
@@ -85,25 +76,25 @@ fn line(ui: &mut Ui, severity: Option<Severity>, what: &str, how: &str, at: &[St
     let bad = severity == Some(Severity::Error);
     let row = ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(6.0, 1.0);
-        let (sign, _) = ui.allocate_exact_size(vec2(16.0, 18.0), Sense::hover());
         match severity {
-            Some(severity) => icon::severity(ui.painter(), sign.center(), 5.5, severity, &palette),
+            Some(severity) => _ = icon::sign(ui, [16.0, 18.0], 5.5, severity),
             None => {
+                let (sign, _) = ui.allocate_exact_size(vec2(16.0, 18.0), Sense::hover());
                 let (c, r) = (sign.center(), 4.5);
                 let tick = vec![c + vec2(-r, 0.0), c + vec2(-0.3 * r, 0.7 * r), c + vec2(r, -0.7 * r)];
-                ui.painter().line(tick, egui::Stroke::new(1.6, palette.accent));
+                ui.painter().line(tick, Stroke::new(1.6, palette.accent));
             }
         }
         let what = capitalised(what);
         let colour = if bad { palette.error } else { palette.text };
-        ui.add(egui::Label::new(RichText::new(what).color(colour)).wrap().selectable(true));
+        ui.add(Label::new(RichText::new(what).color(colour)).wrap().selectable(true));
         if !how.is_empty() {
-            ui.add(egui::Label::new(theme::small(ui, how)).wrap().selectable(true));
+            ui.add(Label::new(theme::small(ui, how)).wrap().selectable(true));
         }
     });
     row.response.on_hover_text(at.join("\n"));
     // The place of a violation helps to fix it.
     for place in at.iter().filter(|_| bad) {
-        ui.indent(place, |ui| ui.add(egui::Label::new(theme::small(ui, place)).wrap().selectable(true)));
+        ui.indent(place, |ui| ui.add(Label::new(theme::small(ui, place)).wrap().selectable(true)));
     }
 }

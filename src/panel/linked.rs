@@ -1,9 +1,7 @@
 //! The symbol under the pointer: in an equation, at its knob, its vector in the picture, its number or its curve. In
 //! the next frame, everything that represents the symbol is highlighted.
 
-use bevy_egui::egui::{Context, Id, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui, vec2};
-
-use super::theme::Palette;
+use super::prelude::*;
 use crate::text::mathematics::same_symbol;
 
 /// The subject of an equation. The same letter has different meanings in the equation of a surface and in that of a
@@ -44,12 +42,8 @@ struct Links {
 /// Duration of the highlight after a click, in seconds.
 const HELD: f64 = 2.5;
 
-fn memory() -> Id {
-    Id::new("linked symbols")
-}
-
 fn links<R>(ctx: &Context, f: impl FnOnce(&mut Links) -> R) -> R {
-    ctx.data_mut(|d| f(d.get_temp_mut_or_default::<Links>(memory())))
+    kept::with(ctx, f)
 }
 
 /// Starts a frame: highlights what was pointed at in the previous one.

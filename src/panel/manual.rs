@@ -1,45 +1,23 @@
 //! The manual: the documents of the program as one page for a browser, usable offline.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use maud::{DOCTYPE, PreEscaped, html};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html::push_html};
 
+macro_rules! pages {
+    ($($id:literal)+) => { [$(($id, include_str!(concat!("../../docs/", $id, ".md")))),+] };
+}
+
 /// The pages with their ids, which are the paths of the files.
-pub const PAGES: [(&str, &str); 32] = [
-    ("README", include_str!("../../docs/README.md")),
-    ("window", include_str!("../../docs/window.md")),
-    ("keys", include_str!("../../docs/keys.md")),
-    ("scenes", include_str!("../../docs/scenes.md")),
-    ("reflection-models", include_str!("../../docs/reflection-models.md")),
-    ("shading-and-lights", include_str!("../../docs/shading-and-lights.md")),
-    ("comparing", include_str!("../../docs/comparing.md")),
-    ("lessons", include_str!("../../docs/lessons.md")),
-    ("command-line", include_str!("../../docs/command-line.md")),
-    ("worked-examples", include_str!("../../docs/worked-examples.md")),
-    ("study", include_str!("../../docs/study.md")),
-    ("exporting", include_str!("../../docs/exporting.md")),
-    ("performance", include_str!("../../docs/performance.md")),
-    ("custom-models", include_str!("../../docs/custom-models.md")),
-    ("extending", include_str!("../../docs/extending.md")),
-    ("extending/reflection-model", include_str!("../../docs/extending/reflection-model.md")),
-    ("extending/light-type", include_str!("../../docs/extending/light-type.md")),
-    ("extending/object-type", include_str!("../../docs/extending/object-type.md")),
-    ("extending/shading-model", include_str!("../../docs/extending/shading-model.md")),
-    ("extending/parameters", include_str!("../../docs/extending/parameters.md")),
-    ("extending/scene-field", include_str!("../../docs/extending/scene-field.md")),
-    ("extending/panel", include_str!("../../docs/extending/panel.md")),
-    ("extending/systems", include_str!("../../docs/extending/systems.md")),
-    ("extending/scene-format", include_str!("../../docs/extending/scene-format.md")),
-    ("extending/metric", include_str!("../../docs/extending/metric.md")),
-    ("extending/command", include_str!("../../docs/extending/command.md")),
-    ("extending/channel", include_str!("../../docs/extending/channel.md")),
-    ("extending/plot-kind", include_str!("../../docs/extending/plot-kind.md")),
-    ("extending/handle", include_str!("../../docs/extending/handle.md")),
-    ("extending/layout", include_str!("../../docs/extending/layout.md")),
-    ("extending/another-crate", include_str!("../../docs/extending/another-crate.md")),
-    ("architecture", include_str!("../../docs/architecture.md")),
-];
+pub const PAGES: [(&str, &str); 33] = pages! {
+    "README" "window" "keys" "scenes" "reflection-models" "shading-and-lights" "comparing" "lessons"
+    "command-line" "worked-examples" "study" "exporting" "performance" "custom-models" "extending"
+    "extending/reflection-model" "extending/light-type" "extending/object-type" "extending/shading-model"
+    "extending/parameters" "extending/parameter-kind" "extending/scene-field" "extending/panel" "extending/systems"
+    "extending/scene-format" "extending/metric" "extending/command" "extending/channel" "extending/plot-kind"
+    "extending/handle" "extending/layout" "extending/another-crate" "architecture"
+};
 
 /// The complete page.
 #[must_use]
@@ -92,11 +70,8 @@ fn section(id: &str, text: &str) -> (String, String) {
                 let tag = Tag::Heading { level, id: attribute, classes: Vec::new(), attrs: Vec::new() };
                 events.push(Event::Start(tag));
                 // Links in a heading become plain text.
-                events.extend(
-                    within
-                        .into_iter()
-                        .filter(|e| !matches!(e, Event::Start(Tag::Link { .. }) | Event::End(TagEnd::Link))),
-                );
+                let link = |e: &Event| matches!(e, Event::Start(Tag::Link { .. }) | Event::End(TagEnd::Link));
+                events.extend(within.into_iter().filter(|event| !link(event)));
                 events.push(Event::End(TagEnd::Heading(level)));
             }
             Event::Start(Tag::Link { link_type, dest_url, title, id: label }) => {
@@ -163,19 +138,6 @@ fn numbered(known: &mut BTreeMap<String, usize>, slug: String) -> String {
     if *count == 1 { slug } else { format!("{slug}-{}", *count - 1) }
 }
 
-/// Targets of internal links that are missing from a page: empty if the page is complete.
-#[must_use]
-pub fn dead_links(page: &str) -> BTreeSet<String> {
-    let attributes = |name: &str| -> BTreeSet<String> {
-        page.split(&format!("{name}=\""))
-            .skip(1)
-            .filter_map(|rest| Some(rest.split_once('"')?.0.to_owned()))
-            .collect()
-    };
-    let ids: BTreeSet<_> = attributes("id").into_iter().map(|id| format!("#{id}")).collect();
-    attributes("href").into_iter().filter(|to| to.starts_with('#') && !ids.contains(to)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -207,6 +169,5 @@ mod tests {
             assert!(body.contains(part), "{part}: {body}");
         }
         assert!(!body.contains("<!--") && !body.contains("<img"));
-        assert_eq!(dead_links("<a href=\"#x\"> <b id=\"y\"> <a href=\"#y\">"), ["#x".to_owned()].into());
     }
 }

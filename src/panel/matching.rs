@@ -1,28 +1,19 @@
 //! Matching: the dialog that matches a view to view A, and the progress of the running match.
 
-use bevy_egui::egui::{self, Align, Button, Id, Layout, ScrollArea, Ui, WidgetInfo, WidgetType, vec2};
-
 use super::{
-    Panel, PanelContext, Place, draft, export, is_panel,
-    segmented::segmented,
-    state::{Action, MatchCommand, MatchDraft, Over, Session},
-    theme::{self, Palette},
+    draft, export,
+    prelude::*,
+    segmented,
+    state::{Effect, MatchCommand, MatchDraft},
 };
-use crate::{
-    matching::What,
-    registry::Registry,
-    scene::{
-        Scene,
-        variant::{LETTERS, MAX_VARIANTS},
-    },
-};
+use crate::matching::What;
 
 /// Height of the description of an option, in points: the same for all, so that nothing moves.
 const SENTENCE: f32 = 34.0;
 /// Maximum height of the parameter list, in points.
 const LIST: f32 = 240.0;
-/// Key of the flag that the dialog has received the focus.
-const FOCUSED: &str = "match draft focused";
+/// Id of the dialog.
+const DRAFT: &str = "match draft";
 
 /// Letter of a view.
 fn letter(view: usize) -> &'static str {
@@ -43,81 +34,56 @@ pub(super) fn entry(ui: &mut Ui, view: usize) -> bool {
 pub(super) struct Draft;
 
 impl Panel for Draft {
-    is_panel!("match draft", "Match to A", Place::Over(Over::Window));
-
-    fn is_open(&self, session: &Session) -> bool {
-        session.match_draft.is_some()
-    }
+    is_panel!(DRAFT, "Match to A", Place::Over(Over::Window), |session| session.match_draft.is_some());
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry) = (context.session(), context.registry());
-        let Some(draft) = &session.match_draft else {
-            ui.data_mut(|d| d.remove::<bool>(Id::new(FOCUSED)));
-            return;
-        };
+        let Some(draft) = &session.match_draft else { return };
         // The view may be gone, or show other models now.
         let now = crate::matching::parameters(&session.document, draft.view, registry);
         let is_right = now.iter().map(|(p, _)| p.name).eq(draft.parameters.iter().map(|(p, _)| p.name));
-        let mut actions = Vec::new();
         let title = format!("Match {} to A", letter(draft.view));
-        let ask = |ui: &mut Ui| actions = ask(ui, session, registry, draft);
-        if is_right && draft::window(ui, self.id(), title, context, ask) {
-            context.actions.extend(actions);
-        } else {
+        let (centre, asked) = (context.area().rect.center(), context.actions.len());
+        if !is_right || !draft::window(ui, DRAFT, title, centre, |ui| ask(ui, draft, context)) {
+            context.actions.truncate(asked);
             context.act(Action::Match(MatchCommand::Close));
         }
     }
 }
 
-fn ask(ui: &mut Ui, session: &Session, registry: &Registry, draft: &MatchDraft) -> Vec<Action> {
-    let palette = Palette::here(ui);
+fn ask(ui: &mut Ui, draft: &MatchDraft, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let mut next = draft.clone();
     ui.horizontal(|ui| {
         ui.label("Compare the");
-        let names = What::ALL.map(What::id);
-        let at = What::ALL.iter().position(|what| *what == draft.what);
-        let tip = |ui: &mut Ui, i: usize| {
+        let tip = |ui: &mut Ui, what: What| {
             ui.set_max_width(300.0);
-            ui.label(What::ALL[i].summary());
+            ui.label(what.summary());
         };
-        if let Some(i) = segmented(ui, "Compare", &names, at, tip) {
-            next.what = What::ALL[i];
-        }
+        next.what =
+            segmented::values(ui, "Compare", &What::ALL, draft.what, What::id, tip).unwrap_or(draft.what);
     });
     ui.add_space(2.0);
     let room = vec2(ui.available_width(), SENTENCE);
     ui.allocate_ui_with_layout(room, Layout::top_down(Align::Min), |ui| {
         ui.set_min_height(SENTENCE);
-        ui.add(egui::Label::new(theme::small(ui, draft.what.summary())).wrap());
+        theme::note(ui, draft.what.summary());
     });
     ui.add_space(8.0);
     ui.label(theme::strong(ui, format!("Free parameters of view {}", letter(draft.view))));
     let seen = session.document.seen(draft.view, registry).map(|(scene, _)| scene);
     parameters(ui, registry, seen.as_ref(), &mut next);
     ui.add_space(12.0);
-    let mut actions = Vec::new();
-    let ready = draft.free().next().is_some();
-    let line = vec2(ui.available_width(), 28.0);
-    ui.allocate_ui_with_layout(line, Layout::right_to_left(Align::Center), |ui| {
-        let mut button = Button::new(theme::strong(ui, "Match")).min_size(vec2(80.0, 28.0));
-        if ready {
-            button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
-        }
-        let start = ui.add_enabled(ready, button).on_disabled_hover_text("Free at least one parameter.");
-        if !ui.data_mut(|d| std::mem::replace(d.get_temp_mut_or_default(Id::new(FOCUSED)), true)) {
-            start.request_focus();
-        }
-        if start.clicked() {
-            actions.push(Action::Match(MatchCommand::Start));
-        }
-        if ui.add(Button::new("Cancel").min_size(vec2(80.0, 28.0))).clicked() {
-            actions.push(Action::Match(MatchCommand::Close));
-        }
-    });
-    if next != *draft {
-        actions.push(Action::Match(MatchCommand::Change(next)));
+    let [start, cancel] = draft::buttons(ui, "Match", draft.free().next().is_some());
+    let start = start.on_disabled_hover_text("Free at least one parameter.");
+    if draft::is_new(ui, DRAFT) {
+        start.request_focus();
     }
-    actions
+    context.on_click(&start, || Action::Match(MatchCommand::Start));
+    context.on_click(&cancel, || Action::Match(MatchCommand::Close));
+    if next != *draft {
+        context.act(Action::Match(MatchCommand::Change(next)));
+    }
 }
 
 /// The parameters of a view, each with its value and a box that frees it.
@@ -133,7 +99,7 @@ fn parameters(ui: &mut Ui, registry: &Registry, seen: Option<&Scene>, next: &mut
             ui.horizontal(|ui| {
                 let name = format!("Free: {}", parameter.label);
                 let check = ui.checkbox(free, parameter.label).on_hover_text(parameter.help);
-                check.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, *free, &name));
+                theme::says_chosen(&check, WidgetType::Checkbox, *free, name);
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     // The scroll bar floats over this margin.
                     ui.add_space(12.0);
@@ -145,10 +111,10 @@ fn parameters(ui: &mut Ui, registry: &Registry, seen: Option<&Scene>, next: &mut
 }
 
 /// The progress of the running match, with a button that stops it.
-pub(super) fn progress(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let Some(now) = &session.facts.matching else { return };
-    let name = format!("Matching {} to A", letter(now.view));
+pub(super) fn progress(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let Some(now) = &context.session().facts.matching else { return };
+    let name = format!("Matching {} to A", letter(now.label));
     if export::strip(ui, &name, (now.done, &now.step), "Stop the match; the view stays as it is") {
-        actions.push(Action::Match(MatchCommand::Cancel));
+        context.act(Action::Do(Effect::CancelMatch));
     }
 }

@@ -1,28 +1,31 @@
 //! Menus and drop-down lists by keyboard: arrows walk through them, open what hangs at an entry, and change menus.
 
 use bevy_egui::egui::{
-    self, Context, Event, Id, IntoAtoms, Key, Modifiers, Order, Popup, Response, Ui,
+    ComboBox, Event, IntoAtoms, Modifiers, Order,
     containers::menu::{MenuState, SubMenu},
 };
 
-use super::focus::{focused, stops};
+use super::{
+    focus::{focused, stops},
+    prelude::*,
+    theme::says,
+};
 
 /// A menu is shown within so many passes; one that has no entries never gets the focus.
 const PATIENCE: u64 = 4;
 
-/// The menu whose first entry gets the focus as soon as it is shown, and the last pass in which it can.
-fn entered() -> Id {
-    Id::new("menu entered by key")
-}
-
-/// The entry of a list that is chosen now, and the list: where arrow keys begin.
-fn current() -> Id {
-    Id::new("entry that is chosen")
+/// What is known of the menus.
+#[derive(Clone, Default)]
+struct Known {
+    /// The menu whose first entry gets the focus as soon as it is shown, and the last pass in which it can.
+    entered: Option<(Id, u64)>,
+    /// A list and its entry that is chosen now: where arrow keys begin.
+    current: Option<(Id, Id)>,
 }
 
 fn enter(ctx: &Context, menu: Id) {
     let last = ctx.cumulative_pass_nr() + PATIENCE;
-    ctx.data_mut(|d| d.insert_temp(entered(), (menu, last)));
+    kept::with(ctx, |known: &mut Known| known.entered = Some((menu, last)));
     ctx.request_repaint();
 }
 
@@ -84,13 +87,40 @@ pub(super) fn choice(ui: &mut Ui, chosen: bool, text: impl Into<String>, by_key:
     let text: String = text.into();
     let response = ui.selectable_label(chosen, text);
     if chosen {
-        ui.data_mut(|d| d.insert_temp(current(), (response.layer_id.id, response.id)));
+        let entry = Some((response.layer_id.id, response.id));
+        kept::with(ui.ctx(), |known: &mut Known| known.current = entry);
     }
     if response.clicked() {
         *by_key = response.has_focus();
         ui.close();
     }
     response
+}
+
+/// A drop-down list of options, each with a tooltip, as it is named for screen readers. Returns its button, and the index
+/// of the option that was clicked.
+pub(super) fn list(
+    ui: &mut Ui,
+    combo: ComboBox,
+    name: &str,
+    options: &[&str],
+    chosen: Option<usize>,
+    tip: impl Fn(&mut Ui, usize),
+) -> (Response, Option<usize>) {
+    let shown = chosen.map_or("–", |i| options[i]);
+    let (mut picked, mut by_key) = (None, false);
+    let menu = combo.selected_text(shown).show_ui(ui, |ui| {
+        for (i, option) in options.iter().enumerate() {
+            let response = choice(ui, chosen == Some(i), *option, &mut by_key);
+            picked = response.clicked().then_some(i).or(picked);
+            response.on_hover_ui(|ui| tip(ui, i));
+        }
+    });
+    says(&menu.response, WidgetType::ComboBox, format!("{name}: {shown}"));
+    if by_key {
+        menu.response.request_focus();
+    }
+    (menu.response, picked)
 }
 
 /// Steps that the arrow keys ask of a menu, downwards. The others open and close what hangs at an entry, and change
@@ -131,8 +161,8 @@ pub(super) fn walk(ctx: &Context) {
         return;
     }
     let mut step = steps(ctx);
-    let entering: Option<(Id, u64)> = ctx.data(|d| d.get_temp(entered()));
-    let entering = entering.filter(|(_, last)| ctx.cumulative_pass_nr() <= *last).map(|(menu, _)| menu);
+    let Known { entered, current } = kept::get(ctx);
+    let entering = entered.filter(|(_, last)| ctx.cumulative_pass_nr() <= *last).map(|(menu, _)| menu);
     if entering.is_some() {
         step = 1;
     }
@@ -148,9 +178,9 @@ pub(super) fn walk(ctx: &Context) {
         ctx.request_repaint();
         return;
     }
-    ctx.data_mut(|d| d.remove::<(Id, u64)>(entered()));
+    kept::with(ctx, |known: &mut Known| known.entered = None);
     let count = stops.len() as isize;
-    let chosen = ctx.data(|d| d.get_temp::<(Id, Id)>(current())).filter(|(list, _)| Some(*list) == menu);
+    let chosen = current.filter(|(list, _)| Some(*list) == menu);
     let at = now
         .map(|now| now.id)
         .or(chosen.map(|(_, entry)| entry))

@@ -1,13 +1,8 @@
 //! The strip at the bottom: messages, which stay until they are dismissed.
 
-use bevy_egui::egui::{self, Align, Layout, RichText, ScrollArea, Sense, Ui, vec2};
-
 use super::{
-    Panel, PanelContext, Place,
-    icon::{self, Icon},
-    is_panel,
-    state::{Action, MESSAGES_TAB, Note},
-    theme::Palette,
+    prelude::*,
+    state::{Effect, MESSAGES_TAB, Note},
 };
 
 /// The *Messages* panel.
@@ -18,7 +13,7 @@ impl Panel for Messages {
     is_panel!(MESSAGES_TAB, "Messages", Place::Bottom);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, actions) = (context.session(), &mut context.actions);
+        let session = context.session();
         if session.messages.is_empty() {
             ui.add_space(8.0);
             ui.weak("No messages. Problems with files, values and shaders appear here and stay until you dismiss them.");
@@ -27,41 +22,36 @@ impl Panel for Messages {
         ui.horizontal(|ui| {
             if ui.button("Copy all").clicked() {
                 let all = session.messages.iter().map(|m| format!("{}: {}", m.severity.name(), m.text));
-                actions.push(Action::Copy(all.collect::<Vec<_>>().join("\n")));
+                context.act(Action::Do(Effect::CopyText(all.collect::<Vec<_>>().join("\n"))));
             }
-            if ui.button("Dismiss all").clicked() {
-                actions.push(Action::DismissAll);
-            }
+            context.on_click(&ui.button("Dismiss all"), || Action::DismissAll);
         });
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for (i, message) in session.messages.iter().enumerate().rev() {
-                ui.push_id(i, |ui| ui.horizontal_top(|ui| row(ui, i, message, actions)));
+                ui.push_id(i, |ui| ui.horizontal_top(|ui| row(ui, i, message, context)));
             }
         });
     }
 }
 
 /// A message with what it offers, and buttons that copy and dismiss it.
-fn row(ui: &mut Ui, i: usize, message: &Note, actions: &mut Vec<Action>) {
+fn row(ui: &mut Ui, i: usize, message: &Note, context: &mut PanelContext<'_>) {
     ui.spacing_mut().item_spacing.x = 6.0;
-    let (rect, sign) = ui.allocate_exact_size(vec2(16.0, 20.0), Sense::hover());
-    icon::severity(ui.painter(), rect.center(), 6.0, message.severity, &Palette::here(ui));
-    sign.on_hover_text(message.severity.name());
+    icon::sign(ui, [16.0, 20.0], 6.0, message.severity).on_hover_text(message.severity.name());
     let width = ui.available_width() - 58.0;
     ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
         ui.set_width(width);
         ui.add_space(2.0);
-        ui.add(egui::Label::new(RichText::new(&message.text)).wrap().selectable(true));
+        ui.add(Label::new(RichText::new(&message.text)).wrap().selectable(true));
         if let Some((label, action)) = &message.offer
             && ui.button(*label).clicked()
         {
-            actions.push((**action).clone());
+            context.act((**action).clone());
         }
     });
-    if icon::button(ui, Icon::Copy, "Copy the message").clicked() {
-        actions.push(Action::Copy(message.text.clone()));
-    }
+    let button = icon::button(ui, Icon::Copy, "Copy the message");
+    context.on_click(&button, || Action::Do(Effect::CopyText(message.text.clone())));
     if icon::button(ui, Icon::Cross, "Dismiss the message").clicked() {
-        actions.push(Action::Dismiss(i));
+        context.act(Action::Dismiss(i));
     }
 }

@@ -28,13 +28,12 @@ use bevy_egui::{
 };
 
 use crate::registry::Registry;
-use context::is_panel;
 pub use context::{Panel, PanelApp, PanelContext, Panels};
 use cover::is_in_sight;
 pub use cover::is_over_picture;
 pub use dialogs::Dialogs;
 pub use frame::show;
-use state::{LabEffect, PictureArea, Session};
+use state::{Effect, PictureArea, Session};
 pub use state::{Over, PanelInfo, Place, follow};
 
 pub mod author;
@@ -62,6 +61,7 @@ pub mod help;
 pub mod history;
 pub mod icon;
 pub mod inspector;
+mod kept;
 pub mod keys;
 pub mod knob;
 mod labels;
@@ -78,6 +78,7 @@ pub mod model_override;
 mod notice;
 pub mod picture;
 pub mod plots;
+mod prelude;
 pub mod presentation;
 pub mod preview;
 pub mod progress;
@@ -133,7 +134,7 @@ impl Panels {
 }
 
 /// Adds the window to the app: the state, the panels, and the system that shows them. Requests for the rest of the app
-/// are written as [`LabEffect`] messages.
+/// are written as [`Effect`] messages.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PanelPlugin;
 
@@ -141,7 +142,7 @@ impl Plugin for PanelPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Session>().init_resource::<PictureArea>();
         app.world_mut().get_resource_or_insert_with(Panels::builtin);
-        app.add_message::<LabEffect>();
+        app.add_message::<Effect>();
         app.add_systems(EguiPrimaryContextPass, show_panels);
     }
 }
@@ -177,11 +178,8 @@ pub fn show_panels(
 ) {
     let Some(mut context) = contexts.iter_mut(world).next() else { return };
     let ctx = context.get_mut().clone();
-    let mut ui = Ui::new(
-        ctx.clone(),
-        Id::new("lab"),
-        UiBuilder::new().layer_id(LayerId::background()).max_rect(ctx.viewport_rect()),
-    );
+    let whole = UiBuilder::new().layer_id(LayerId::background()).max_rect(ctx.viewport_rect());
+    let mut ui = Ui::new(ctx.clone(), Id::new("lab"), whole);
     let mut area = world.resource::<PictureArea>().clone();
     // Taken out because panels read the world; `resource_scope` would count as a change in every frame.
     let (session, panels) = &mut *out;
@@ -197,7 +195,7 @@ pub fn show_panels(
     if changed {
         world.resource_mut::<Session>().set_changed();
     }
-    world.resource_mut::<Queue<LabEffect>>().write_batch(effects.into_iter().map(LabEffect));
+    world.resource_mut::<Queue<Effect>>().write_batch(effects);
     world.resource_mut::<PictureArea>().set_if_neq(area);
     for command in commands {
         command(world);

@@ -1,18 +1,8 @@
 //! The model and the shading of a single object in place of the scene's: a button beside the model's name, and a note
 //! at the top.
 
-use bevy_egui::egui::{Button, Popup, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType};
-
-use super::{
-    chooser, knob,
-    segmented::segmented,
-    state::Session,
-    theme::{self, Palette},
-};
-use crate::{
-    registry::Registry,
-    scene::{Field, Object},
-};
+use super::{chooser, knob, prelude::*, segmented::segmented};
+use crate::scene::{Field, Object};
 
 /// Width of the frame rate, in points.
 const RATE: f32 = 96.0;
@@ -39,16 +29,15 @@ pub(super) fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
     let galley = theme::elided(ui, shown, TextStyle::Small, palette.accent, room);
     let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
     ui.painter().galley(rect.min, galley, palette.accent);
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
-    response.on_hover_ui(|ui| {
-        ui.set_max_width(320.0);
+    theme::says(&response, WidgetType::Label, &text);
+    theme::tip(response, 320.0, |ui| {
         ui.label(format!(
             "{name} has its own {what}, so the choice here changes that of {name} alone. At the end of the \
              panel at the right it can be made to follow the scene again."
         ));
-        let model = registry.model(&session.scene().reflection_model).map_or("–", |m| m.declaration.name);
-        let shading =
-            registry.shading_model(&session.scene().shading_model).map_or("–", |m| m.declaration.name);
+        let scene = session.scene();
+        let model = registry.model(&scene.reflection_model).map_or("–", |m| m.declaration.name);
+        let shading = registry.shading_model(&scene.shading_model).map_or("–", |m| m.declaration.name);
         ui.label(theme::small(ui, format!("The scene: {model}, {shading} shading")));
     });
 }
@@ -64,22 +53,17 @@ pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Obj
         .collect::<Vec<_>>();
     let (word, colour) =
         if own.is_empty() { ("Override", palette.weak) } else { ("Overridden", palette.accent) };
-    let button = Button::new(RichText::new(word).small().color(colour))
-        .right_text(RichText::new("▾").small().color(colour));
-    let button = ui.add(button);
+    let text = |text: &str| RichText::new(text).small().color(colour);
+    let button = ui.add(Button::new(text(word)).right_text(text("▾")));
     let said = if own.is_empty() { "none".to_owned() } else { own.join(", ") };
-    button.widget_info(|| {
-        WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Override model and shading: {said}"))
-    });
+    theme::says(&button, WidgetType::ComboBox, format!("Override model and shading: {said}"));
     let id = ui.make_persistent_id("model override");
     let out = knob::drop_down(&button, id, knob::WIDE, |ui, list| {
         let scene_model = model_name(&session.scene().reflection_model, registry);
         let scene_shading = shading_name(&session.scene().shading_model, registry);
         ui.label(theme::strong(ui, "Override model and shading"));
-        ui.label(theme::small(
-            ui,
-            format!("Of this object alone; the scene has {scene_model} and {scene_shading} shading."),
-        ));
+        let text = format!("Of this object alone; the scene has {scene_model} and {scene_shading} shading.");
+        ui.label(theme::small(ui, text));
         ui.add_space(4.0);
         let shading = shading(ui, object, &scene_shading, registry);
         ui.add_space(6.0);
@@ -93,8 +77,7 @@ pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Obj
         });
         model.or(shading)
     });
-    button.on_hover_ui(|ui| {
-        ui.set_max_width(300.0);
+    theme::tip(button, 300.0, |ui| {
         ui.label(theme::strong(ui, "Override model and shading"));
         ui.label(if own.is_empty() {
             "Give this object a reflection model or a shading of its own, whatever the scene has.".to_owned()

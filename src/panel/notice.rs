@@ -2,13 +2,7 @@
 
 use std::{thread, time::Duration};
 
-use bevy_egui::egui::{Align2, Context, FontId, Id, Rect, Ui, vec2};
-
-use super::{
-    icon,
-    state::{Session, Severity},
-    theme::{self, Palette},
-};
+use super::prelude::*;
 
 /// Time for which a message is shown, in seconds; twice as long for problems.
 const MOMENT: f64 = 5.0;
@@ -30,8 +24,7 @@ struct Told {
 /// seconds.
 pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, session: &Session) {
     let (now, pass) = (ui.input(|i| i.time), ui.ctx().cumulative_pass_nr());
-    let id = Id::new("told in the presentation");
-    let mut told: Told = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    let mut told: Told = kept::get(ui.ctx());
     let added = session.messages.added();
     if told.pass + 2 <= pass {
         told = Told { added, ..Told::default() };
@@ -39,7 +32,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, session: &Session
         (told.added, told.since) = (added, Some(now));
     }
     told.pass = pass;
-    ui.data_mut(|d| d.insert_temp(id, told));
+    kept::set(ui.ctx(), told);
     let message = session.messages.last().zip(told.since);
     let message = message.filter(|(message, said)| now - said <= moment(Some(message.severity)));
     match message {
@@ -73,10 +66,8 @@ fn plate(ui: &Ui, rect: Rect, size: f32, text: &str, severity: Option<Severity>,
     let left = if severity.is_some() { 1.2 * size } else { 0.0 };
     let room = WIDTH * rect.width() - left;
     let galley = ui.painter().layout(text.to_owned(), FontId::proportional(size), palette.text, room);
-    let place = Align2::RIGHT_BOTTOM.anchor_size(
-        rect.right_bottom() - vec2(12.0, 12.0),
-        galley.size() + vec2(left, 0.0) + vec2(24.0, 12.0),
-    );
+    let extent = galley.size() + vec2(left, 0.0) + vec2(24.0, 12.0);
+    let place = Align2::RIGHT_BOTTOM.anchor_size(rect.right_bottom() - vec2(12.0, 12.0), extent);
     ui.painter().rect_filled(place, theme::UNIT, palette.panel);
     if let Some(severity) = severity {
         let line = galley.rows.first().map_or(size, |row| row.height());

@@ -1,24 +1,19 @@
 //! The overlays of the picture: badges, caption, axes, hints.
 
-use std::{collections::BTreeSet, sync::Arc};
+use std::collections::BTreeSet;
 
-use bevy_egui::egui::{
-    self, Align2, CursorIcon, FontFamily, FontId, Galley, Pos2, Rect, Sense, Stroke, TextStyle, Ui, Vec2,
-    WidgetInfo, WidgetType, pos2, vec2,
-};
-use glam::Vec3;
+use bevy_egui::egui::FontFamily;
 
 use super::{
-    Panel, PanelContext, Place,
     caption::{self, Lines, caption_text},
     channels, clipping,
     compare::{self, Arrangement},
     explain,
     focus::{self, Region},
-    handles, icon, is_panel, keys, labels, marks,
+    handles, keys, labels, marks,
+    prelude::*,
     presentation::{CAPTION, Footer, Stage},
-    state::{Action, Badge, Cell, CompareCommand, PictureArea, SHADER_TAB, Session, Severity, ViewChange},
-    theme::{self, Palette},
+    state::{Badge, Cell, SHADER_TAB},
     wires,
 };
 use crate::{
@@ -26,12 +21,7 @@ use crate::{
     library::status::{ShaderStatus, shown_instead},
     optics::TermSelection,
     reflection::Term,
-    registry::Registry,
-    scene::{
-        comparison::Edge,
-        variant::{LETTERS, MAX_VARIANTS},
-    },
-    text::plural,
+    scene::comparison::Edge,
 };
 
 /// Minimum width of a picture for axes, in points: in a narrower one they would hide more than they say.
@@ -54,15 +44,14 @@ impl Panel for Picture {
     is_panel!("picture", "Picture", Place::Picture);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry, before) = (context.session(), context.registry(), &context.area().written);
+        let (session, registry) = (context.session(), context.registry());
         let whole = ui.available_rect_before_wrap();
         focus::region(ui.ctx(), Region::Picture, whole);
         let presenting = session.view.presenting;
         let several = presenting && !session.document.variants.is_empty();
         let footer = several.then(|| Footer::of(ui, whole, session, registry));
         let arrangement = compare::arrange(session, whole, footer.as_ref().map_or(0.0, |f| f.height));
-        let (actions, places, written) = Default::default();
-        let mut over = Overlaid { session, registry, before, actions, places, written };
+        let mut over = Overlaid { context, places: Vec::new(), written: Vec::new() };
         let (rect, frame) = if arrangement.is_single() {
             let stage = presenting.then(|| Stage::of(ui, whole, session, registry));
             let frame = stage.as_ref().map_or(whole, |stage| stage.picture);
@@ -72,38 +61,33 @@ impl Panel for Picture {
             over.views(ui, &arrangement);
             (arrangement.picture, arrangement.picture)
         };
-        let (asked, places) = compare::show(ui, &arrangement, session, registry);
+        let Overlaid { mut places, written, .. } = over;
+        places.extend(compare::show(ui, &arrangement, context));
         if let Some(footer) = footer {
             footer.paint(ui, whole, session, registry);
         }
-        over.places.extend(places);
-        context.actions.extend(over.actions.into_iter().chain(asked));
-        let mut area = PictureArea { rect, frame, written: over.written, ..PictureArea::default() };
+        let mut area = PictureArea { rect, frame, written, ..PictureArea::default() };
         if !arrangement.is_single() {
             (area.cells, area.map) = (arrangement.cells, arrangement.map);
         }
-        context.picture = (area, over.places);
+        context.picture = (area, places);
     }
 }
 
 /// The overlays of a picture, as far as they are painted.
-struct Overlaid<'a> {
-    session: &'a Session,
-    registry: &'a Registry,
-    /// What was written over the picture in the previous frame: marks keep clear of it.
-    before: &'a [Rect],
-    /// The requested actions.
-    actions: Vec<Action>,
+struct Overlaid<'c, 'a> {
+    context: &'c mut PanelContext<'a>,
     /// Clickable rectangles, which cover the picture.
     places: Vec<Rect>,
     /// Rectangles of badges, caption and axes.
     written: Vec<Rect>,
 }
 
-impl Overlaid<'_> {
+impl Overlaid<'_, '_> {
     /// Paints the overlays into the picture, which extends over `whole`, and around it the texts of a presentation.
     fn single(&mut self, ui: &mut Ui, [whole, rect]: [Rect; 2], stage: Option<&Stage>) {
-        let (session, registry, view) = (self.session, self.registry, self.session.active());
+        let (session, registry) = (self.context.session(), self.context.registry());
+        let view = session.active();
         if rect.width() < 80.0 || rect.height() < 80.0 {
             return;
         }
@@ -135,9 +119,7 @@ impl Overlaid<'_> {
     /// Paints the legend of a view's debug channel from a corner on, if there is one. Returns the top of the free space
     /// below.
     fn channel(&mut self, ui: &mut Ui, rect: Rect, (side, top): (Align2, f32), view: usize) -> f32 {
-        let legend = channels::legend(ui, rect, (side, top), view, self.session, self.registry);
-        let Some((place, actions)) = legend else { return top };
-        self.actions.extend(actions);
+        let Some(place) = channels::legend(ui, rect, (side, top), view, self.context) else { return top };
         self.places.push(place);
         self.written.push(place);
         place.bottom() + 4.0
@@ -145,16 +127,18 @@ impl Overlaid<'_> {
 
     /// Paints the marks of a view, and over them the handles of the selection.
     fn marked(&mut self, ui: &Ui, rect: Rect) {
-        let session = self.session;
+        let (session, registry) = (self.context.session(), self.context.registry());
         if session.view.presenting {
             return;
         }
+        // Marks keep clear of what was written over the picture in the previous frame.
+        let before = &self.context.area().written;
         // Handles would cover the pixel that is explained or that a lesson refers to, and look like vectors.
         let covers = session.explains() || session.lesson.is_some();
         let paints = [marks::marks, handles::handles];
         for paint in paints.into_iter().take(if covers { 1 } else { 2 }) {
-            let (asked, places) = paint(ui, rect, self.before, session, self.registry);
-            self.actions.extend(asked);
+            let (asked, places) = paint(ui, rect, before, session, registry);
+            self.context.actions.extend(asked);
             self.places.extend(places);
         }
     }
@@ -162,7 +146,8 @@ impl Overlaid<'_> {
     /// Paints the overlays of a comparison: marks and handles into every view, and messages about the picture into the
     /// active one.
     fn views(&mut self, ui: &mut Ui, arrangement: &Arrangement) {
-        let (session, registry, cells) = (self.session, self.registry, &arrangement.cells);
+        let (session, registry) = (self.context.session(), self.context.registry());
+        let cells = &arrangement.cells;
         let layout = session.document.comparison.layout;
         // A difference has no wireframe.
         for cell in cells.iter().filter(|_| !layout.is_map()) {
@@ -206,7 +191,7 @@ impl Overlaid<'_> {
 
     /// Paints the legends and badges of views, below the message about a shader error in one of them.
     fn badges_in_views(&mut self, ui: &mut Ui, cells: &[Cell], stale: Option<(usize, Rect)>) {
-        let (session, registry) = (self.session, self.registry);
+        let (session, registry) = (self.context.session(), self.context.registry());
         let comparison = &session.document.comparison;
         let apart = comparison.layout.is_beside();
         let scale = theme::scale_here(ui);
@@ -242,20 +227,20 @@ impl Overlaid<'_> {
     /// Shows that the picture does not match the shaders, in a way that stands out on any picture: a frame, and a filled
     /// plate that opens the panel with the errors. Returns the rectangle of the plate.
     fn stale(&mut self, ui: &mut Ui, rect: Rect) -> Rect {
-        let shown = self.registry.model(self.session.model_shown()).map_or("", |m| m.declaration.name);
-        let Some((heading, lines)) = stale_words(&self.session.shaders, shown) else { return Rect::NOTHING };
+        let (session, registry) = (self.context.session(), self.context.registry());
+        let shown = registry.model(session.model_shown()).map_or("", |m| m.declaration.name);
+        let Some((heading, lines)) = stale_words(&session.shaders, shown) else { return Rect::NOTHING };
         let palette = Palette::here(ui);
         let painter = ui.painter_at(rect);
-        painter.rect_stroke(rect, 0.0, Stroke::new(3.0, palette.error), egui::StrokeKind::Inside);
+        painter.rect_stroke(rect, 0.0, Stroke::new(3.0, palette.error), StrokeKind::Inside);
         // Without them, there is room for the frame only.
         let Some(galleys) = that_fit(ui, rect, &heading, &lines) else { return Rect::NOTHING };
         let place = Rect::from_min_size(rect.min + vec2(10.0, 10.0), size_of(&galleys));
         let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
-        let said = format!("{heading}: {}", lines.join("; "));
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &said));
+        theme::says(&response, WidgetType::Button, format!("{heading}: {}", lines.join("; ")));
         // The rim stands out even where the picture has the colour of the plate.
         let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.panel };
-        painter.rect(place, 5.0, palette.error, Stroke::new(2.0, rim), egui::StrokeKind::Outside);
+        painter.rect(place, 5.0, palette.error, Stroke::new(2.0, rim), StrokeKind::Outside);
         let mut at = place.min + PADDING;
         let sign = pos2(at.x + 8.0, at.y + 0.5 * galleys[0].rows.first().map_or(0.0, |r| r.height()));
         icon::severity_in(&painter, sign, 8.0, Severity::Error, palette.panel);
@@ -265,7 +250,7 @@ impl Overlaid<'_> {
             painter.galley(at, galley, palette.panel);
             at.y += height + 2.0;
         }
-        let response = response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_ui(|ui| {
+        let response = response.on_hover_cursor(CursorIcon::PointingHand).on_hover_ui(|ui| {
             ui.set_max_width(340.0);
             ui.label(
                 "A shader has an error, so the picture shows these models as they were before the last change. Correct \
@@ -274,9 +259,7 @@ impl Overlaid<'_> {
             let key = keys::word(ui.ctx(), "panel.shader");
             ui.label(theme::small(ui, format!("Click, or key {key}: the line and the message")));
         });
-        if response.clicked() {
-            self.actions.push(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
-        }
+        self.context.on_click(&response, || Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
         self.places.push(place);
         self.written.push(place);
         place
@@ -286,7 +269,7 @@ impl Overlaid<'_> {
     fn badges(&mut self, ui: &mut Ui, rect: Rect, (side, top): (Align2, f32), all: Vec<Sign>) -> f32 {
         let palette = Palette::here(ui);
         let scale = theme::scale_here(ui);
-        let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
+        let font = theme::bold(ui);
         let mut at = pos2(side.pos_in_rect(&rect.shrink(8.0)).x, top);
         for (badge, actions) in all {
             let place = plate(ui, rect, side, at, &badge.text, font.clone(), 18.0 * scale);
@@ -295,16 +278,16 @@ impl Overlaid<'_> {
             let painter = ui.painter_at(rect);
             let here = !actions.is_empty() && (response.hovered() || response.has_focus());
             let rim = if here { palette.text } else { palette.severity(badge.severity) };
-            painter.rect_stroke(place, 4.0, Stroke::new(scale, rim), egui::StrokeKind::Inside);
+            painter.rect_stroke(place, 4.0, Stroke::new(scale, rim), StrokeKind::Inside);
             let sign = pos2(place.left() + 14.0 * scale, place.center().y);
             icon::severity(&painter, sign, 6.0 * scale, badge.severity, &palette);
             let role = if actions.is_empty() { WidgetType::Label } else { WidgetType::Button };
-            response.widget_info(|| WidgetInfo::labeled(role, true, &badge.text));
+            theme::says(&response, role, &badge.text);
             if !actions.is_empty() {
                 self.places.push(place);
             }
             if response.clicked() {
-                self.actions.extend(actions);
+                self.context.actions.extend(actions);
             }
             self.written.push(place);
             let pointer = if sense.senses_click() { CursorIcon::PointingHand } else { CursorIcon::Default };
@@ -458,12 +441,8 @@ fn badges_of(view: usize, picture: Rect, ui: &Ui, session: &Session, registry: &
 
 fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect {
     let palette = Palette::here(ui);
-    let term = match session.terms() {
-        TermSelection::All => None,
-        TermSelection::Ambient => Some(Term::Ambient),
-        TermSelection::Diffuse => Some(Term::Diffuse),
-        TermSelection::Specular => Some(Term::Specular),
-    };
+    let terms = [Term::Ambient, Term::Diffuse, Term::Specular];
+    let term = terms.into_iter().find(|term| term.alone() == Some(session.terms()));
     let padding = vec2(8.0, 4.0);
     let left = if term.is_some() { 14.0 } else { 0.0 };
     // The axes take the corner if there is room for them.

@@ -4,26 +4,21 @@
 use std::{
     collections::HashMap,
     path::PathBuf,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
     thread,
     time::{Duration, Instant},
 };
 
-use bevy_egui::egui::{
-    self, Align2, Color32, ColorImage, Context, Id, Rect, TextureHandle, TextureOptions, Ui, pos2,
-};
+use bevy_egui::egui::{ColorImage, TextureHandle, TextureOptions};
 
-use super::theme::Palette;
+use super::prelude::*;
 use crate::{
     caught::catch,
+    parameter::Outside,
     reference::{self, LightSamples},
-    registry::Registry,
     scene::{
-        Scene,
         examples::EXAMPLES,
         load::{self, Defaults},
     },
-    text::plural,
 };
 
 /// Width and height of a preview, in pixels.
@@ -77,71 +72,61 @@ struct Store {
     working: bool,
 }
 
-type Shared = Arc<Mutex<Store>>;
-
-fn lock(store: &Shared) -> MutexGuard<'_, Store> {
-    store.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn store(ctx: &Context) -> Shared {
-    ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("previews")).clone())
-}
-
-/// The current preview of a scene. The latest file requested is read first.
-pub fn of(ctx: &Context, source: &Source, registry: &Registry) -> Preview {
-    let shared = store(ctx);
-    let mut store = lock(&shared);
-    if let Some(known) = store.known.get(source) {
-        return known.clone();
-    }
-    if store.known.len() >= MOST {
-        store.known.clear();
-    }
-    store.known.insert(source.clone(), Preview::Waiting);
-    match source {
-        // All examples are requested at once, and read from the first on.
-        Source::Example(_) => store.queue.insert(0, source.clone()),
-        Source::File(_) => store.queue.push(source.clone()),
-    }
-    if !std::mem::replace(&mut store.working, true) {
-        let (ctx, registry, shared) = (ctx.clone(), registry.clone(), shared.clone());
-        thread::spawn(move || work(&ctx, &registry, &shared));
-    }
-    Preview::Waiting
+/// The current preview of a scene, which may name the files `outside` its folder. The latest file requested is read
+/// first.
+pub fn of(ctx: &Context, source: &Source, registry: &Registry, outside: &Outside) -> Preview {
+    kept::shared(ctx, |store: &mut Store| {
+        if let Some(known) = store.known.get(source) {
+            return known.clone();
+        }
+        if store.known.len() >= MOST {
+            store.known.clear();
+        }
+        store.known.insert(source.clone(), Preview::Waiting);
+        match source {
+            // All examples are requested at once, and read from the first on.
+            Source::Example(_) => store.queue.insert(0, source.clone()),
+            Source::File(_) => store.queue.push(source.clone()),
+        }
+        if !std::mem::replace(&mut store.working, true) {
+            let (ctx, registry, outside) = (ctx.clone(), registry.clone(), outside.clone());
+            thread::spawn(move || work(&ctx, &registry, &outside));
+        }
+        Preview::Waiting
+    })
 }
 
 /// Forgets the previews of files, which may have changed since the dialog was last open.
 pub fn forget_files(ctx: &Context) {
-    let shared = store(ctx);
-    let mut store = lock(&shared);
-    store.known.retain(|source, _| matches!(source, Source::Example(_)));
-    store.queue.retain(|source| matches!(source, Source::Example(_)));
+    kept::shared(ctx, |store: &mut Store| {
+        store.known.retain(|source, _| matches!(source, Source::Example(_)));
+        store.queue.retain(|source| matches!(source, Source::Example(_)));
+    });
 }
 
-fn work(ctx: &Context, registry: &Registry, shared: &Shared) {
-    loop {
-        let source = {
-            let mut store = lock(shared);
-            let Some(source) = store.queue.pop() else {
-                store.working = false;
-                return;
-            };
-            source
-        };
-        let made = catch(|| make(ctx, &source, registry))
+fn work(ctx: &Context, registry: &Registry, outside: &Outside) {
+    let next = |store: &mut Store| {
+        let source = store.queue.pop();
+        store.working = source.is_some();
+        source
+    };
+    while let Some(source) = kept::shared(ctx, next) {
+        let made = catch(|| make(ctx, &source, registry, outside))
             .unwrap_or_else(|_| Preview::Failed("This scene cannot be drawn.".into()));
-        lock(shared).known.insert(source, made);
+        kept::shared(ctx, |store: &mut Store| store.known.insert(source, made));
         ctx.request_repaint();
     }
 }
 
-fn make(ctx: &Context, source: &Source, registry: &Registry) -> Preview {
+fn make(ctx: &Context, source: &Source, registry: &Registry, outside: &Outside) -> Preview {
     let read = match source {
         Source::Example(i) => match EXAMPLES.get(*i) {
             Some(example) => example.scene(registry),
             None => return Preview::Failed("There is no such example.".into()),
         },
-        Source::File(path) => load::file(path, registry, Defaults::Use).map(|loaded| loaded.scene),
+        Source::File(path) => {
+            load::file(path, registry, Defaults::Use.allowing(outside)).map(|loaded| loaded.scene)
+        }
     };
     let scene = match read {
         Ok(scene) => scene,
@@ -191,6 +176,6 @@ pub fn paint(ui: &Ui, rect: Rect, preview: &Preview) {
         Preview::Failed(_) => "No picture",
     };
     painter.rect_filled(rect, 2.0, palette.field);
-    let font = egui::TextStyle::Small.resolve(ui.style());
+    let font = TextStyle::Small.resolve(ui.style());
     painter.text(rect.center(), Align2::CENTER_CENTER, words, font, palette.weak);
 }

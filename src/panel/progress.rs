@@ -1,41 +1,30 @@
 //! The file with the user's progress in lessons, in the folder of the user's data.
 
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
-use super::state::{Progress, Session, Severity};
-use crate::files::Shown as _;
+use super::{prelude::*, settings, state::Progress};
 use crate::{
-    files::{self, FileError, tidy},
+    files::{FileError, tidy},
     library::assets::data_folder,
     program,
 };
 
 /// File name.
 const FILE: &str = "lessons.json";
-/// Maximum size of the file. The JSON library limits the depth to 128 levels.
-const MAX_BYTES: u64 = 1 << 20;
 
 /// Loads the progress. A missing file means no progress; an unreadable file means no progress and a message.
 #[must_use]
 pub fn load(folder: &Path) -> (Progress, Option<String>) {
     let path = folder.join(FILE);
-    let unreadable = |why: &dyn std::fmt::Display| {
-        format!(
-            "Your progress in the lessons cannot be read from {} ({why}); all lessons start from the beginning.",
-            path.shown()
-        )
-    };
-    let bytes = match files::read(&path, MAX_BYTES) {
-        Ok(bytes) => bytes,
-        Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound => return (Progress::default(), None),
-        Err(e) => return (Progress::default(), Some(unreadable(&e))),
-    };
-    match serde_json::from_slice(&bytes) {
-        Ok(progress) => (progress, None),
-        Err(e) => (Progress::default(), Some(unreadable(&e))),
+    match settings::read(&path) {
+        Ok(found) => (found.unwrap_or_default(), None),
+        Err(why) => {
+            let path = path.shown();
+            let text = format!(
+                "Your progress in the lessons cannot be read from {path} ({why}); all lessons start from the beginning."
+            );
+            (Progress::default(), Some(text))
+        }
     }
 }
 
@@ -53,9 +42,7 @@ pub fn save(folder: &Path, progress: &Progress, name: &str) -> Result<(), String
         if let Some(past) = progress.of(name) {
             all.lessons.insert(name.to_owned(), past.clone());
         }
-        let mut text = serde_json::to_string_pretty(&all).map_err(io::Error::from)?;
-        text.push('\n');
-        files::write(&path, text.as_bytes())
+        settings::write(&path, &all)
     };
     write().map_err(|e| format!("Your progress in the lessons cannot be written to {}: {e}.", path.shown()))
 }

@@ -2,24 +2,18 @@
 
 use std::path;
 
-use bevy_egui::egui::{self, Align, Button, Id, Key, Layout, Modal, RichText, Ui, vec2};
+use bevy_egui::egui::Modal;
 
 use super::{
-    Panel, PanelContext, Place, is_panel,
-    state::{Action, Answer, Offer, Over, Question, Session},
-    theme::{self, Palette},
+    prelude::*,
+    state::{Answer, Offer, Question},
 };
-use crate::files::Shown as _;
 
 /// The open question. Enter gives the first answer, which loses nothing; Escape the last.
 pub(super) struct Asked;
 
 impl Panel for Asked {
-    is_panel!("question", "Question", Place::Over(Over::Question));
-
-    fn is_open(&self, session: &Session) -> bool {
-        session.questions.open.is_some()
-    }
+    is_panel!("question", "Question", Place::Over(Over::Question), |s| s.questions.open.is_some());
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let session = context.session();
@@ -27,17 +21,16 @@ impl Panel for Asked {
         let (title, text, details, answers) = words(session, question);
         let mut out = None;
         Modal::new(Id::new("question")).show(ui.ctx(), |ui: &mut Ui| {
-            let palette = Palette::here(ui);
             ui.set_width(420.0);
             egui::Frame::new().inner_margin(8.0).show(ui, |ui| {
                 ui.label(RichText::new(title).heading());
                 ui.add_space(8.0);
-                ui.add(egui::Label::new(text).wrap());
+                ui.add(Label::new(text).wrap());
                 for (what, more) in details {
                     ui.add_space(4.0);
                     ui.horizontal_wrapped(|ui| {
                         ui.label(theme::strong(ui, what));
-                        ui.label(RichText::new(more).color(palette.weak));
+                        ui.label(RichText::new(more).color(Palette::here(ui).weak));
                     });
                 }
                 ui.add_space(16.0);
@@ -51,14 +44,13 @@ impl Panel for Asked {
 
 /// The buttons for the answers, of which the first stands out. Returns the chosen one.
 fn answered(ui: &mut Ui, answers: &[(&str, Answer)]) -> Option<Answer> {
-    let palette = Palette::here(ui);
     let mut out = None;
     for (i, (label, answer)) in answers.iter().enumerate() {
-        let label = if i == 0 { theme::strong(ui, *label) } else { RichText::new(*label) };
-        let mut button = Button::new(label).min_size(vec2(80.0, 28.0));
-        if i == 0 {
-            button = button.fill(palette.chosen).stroke(egui::Stroke::new(1.0, palette.accent));
-        }
+        let size = vec2(80.0, 28.0);
+        let button = match i {
+            0 => theme::action_button(ui, label, true, size),
+            _ => Button::new(*label).min_size(size),
+        };
         let response = ui.add(button);
         // The keyboard focus starts here, not in the window below.
         if i == 0 && ui.memory(|m| m.focused()).is_none() {
@@ -75,7 +67,7 @@ type Words = (&'static str, String, Vec<(String, String)>, Vec<(&'static str, An
 fn words(session: &Session, question: &Question) -> Words {
     match question {
         Question::Recover(offer) => recovery(session, offer),
-        Question::Unsaved { .. } => (
+        Question::Unsaved(_) => (
             "Save the changes?",
             format!("“{}” has unsaved changes.", session.title()),
             Vec::new(),
@@ -90,13 +82,13 @@ fn words(session: &Session, question: &Question) -> Words {
                 vec![("Use the defaults", Answer::UseDefaults), ("Do not open", Answer::Cancel)],
             )
         }
-        Question::EmptyFile { path } => (
+        Question::EmptyFile(path) => (
             "Load the default scene?",
             format!("{} is empty.", path.shown()),
             Vec::new(),
             vec![("Load the default scene", Answer::UseDefaults), ("Cancel", Answer::Cancel)],
         ),
-        Question::ChangedOnDisk { path } => (
+        Question::ChangedOnDisk(path) => (
             "The file has changed",
             format!(
                 "{} was changed by another program since it was read. Replace it with your version, or reload it and lose your version?",
@@ -110,7 +102,7 @@ fn words(session: &Session, question: &Question) -> Words {
             ],
         ),
         Question::ReplaceExport { path, .. } => replace(path, "the export"),
-        Question::ReplaceScene { path } => replace(path, "a copy of this scene"),
+        Question::ReplaceScene(path) => replace(path, "a copy of this scene"),
         Question::ReplacePicture { path, .. } => replace(path, "the new picture"),
         Question::NewerOnDisk { path, .. } => (
             "Reload from disk?",

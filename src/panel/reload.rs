@@ -3,18 +3,14 @@
 //! The scene follows when another program edits the file. Changes made in the window are never replaced without a
 //! question, and an invalid file replaces nothing.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{
     files::{Files, OnDisk, Opened},
-    state::{Effect, MissingPart, Question, Session, Severity},
+    prelude::*,
+    state::{Effect, MissingPart, Question},
 };
-use crate::document::Selection;
-use crate::files::Shown as _;
-use crate::{
-    registry::Registry,
-    scene::{Scene, load::Stamp},
-};
+use crate::scene::load::Stamp;
 
 /// Checks whether the document's file differs from the last seen version, and reacts. With `discard`, loads the version
 /// on disk even at the cost of unsaved changes, which the user has agreed to.
@@ -33,8 +29,7 @@ pub fn check(
         session.disk.deferred = true;
         return Vec::new();
     }
-    let name = path.shown();
-    match files.check(&path, registry) {
+    match files.check(&path, registry, &session.outside) {
         OnDisk::Same => {
             session.disk.suspect = None;
             // A note about the reload stays until it is dismissed.
@@ -44,27 +39,29 @@ pub fn check(
             Vec::new()
         }
         OnDisk::Gone => doubt(session, files, path, None, Vec::new()),
-        OnDisk::Changed { version, content } => match content {
-            Opened::Scene(scene) => {
-                take(session, registry, files, path, version, (*scene, Vec::new()), discard)
-            }
-            Opened::Incomplete { scene, parts } if session.may_default(&parts) => {
-                let names = parts.into_iter().map(|p| p.name).collect();
-                take(session, registry, files, path, version, (*scene, names), discard)
-            }
-            Opened::Incomplete { parts, .. } => {
-                let lacks = |p: MissingPart| {
-                    format!("{name}: {} is missing (the default would be {})", p.name, p.default)
-                };
-                let problems = parts.into_iter().map(lacks).collect();
-                doubt(session, files, path, Some(version), problems)
-            }
-            Opened::Empty => {
-                let problems = vec![format!("{name} is empty.")];
-                doubt(session, files, path, Some(version), problems)
-            }
-            Opened::Failed(problems) => doubt(session, files, path, Some(version), problems),
+        OnDisk::Changed { version, content } => match found(session, &path, content) {
+            Ok(found) => take(session, registry, files, path, version, found, discard),
+            Err(problems) => doubt(session, files, path, Some(version), problems),
         },
+    }
+}
+
+/// The scene in a file that has changed, with the names of the parts that get defaults; or the problems.
+fn found(session: &Session, path: &Path, content: Opened) -> Result<(Scene, Vec<String>), Vec<String>> {
+    let name = path.shown();
+    match content {
+        Opened::Scene(scene) => Ok((*scene, Vec::new())),
+        Opened::Incomplete { scene, parts } if session.may_default(&parts) => {
+            Ok((*scene, parts.into_iter().map(|p| p.name).collect()))
+        }
+        Opened::Incomplete { parts, .. } => {
+            let lacks = |p: MissingPart| {
+                format!("{name}: {} is missing (the default would be {})", p.name, p.default)
+            };
+            Err(parts.into_iter().map(lacks).collect())
+        }
+        Opened::Empty => Err(vec![format!("{name} is empty.")]),
+        Opened::Failed(problems) => Err(problems),
     }
 }
 
@@ -121,35 +118,23 @@ fn doubt(
     session.disk_settled();
     session.disk.told = Some(version);
     session.disk.lost = true;
+    let name = path.shown();
     if version.is_none() {
         // Saving creates the file if it is still missing.
         files.expect(&path, None);
         let text = format!(
-            "{} was deleted or moved; this window still has the scene. Saving writes the file again.",
-            path.shown()
+            "{name} was deleted or moved; this window still has the scene. Saving writes the file again."
         );
-        session.set_disk_badge(
-            Severity::Warning,
-            &path,
-            "was deleted: only this window has the scene",
-            &text,
-        );
+        let what = "was deleted: only this window has the scene";
+        session.set_disk_badge(Severity::Warning, &path, what, &text);
         session.say_of_disk(Severity::Warning, text);
         return Vec::new();
     }
-    session.set_disk_badge(
-        Severity::Error,
-        &path,
-        "has errors: showing the last good version",
-        &problems.join("\n"),
-    );
-    session.say_of_disk(
-        Severity::Warning,
-        format!(
-            "{} can no longer be read as a scene; the scene that is shown is kept, but now unsaved.",
-            path.shown()
-        ),
-    );
+    let what = "has errors: showing the last good version";
+    session.set_disk_badge(Severity::Error, &path, what, &problems.join("\n"));
+    let text =
+        format!("{name} can no longer be read as a scene; the scene that is shown is kept, but now unsaved.");
+    session.say_of_disk(Severity::Warning, text);
     // The latest message is on top: the first problem.
     for problem in problems.iter().rev() {
         session.say_of_disk(Severity::Error, problem.clone());
@@ -167,19 +152,19 @@ impl Session {
         let before = self.document.revision();
         self.document.replace("Reload from disk", self.selection, scene, registry);
         self.document.mark_saved(registry);
-        let selection = match self.selection {
-            Selection::Light(i) => {
-                let last = self.document.lights.len().checked_sub(1);
-                let at = id.and_then(|id| self.document.light(id)).or(last.map(|last| i.min(last)));
-                at.map_or(Selection::Room, Selection::Light)
-            }
-            Selection::Object(i) => {
-                let last = self.document.objects.len().checked_sub(1);
-                let at = id.and_then(|id| self.document.object(id)).or(last.map(|last| i.min(last)));
-                at.map_or(Selection::Room, Selection::Object)
-            }
-            other => other,
+        let at = |known: Option<usize>, i: usize, count: usize| {
+            known.or(count.checked_sub(1).map(|last| i.min(last)))
         };
+        let (document, lights, objects) =
+            (&self.document, self.document.lights.len(), self.document.objects.len());
+        let selection = match self.selection {
+            Selection::Light(i) => at(id.and_then(|id| document.light(id)), i, lights).map(Selection::Light),
+            Selection::Object(i) => {
+                at(id.and_then(|id| document.object(id)), i, objects).map(Selection::Object)
+            }
+            other => Some(other),
+        };
+        let selection = selection.unwrap_or(Selection::Room);
         if selection != self.selection {
             self.renaming = None;
         }

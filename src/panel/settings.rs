@@ -5,9 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use serde::{Serialize, de::DeserializeOwned};
+
+use super::prelude::*;
 pub use super::state::Settings;
-use super::state::{Session, Severity};
-use crate::files::Shown as _;
 use crate::{
     files::{self, FileError, tidy},
     program,
@@ -19,7 +20,8 @@ pub const FOLDER_VARIABLE: &str = "LCM_CONFIG_DIR";
 const FILE: &str = "settings.json";
 /// The name of one that could not be read.
 const KEPT: &str = "settings.unreadable.json";
-/// Settings are not larger; long names of recent files included. The library that reads them goes 128 levels deep.
+/// Settings and progress are not larger; long names of recent files included. The library that reads them goes 128 levels
+/// deep.
 const MAX_BYTES: u64 = 1 << 20;
 
 /// The folder of the settings: given by [`FOLDER_VARIABLE`], otherwise the usual one of the operating system; `None` if
@@ -44,34 +46,48 @@ pub fn file() -> Option<PathBuf> {
 #[must_use]
 pub fn load(folder: &Path) -> (Settings, Option<String>) {
     let path = folder.join(FILE);
-    let unreadable = |why: &dyn std::fmt::Display| {
-        format!("The settings in {} cannot be read ({why}); defaults are used instead.", path.shown())
-    };
-    match read(&path) {
+    match read::<Settings>(&path) {
         Ok(found) => (found.unwrap_or_default().tidy(), None),
-        Err(Unreadable::File(e)) => (Settings::default(), Some(unreadable(&e))),
-        Err(Unreadable::Text(e, _)) => {
-            let kept =
-                format!("{} When settings are next written, the file is kept as {KEPT}.", unreadable(&e));
-            (Settings::default(), Some(kept))
+        Err(why) => {
+            let kept = match why {
+                Unreadable::File(_) => String::new(),
+                Unreadable::Text(..) => {
+                    format!(" When settings are next written, the file is kept as {KEPT}.")
+                }
+            };
+            let path = path.shown();
+            let text =
+                format!("The settings in {path} cannot be read ({why}); defaults are used instead.{kept}");
+            (Settings::default(), Some(text))
         }
     }
 }
 
-/// Why there are no settings in a file.
-enum Unreadable {
+/// Why nothing was read from a file.
+#[derive(thiserror::Error, Debug)]
+pub(super) enum Unreadable {
+    /// The file.
+    #[error("{0}")]
     File(FileError),
     /// The mistake, and the content of the file.
+    #[error("{0}")]
     Text(serde_json::Error, Vec<u8>),
 }
 
-/// The settings in a file, if there is one.
-fn read(path: &Path) -> Result<Option<Settings>, Unreadable> {
+/// The value in a file, if there is one.
+pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, Unreadable> {
     match files::read(path, MAX_BYTES) {
         Ok(bytes) => serde_json::from_slice(&bytes).map(Some).map_err(|e| Unreadable::Text(e, bytes)),
         Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(e) => Err(Unreadable::File(e)),
     }
+}
+
+/// Writes a value to a file, all or nothing.
+pub(super) fn write(path: &Path, value: &impl Serialize) -> Result<(), FileError> {
+    let mut text = serde_json::to_string_pretty(value).map_err(io::Error::from)?;
+    text.push('\n');
+    files::write(path, text.as_bytes())
 }
 
 /// Writes the settings to a folder, all or nothing. Keys of the user's own stay as they stand in the file, which was
@@ -84,14 +100,12 @@ pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
     let write = || -> Result<(), FileError> {
         std::fs::create_dir_all(folder)?;
         let mut settings = settings.clone();
-        match read(&path) {
+        match read::<Settings>(&path) {
             Ok(Some(found)) => settings.keys = found.keys,
             Err(Unreadable::Text(_, bytes)) => files::write(&folder.join(KEPT), &bytes)?,
             Ok(None) | Err(Unreadable::File(_)) => {}
         }
-        let mut text = serde_json::to_string_pretty(&settings).map_err(io::Error::from)?;
-        text.push('\n');
-        files::write(&path, text.as_bytes())
+        self::write(&path, &settings)
     };
     write().map_err(|e| format!("The settings cannot be written to {}: {e}.", path.shown()))
 }
@@ -112,7 +126,7 @@ pub fn load_settings(session: &mut Session) {
 /// Saves the settings for the next session, and reports if that fails.
 pub fn save_settings(session: &mut Session) {
     if let Some(folder) = folder()
-        && let Err(complaint) = save(&folder, &session.settings())
+        && let Err(complaint) = save(&folder, &session.settings)
     {
         session.say(Severity::Warning, complaint);
     }

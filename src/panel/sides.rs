@@ -1,22 +1,16 @@
 //! The panels beside and below the picture. At a side, guest panels are sections at the bottom, which fold, and scroll
 //! if they are long; the window's own panel takes the remaining space. At the bottom, panels are tabs.
 
-use bevy_egui::egui::{
-    self, Button, Frame, Id, Margin, Rect, Response, ScrollArea, Sense, Ui, WidgetInfo, WidgetType, vec2,
-};
+use bevy_egui::egui::{Frame, Margin};
 
 use super::{
-    context::{Panel, PanelContext, Panels},
+    context::{Listed, PanelContext, Panels},
     focus::{self, Region},
-    glyphs,
-    icon::{self, Icon},
-    keys,
+    glyphs, keys,
     lesson::point,
+    prelude::*,
     shares::shared,
-    state::{
-        Action, EXPLAIN_TAB, LessonCommand, OpenLesson, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, ViewChange,
-    },
-    theme::{self, Palette},
+    state::{EXPLAIN_TAB, OpenLesson, PLOTS_TAB, PanelInfo, SHADER_TAB},
     widths::zoom_percent,
 };
 
@@ -53,7 +47,7 @@ fn within(ui: &mut Ui, place: Place, panels: &mut Panels, context: &mut PanelCon
     let session = context.session();
     let mut lessons = Vec::new();
     let (guests, own): (Vec<_>, Vec<_>) = panels.at(place, session).partition(|(info, _)| info.guest);
-    let wanted = |ui: &Ui, info: &PanelInfo| match session.view.folds(info.id) {
+    let wanted = |ui: &Ui, info: &PanelInfo| match session.settings.folds(info.id) {
         true => TITLE,
         false => ui.data(|data| data.get_temp(Id::new(("section", info.id)))).unwrap_or(LEAST),
     };
@@ -87,7 +81,7 @@ fn within(ui: &mut Ui, place: Place, panels: &mut Panels, context: &mut PanelCon
 }
 
 /// The scene list below a lesson, unfolded by a click on its title.
-fn tree_below(ui: &mut Ui, open: &OpenLesson, panel: &mut dyn Panel, context: &mut PanelContext<'_>) {
+fn tree_below(ui: &mut Ui, open: &OpenLesson, panel: &mut Listed, context: &mut PanelContext<'_>) {
     let session = context.session();
     let unfolded = open.tree_open || point::at_part(session);
     let rows = 4 + session.document.lights.len() + session.document.objects.len();
@@ -98,43 +92,30 @@ fn tree_below(ui: &mut Ui, open: &OpenLesson, panel: &mut dyn Panel, context: &m
         ui.spacing_mut().item_spacing.y = 0.0;
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), TITLE), Sense::hover());
         let inside = rect.with_min_x(rect.left() + 8.0);
-        let response = ui.interact(inside, Id::new("title of the scene list"), Sense::click());
         let says = "Scene list";
-        response.widget_info(|| WidgetInfo::selected(WidgetType::CollapsingHeader, true, unfolded, says));
-        fold_title(ui, &response, says, unfolded);
+        let response = icon::fold(ui, inside, Id::new("title of the scene list"), says, unfolded);
+        fold_title(ui, inside, says);
         let way = if unfolded { "Fold the scene list" } else { "Unfold the scene list" };
-        if response.on_hover_text(way).clicked() {
-            context.act(Action::Lesson(LessonCommand::Tree(!unfolded)));
-        }
+        context.on_click(&response.on_hover_text(way), || Action::Lesson(LessonCommand::Tree(!unfolded)));
         if unfolded {
             panel.show(ui, context);
         }
     });
 }
 
-/// The arrow and the text of a title that folds the content below.
-fn fold_title(ui: &mut Ui, response: &Response, text: &str, unfolded: bool) {
-    let palette = Palette::here(ui);
-    let rect = response.rect;
-    let sign = Rect::from_center_size(rect.left_center() + vec2(8.0, 0.0), vec2(8.0, 8.0));
-    let openness = if unfolded { 1.0 } else { 0.0 };
-    egui::collapsing_header::paint_default_icon(ui, openness, &response.clone().with_new_rect(sign));
-    let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-    let galley = theme::elided(ui, text, font, palette.text, rect.width() - 16.0);
+/// The text of a title that folds the content below.
+fn fold_title(ui: &Ui, rect: Rect, text: &str) {
+    let colour = Palette::here(ui).text;
+    let galley = theme::elided(ui, text, theme::bold(ui), colour, rect.width() - 16.0);
     let at = rect.left_center() + vec2(16.0, -0.5 * galley.size().y);
-    ui.painter().galley(at, galley, palette.text);
+    ui.painter().galley(at, galley, colour);
 }
 
 /// A guest panel: the title, which folds it, and the content. Returns the total height if it is unfolded.
-fn section(
-    ui: &mut Ui,
-    info: PanelInfo,
-    panel: &mut dyn Panel,
-    context: &mut PanelContext<'_>,
-) -> Option<f32> {
+fn section(ui: &mut Ui, info: PanelInfo, panel: &mut Listed, context: &mut PanelContext<'_>) -> Option<f32> {
     ui.spacing_mut().item_spacing.y = 0.0;
     let top = ui.cursor().top();
-    let folded = context.session().view.folds(info.id);
+    let folded = context.session().settings.folds(info.id);
     title(ui, info, folded, context);
     if folded {
         return None;
@@ -160,23 +141,18 @@ fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.set_min_height(TITLE);
-        let inset = if info.place == Place::Left { 8.0 } else { 0.0 };
-        ui.add_space(inset);
+        ui.add_space(if info.place == Place::Left { 8.0 } else { 0.0 });
         let width = ui.available_width() - icon::SIZE - 8.0;
         let (rect, _) = ui.allocate_exact_size(vec2(width, TITLE), Sense::hover());
-        let response = ui.interact(rect, Id::new(("title of a section", info.id)), Sense::click());
-        response
-            .widget_info(|| WidgetInfo::selected(WidgetType::CollapsingHeader, true, !folded, info.title));
+        let id = Id::new(("title of a section", info.id));
+        let response = icon::fold(ui, rect, id, info.title, !folded);
         let text = glyphs::legible(ui, info.title, &format!("the panel “{}”", info.id));
-        fold_title(ui, &response, &text, !folded);
-        let way = if folded { "Unfold the panel" } else { "Fold the panel" };
-        if response.on_hover_text(way).clicked() {
-            context.act(Action::View(ViewChange::Fold(info.id.to_owned(), !folded)));
-        }
+        fold_title(ui, rect, &text);
+        let button = response.on_hover_text(if folded { "Unfold the panel" } else { "Fold the panel" });
+        context.on_click(&button, || Action::View(ViewChange::Fold(info.id.to_owned(), !folded)));
         let tip = format!("Hide “{text}”; View › Panels shows it again");
-        if icon::button(ui, Icon::Cross, &tip).clicked() {
-            context.act(Action::View(ViewChange::Panel(info.id.to_owned(), false)));
-        }
+        let button = icon::button(ui, Icon::Cross, &tip);
+        context.on_click(&button, || Action::View(ViewChange::Panel(info.id.to_owned(), false)));
     });
 }
 
@@ -207,9 +183,8 @@ pub(super) fn bottom(
         PLOTS_TAB => (3, PLOT_STRIP, 0.36 * whole.height()),
         _ => (0, 72.0, 0.0),
     };
-    let zoom = zoom_percent(ui.ctx());
-    let strip = egui::Panel::bottom(Id::new(("bottom", zoom, kind)))
-        .frame(theme::panel_frame(&Palette::of(&session.view), vec2(12.0, 4.0)))
+    let strip = egui::Panel::bottom(Id::new(("bottom", zoom_percent(ui.ctx()), kind)))
+        .frame(theme::panel_frame(&Palette::of(&session.settings), vec2(12.0, 4.0)))
         .resizable(true)
         .default_size(height.max(least).max(start).min(most))
         .size_range(least.min(most)..=most);
@@ -218,11 +193,10 @@ pub(super) fn bottom(
         let shown = all.iter().position(|(info, _)| info.id == session.view.bottom_tab).unwrap_or(0);
         ui.horizontal(|ui| {
             tabs(ui, &all, shown, context);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let says = keys::hint(ui.ctx(), "Fold the strip away", "panel.messages");
-                if icon::button(ui, Icon::Down, &says).clicked() {
-                    context.act(Action::View(ViewChange::Bottom(false)));
-                }
+                let button = icon::button(ui, Icon::Down, &says);
+                context.on_click(&button, || Action::View(ViewChange::Bottom(false)));
             });
         });
         match all.get_mut(shown) {
@@ -244,7 +218,7 @@ pub(super) fn bottom(
 }
 
 /// The tabs of panels, with their notes.
-fn tabs(ui: &mut Ui, all: &[(PanelInfo, &mut dyn Panel)], shown: usize, context: &mut PanelContext<'_>) {
+fn tabs(ui: &mut Ui, all: &[(PanelInfo, &mut Listed)], shown: usize, context: &mut PanelContext<'_>) {
     let palette = Palette::here(ui);
     for (i, (info, panel)) in all.iter().enumerate() {
         let title = glyphs::legible(ui, info.title, &format!("the panel “{}”", info.id));
@@ -260,8 +234,6 @@ fn tabs(ui: &mut Ui, all: &[(PanelInfo, &mut dyn Panel)], shown: usize, context:
         }
         let button = ui.add(button);
         point::tab(ui, info.id, button.rect);
-        if button.clicked() {
-            context.act(Action::View(ViewChange::BottomTab(info.id.to_owned())));
-        }
+        context.on_click(&button, || Action::View(ViewChange::BottomTab(info.id.to_owned())));
     }
 }

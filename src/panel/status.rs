@@ -1,20 +1,11 @@
 //! The status line at the bottom: messages, shader errors, the selection.
 
-use bevy_egui::egui::{
-    self, Align, Button, Layout, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
-};
-
 use super::{
-    Panel, PanelContext, Place, export,
-    icon::{self, Icon},
-    is_panel, keys, matching,
-    state::{Action, Converging, MESSAGES_TAB, SHADER_TAB, Session, Severity, ViewChange},
-    theme::{self, Palette},
+    export, keys, matching,
+    prelude::*,
+    state::{Converging, MESSAGES_TAB, SHADER_TAB},
 };
-use crate::{
-    scene::variant::LETTERS,
-    text::{per_cent, plural},
-};
+use crate::text::per_cent;
 
 /// The status line.
 #[derive(Clone, Copy, Debug)]
@@ -24,44 +15,36 @@ impl Panel for StatusLine {
     is_panel!("status", "Status line", Place::Status);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
-        let palette = Palette::here(ui);
+        let session = context.session();
         ui.horizontal(|ui| {
             ui.set_min_height(20.0);
             let count = session.messages.len();
-            let text = theme::small(
-                ui,
-                if count == 0 { "No messages".to_owned() } else { plural(count, "message") },
-            );
-            let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
+            let text = if count == 0 { "No messages".to_owned() } else { plural(count, "message") };
+            let text = theme::small(ui, text);
             match session.messages.worst() {
-                Some(worst) => icon::severity(ui.painter(), rect.center(), 5.5, worst, &palette),
-                None => icon::paint(
-                    ui.painter(),
-                    rect.shrink(3.0),
-                    if session.view.bottom_open { Icon::Down } else { Icon::Up },
-                    palette.weak,
-                ),
+                Some(worst) => _ = icon::sign(ui, [14.0, 16.0], 5.5, worst),
+                None => {
+                    let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
+                    let icon = if session.view.bottom_open { Icon::Down } else { Icon::Up };
+                    icon::paint(ui.painter(), rect.shrink(3.0), icon, Palette::here(ui).weak);
+                }
             }
             let says = if session.view.bottom_open { "Fold the strip away" } else { "Show messages" };
             let says = keys::hint(ui.ctx(), says, "panel.messages");
             let button = ui.add(Button::new(text).frame_when_inactive(false).small());
-            button
-                .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("Messages: {count}")));
-            if button.on_hover_text(says).clicked() {
-                actions.push(Action::View(session.strip_change()));
-            }
-            shader_errors(ui, session, actions);
-            export::progress(ui, session, actions);
-            matching::progress(ui, session, actions);
+            theme::says(&button, WidgetType::Button, format!("Messages: {count}"));
+            context.on_click(&button.on_hover_text(says), || Action::View(session.strip_change()));
+            shader_errors(ui, context);
+            export::progress(ui, context);
+            matching::progress(ui, context);
             samples(ui, session);
-            let mut selected = format!("{} selected", session.name_of(session.selection, registry));
+            let mut selected = format!("{} selected", session.name_of(session.selection, context.registry()));
             if let Some(key) = keys::of(ui.ctx(), "keys") {
                 selected.push_str(&format!(" · {key} keys"));
             }
-            latest(ui, session, theme::small_width(ui, &selected), actions);
+            latest(ui, theme::small_width(ui, &selected), context);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.add(egui::Label::new(theme::small(ui, selected)).truncate());
+                ui.add(Label::new(theme::small(ui, selected)).truncate());
             });
         });
     }
@@ -86,7 +69,7 @@ fn samples_in_words(converged: &[Converging]) -> Option<(String, Vec<String>)> {
 /// Shows the convergence of pictures with light with extent.
 fn samples(ui: &mut Ui, session: &Session) {
     let Some((words, lines)) = samples_in_words(&session.facts.converged) else { return };
-    ui.add(egui::Label::new(theme::small(ui, words))).on_hover_ui(|ui| {
+    ui.add(Label::new(theme::small(ui, words))).on_hover_ui(|ui| {
         ui.set_max_width(320.0);
         ui.label(
             "Light with extent is added up from samples, a few in each frame. The picture is their mean, and nothing more \
@@ -106,53 +89,50 @@ fn samples(ui: &mut Ui, session: &Session) {
 const NEWS: f32 = 0.75;
 
 /// The latest message, until something changes. The text at the right needs `beside` points.
-fn latest(ui: &mut Ui, session: &Session, beside: f32, actions: &mut Vec<Action>) {
+fn latest(ui: &mut Ui, beside: f32, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let Some(message) = session.messages.last() else { return };
     let listed = session.view.bottom_open && session.view.bottom_tab == MESSAGES_TAB;
     if listed || !session.has_news() {
         return;
     }
-    let palette = Palette::here(ui);
     // The icon in front of the count shows the worst severity.
     if session.messages.worst() != Some(message.severity) {
-        let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
-        icon::severity(ui.painter(), rect.center(), 5.5, message.severity, &palette);
+        icon::sign(ui, [14.0, 16.0], 5.5, message.severity);
     }
     let (all, gap) = (ui.available_width(), 2.0 * ui.spacing().item_spacing.x);
     let button = message.offer.as_ref().map_or(0.0, |(text, _)| theme::small_width(ui, text) + 2.0 * gap);
     let room = (all - beside - gap).max(NEWS * all) - button;
-    let colour = palette.text;
+    let colour = Palette::here(ui).text;
     let galley = theme::elided(ui, &message.text, TextStyle::Small, colour, room);
-    let label = ui.add(egui::Label::new(galley));
+    let label = ui.add(Label::new(galley));
     label.on_hover_text(&message.text);
     if let Some((text, action)) = &message.offer
         && ui.add(Button::new(theme::small(ui, *text).color(colour)).small()).clicked()
     {
-        actions.push((**action).clone());
+        context.act((**action).clone());
     }
 }
 
 /// The number of shader errors, and whether they affect the picture; a click opens the shader panel.
-fn shader_errors(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn shader_errors(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let count = session.shaders.troubles.len();
     if count == 0 {
         return;
     }
-    let palette = Palette::here(ui);
     let stale = if session.shaders.stale().is_empty() {
         "nothing in the picture depends on it"
     } else {
         "the picture shows the last good version"
     };
-    let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
-    icon::severity(ui.painter(), rect.center(), 5.5, Severity::Error, &palette);
+    icon::sign(ui, [14.0, 16.0], 5.5, Severity::Error);
     let text = format!("{}: {stale}", plural(count, "shader error"));
-    let text = RichText::new(text).small().color(palette.error);
+    let text = RichText::new(text).small().color(Palette::here(ui).error);
     let button = ui.add(Button::new(text).frame_when_inactive(false).small());
     let tip = keys::hint(ui.ctx(), "Show where the errors are", "panel.shader");
-    if button.on_hover_text(tip).clicked() {
-        actions.push(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
-    }
+    let button = button.on_hover_text(tip);
+    context.on_click(&button, || Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
 }
 
 #[cfg(test)]

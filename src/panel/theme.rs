@@ -7,10 +7,12 @@
 use std::sync::Arc;
 
 use bevy_egui::egui::{
-    self, Color32, Context, CornerRadius, FontId, Margin, Stroke, TextStyle, Vec2, style::HandleShape, vec2,
+    self, Align, Button, Color32, Context, CornerRadius, FontId, FontSelection, Frame, Galley, Id, Label,
+    LayerId, Layout, Margin, Rect, Response, RichText, Stroke, Style, TextStyle, Ui, UiBuilder, Vec2,
+    WidgetInfo, WidgetType, Window, style::HandleShape, vec2,
 };
 
-use super::state::{Severity, ThemeChoice, View};
+use super::state::{Settings, Severity, ThemeChoice};
 pub use crate::lettering::{maths, maths_italic, semibold};
 use crate::{lettering, reflection::Term};
 
@@ -87,10 +89,10 @@ pub const LIGHT: Palette = Palette {
 };
 
 impl Palette {
-    /// The palette that the view settings select.
+    /// The palette that the settings select.
     #[must_use]
-    pub fn of(view: &View) -> Self {
-        match view.theme {
+    pub fn of(settings: &Settings) -> Self {
+        match settings.theme {
             ThemeChoice::Dark => DARK,
             ThemeChoice::Light => LIGHT,
         }
@@ -98,7 +100,7 @@ impl Palette {
 
     /// The current palette of a widget.
     #[must_use]
-    pub fn here(ui: &egui::Ui) -> Self {
+    pub fn here(ui: &Ui) -> Self {
         if ui.visuals().dark_mode { DARK } else { LIGHT }
     }
 
@@ -140,7 +142,7 @@ impl Palette {
 
 /// The current scale factor of text.
 #[must_use]
-pub fn scale_here(ui: &egui::Ui) -> f32 {
+pub fn scale_here(ui: &Ui) -> f32 {
     ui.style().text_styles.get(&TextStyle::Body).map_or(1.0, |f| f.size / BODY)
 }
 
@@ -152,48 +154,82 @@ const HEADING: f32 = 16.0;
 
 /// Secondary text in the smallest size.
 #[must_use]
-pub fn small(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
-    egui::RichText::new(text).small().color(Palette::here(ui).weak)
+pub fn small(ui: &Ui, text: impl Into<String>) -> RichText {
+    RichText::new(text).small().color(Palette::here(ui).weak)
 }
 
 /// Width of a text in the smallest size.
 #[must_use]
-pub fn small_width(ui: &egui::Ui, text: &str) -> f32 {
+pub fn small_width(ui: &Ui, text: &str) -> f32 {
     let font = TextStyle::Small.resolve(ui.style());
     ui.painter().layout_no_wrap(text.to_owned(), font, Color32::WHITE).size().x
 }
 
 /// Text in bold, for headings of groups.
 #[must_use]
-pub fn strong(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
-    egui::RichText::new(text).family(semibold()).color(Palette::here(ui).text)
+pub fn strong(ui: &Ui, text: impl Into<String>) -> RichText {
+    RichText::new(text).family(semibold()).color(Palette::here(ui).text)
+}
+
+/// The font of text in bold, in the size of the panel's text.
+pub(super) fn bold(ui: &Ui) -> FontId {
+    FontId::new(TextStyle::Body.resolve(ui.style()).size, semibold())
+}
+
+/// A remark in the smallest size, in as many lines as it needs.
+pub(super) fn note(ui: &mut Ui, text: impl Into<String>) -> Response {
+    ui.add(Label::new(small(ui, text)).wrap())
+}
+
+/// Shows a window while it is open. Returns false once the user closes it, by the button in its corner or by Escape.
+pub(super) fn window(
+    ui: &Ui,
+    id: &str,
+    title: impl Into<String>,
+    open: bool,
+    size: impl FnOnce(Window<'static>) -> Window<'static>,
+    content: impl FnOnce(&mut Ui),
+) -> bool {
+    let mut shown = open;
+    let window = Window::new(RichText::new(title).heading()).id(Id::new(id));
+    size(window.collapsible(false).resizable(false)).open(&mut shown).show(ui.ctx(), content);
+    shown && !ui.input(|i| i.key_pressed(egui::Key::Escape))
+}
+
+/// Shows a tooltip of at most this width, in points.
+pub(super) fn tip(widget: Response, width: f32, add: impl FnOnce(&mut Ui)) -> Response {
+    widget.on_hover_ui(|ui| {
+        ui.set_max_width(width);
+        add(ui);
+    })
+}
+
+/// Shows widgets in a column that keeps its width, whatever it contains.
+pub(super) fn column(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
+    let layout = Layout::top_down(Align::Min);
+    ui.scope_builder(UiBuilder::new().max_rect(rect).layout(layout), add);
+}
+
+/// A button that stands out if it does what the user most likely wants.
+pub(super) fn action_button(ui: &Ui, label: &str, stands_out: bool, size: Vec2) -> Button<'static> {
+    let (button, palette) = (Button::new(strong(ui, label)).min_size(size), Palette::here(ui));
+    let stroke = Stroke::new(1.0, palette.accent);
+    if stands_out { button.fill(palette.chosen).stroke(stroke) } else { button }
 }
 
 /// A line of text, truncated with … if it is wider than `width`.
 #[must_use]
-pub fn elided(
-    ui: &egui::Ui,
-    text: &str,
-    font: impl Into<egui::FontSelection>,
-    colour: Color32,
-    width: f32,
-) -> Arc<egui::Galley> {
+pub fn elided(ui: &Ui, text: &str, font: impl Into<FontSelection>, ink: Color32, width: f32) -> Arc<Galley> {
     let font = font.into().resolve(ui.style());
-    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, colour);
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, ink);
     job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(0.0));
     ui.painter().layout_job(job)
 }
 
 /// A line of text, with … in the middle if it is wider than `width`: names often differ only at their ends.
 #[must_use]
-pub fn elided_within(
-    ui: &egui::Ui,
-    text: &str,
-    font: &FontId,
-    colour: Color32,
-    width: f32,
-) -> (Arc<egui::Galley>, bool) {
-    let line = |text: String| ui.painter().layout_no_wrap(text, font.clone(), colour);
+pub fn elided_within(ui: &Ui, text: &str, font: &FontId, ink: Color32, width: f32) -> (Arc<Galley>, bool) {
+    let line = |text: String| ui.painter().layout_no_wrap(text, font.clone(), ink);
     let whole = line(text.to_owned());
     if whole.size().x <= width {
         return (whole, false);
@@ -214,7 +250,7 @@ pub fn elided_within(
 }
 
 /// Selects all text of a field, for typing to replace it.
-pub(super) fn select_all(ui: &egui::Ui, id: egui::Id, text: &str) {
+pub(super) fn select_all(ui: &Ui, id: Id, text: &str) {
     use egui::text::{CCursor, CCursorRange};
     if let Some(mut state) = egui::text_edit::TextEditState::load(ui.ctx(), id) {
         let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
@@ -223,24 +259,39 @@ pub(super) fn select_all(ui: &egui::Ui, id: egui::Id, text: &str) {
     }
 }
 
+/// Names a widget for screen readers.
+pub(super) fn says(widget: &Response, role: WidgetType, name: impl ToString) {
+    widget.widget_info(|| WidgetInfo::labeled(role, true, name.to_string()));
+}
+
+/// Names a widget for screen readers, and says if it is chosen or unfolded.
+pub(super) fn says_chosen(widget: &Response, role: WidgetType, chosen: bool, name: impl ToString) {
+    widget.widget_info(|| WidgetInfo::selected(role, true, chosen, name.to_string()));
+}
+
+/// True if a widget is under the pointer or has the focus.
+pub(super) fn is_hot(widget: &Response) -> bool {
+    widget.hovered() || widget.has_focus()
+}
+
 /// Names a text field for screen readers, with the text before, the text now, and the hint in the empty field.
-pub(super) fn names_field(field: &egui::Response, name: &str, [before, now, hint]: [&str; 3]) {
+pub(super) fn names_field(field: &Response, name: &str, [before, now, hint]: [&str; 3]) {
     field.widget_info(|| {
-        let mut info = egui::WidgetInfo::text_edit(field.enabled(), before, now, hint);
+        let mut info = WidgetInfo::text_edit(field.enabled(), before, now, hint);
         info.label = Some(name.to_owned());
         info
     });
 }
 
 /// Layers of the tooltips shown in this frame so far.
-pub(super) fn tooltips(ctx: &Context) -> Vec<egui::LayerId> {
+pub(super) fn tooltips(ctx: &Context) -> Vec<LayerId> {
     let layers: Vec<_> = ctx.memory(|m| m.areas().visible_layer_ids().into_iter().collect());
-    let shown = |layer: &egui::LayerId| ctx.graphics(|g| g.get(*layer).is_some_and(|list| !list.is_empty()));
+    let shown = |layer: &LayerId| ctx.graphics(|g| g.get(*layer).is_some_and(|list| !list.is_empty()));
     layers.into_iter().filter(|layer| layer.order == egui::Order::Tooltip).filter(shown).collect()
 }
 
 /// Hides the tooltips of this frame, except for the given ones.
-pub(super) fn hide_tooltips(ctx: &Context, but: &[egui::LayerId]) {
+pub(super) fn hide_tooltips(ctx: &Context, but: &[LayerId]) {
     let hidden = tooltips(ctx).into_iter().filter(|layer| !but.contains(layer));
     ctx.graphics_mut(|graphics| {
         for layer in hidden {
@@ -259,14 +310,14 @@ pub fn swatch(reflectance: glam::Vec3) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// Applies the view settings to egui. Cheap if nothing has changed. Returns false until the fonts are available, which
+/// Applies the settings to egui. Cheap if nothing has changed. Returns false until the fonts are available, which
 /// is in the next pass: until then, nothing can be shown.
 #[must_use]
-pub fn apply(ctx: &Context, view: &View) -> bool {
-    let id = egui::Id::new("lab theme");
+pub fn apply(ctx: &Context, settings: &Settings) -> bool {
+    let id = Id::new("lab theme");
     // Takes effect in the next pass; setting the same factor again does nothing.
-    ctx.set_zoom_factor(f32::from(view.scale) / 100.0);
-    let dark = view.theme == ThemeChoice::Dark;
+    ctx.set_zoom_factor(f32::from(settings.scale) / 100.0);
+    let dark = settings.theme == ThemeChoice::Dark;
     let before: Option<bool> = ctx.data(|d| d.get_temp(id));
     if before == Some(dark) {
         return true;
@@ -279,14 +330,14 @@ pub fn apply(ctx: &Context, view: &View) -> bool {
     ctx.data_mut(|d| d.insert_temp(id, dark));
     let theme = if dark { egui::Theme::Dark } else { egui::Theme::Light };
     ctx.set_theme(theme);
-    ctx.set_style_of(theme, style(&Palette::of(view)));
+    ctx.set_style_of(theme, style(&Palette::of(settings)));
     if before.is_none() {
         ctx.request_repaint();
     }
     before.is_some()
 }
 
-fn style(p: &Palette) -> egui::Style {
+fn style(p: &Palette) -> Style {
     let text_styles = [
         (TextStyle::Small, FontId::proportional(SMALL)),
         (TextStyle::Body, FontId::proportional(BODY)),
@@ -295,7 +346,7 @@ fn style(p: &Palette) -> egui::Style {
         (TextStyle::Heading, FontId::new(HEADING, semibold())),
     ]
     .into();
-    let mut style = egui::Style { text_styles, ..egui::Style::default() };
+    let mut style = Style { text_styles, ..Style::default() };
     spacing(&mut style.spacing);
     style.interaction.tooltip_delay = 0.35;
     style.interaction.selectable_labels = false;
@@ -352,32 +403,25 @@ fn spacing(s: &mut egui::style::Spacing) {
 
 /// The states of a widget.
 fn widgets(w: &mut egui::style::Widgets, p: &Palette) {
-    let radius = CornerRadius::same(4);
-    for widget in [&mut w.noninteractive, &mut w.inactive, &mut w.hovered, &mut w.active, &mut w.open] {
-        widget.corner_radius = radius;
+    let looks = [
+        (&mut w.noninteractive, p.panel, 1.0, p.line),
+        (&mut w.inactive, p.raised, 1.0, p.line),
+        (&mut w.hovered, p.hovered, 1.0, p.weak),
+        (&mut w.active, p.hovered, 1.5, p.accent),
+        (&mut w.open, p.hovered, 1.0, p.accent),
+    ];
+    for (widget, fill, width, edge) in looks {
+        (widget.bg_fill, widget.weak_bg_fill) = (fill, fill);
+        widget.bg_stroke = Stroke::new(width, edge);
+        widget.corner_radius = CornerRadius::same(4);
         widget.expansion = 0.0;
         widget.fg_stroke = Stroke::new(1.0, p.text);
     }
-    w.noninteractive.bg_fill = p.panel;
-    w.noninteractive.weak_bg_fill = p.panel;
-    w.noninteractive.bg_stroke = Stroke::new(1.0, p.line);
-    w.inactive.bg_fill = p.raised;
-    w.inactive.weak_bg_fill = p.raised;
-    w.inactive.bg_stroke = Stroke::new(1.0, p.line);
-    w.hovered.bg_fill = p.hovered;
-    w.hovered.weak_bg_fill = p.hovered;
-    w.hovered.bg_stroke = Stroke::new(1.0, p.weak);
-    w.active.bg_fill = p.hovered;
-    w.active.weak_bg_fill = p.hovered;
-    w.active.bg_stroke = Stroke::new(1.5, p.accent);
-    w.open.bg_fill = p.hovered;
-    w.open.weak_bg_fill = p.hovered;
-    w.open.bg_stroke = Stroke::new(1.0, p.accent);
 }
 
 /// The margins inside a panel.
-pub fn panel_frame(p: &Palette, margin: Vec2) -> egui::Frame {
-    egui::Frame::new().fill(p.panel).inner_margin(Margin::symmetric(margin.x as i8, margin.y as i8))
+pub fn panel_frame(p: &Palette, margin: Vec2) -> Frame {
+    Frame::new().fill(p.panel).inner_margin(Margin::symmetric(margin.x as i8, margin.y as i8))
 }
 
 #[cfg(test)]

@@ -1,22 +1,16 @@
 //! The bar at the top: document, menus, reflection, shading.
 
-use bevy_egui::egui::{self, Align, Layout, Ui, WidgetInfo, WidgetType, vec2};
-
 use super::{
-    Panel, PanelContext, Place, chooser,
+    chooser,
     command::{self, Menu, show},
     explain::has_sides,
-    is_panel, keys,
+    keys,
     lesson::{list, point},
     maths, menu, model_override,
+    prelude::*,
     segmented::{segment_width, segmented},
-    state::{Action, Session},
-    theme::{self, Palette},
     welcome,
 };
-use crate::document::Selection;
-use crate::files::Shown as _;
-use crate::registry::Registry;
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -26,13 +20,13 @@ impl Panel for TopBar {
     is_panel!("top", "Top bar", Place::Top);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
+        let (session, registry) = (context.session(), context.registry());
         ui.horizontal(|ui| {
             ui.set_min_height(28.0);
             ui.spacing_mut().item_spacing.x = 4.0;
-            document(ui, session, actions);
+            document(ui, context);
             divider(ui);
-            menus(ui, session, registry, actions);
+            menus(ui, context);
             divider(ui);
             // Where there is little room, the captions go first, then the choices of shading fold up.
             let names: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.name).collect();
@@ -44,14 +38,14 @@ impl Panel for TopBar {
                 caption(ui, CAPTIONS[0]);
             }
             let from = ui.cursor().left();
-            actions.extend(chooser::show(ui, session, registry));
+            chooser::show(ui, context);
             pointed(ui, "reflection", from);
             ui.add_space(8.0);
             if captioned {
                 caption(ui, CAPTIONS[1]);
             }
             let from = ui.cursor().left();
-            shading(ui, session, registry, &names, apart, actions);
+            shading(ui, &names, apart, context);
             pointed(ui, "shading", from);
             model_override::whose(ui, session, registry);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, session));
@@ -66,14 +60,12 @@ fn pointed(ui: &Ui, name: &str, from: f32) {
 }
 
 fn divider(ui: &mut Ui) {
-    let palette = Palette::here(ui);
-    let (rect, _) = ui.allocate_exact_size(vec2(9.0, 18.0), egui::Sense::hover());
-    ui.painter().vline(rect.center().x, rect.y_range(), egui::Stroke::new(1.0, palette.line));
+    let (rect, _) = ui.allocate_exact_size(vec2(9.0, 18.0), Sense::hover());
+    ui.painter().vline(rect.center().x, rect.y_range(), Stroke::new(1.0, Palette::here(ui).line));
 }
 
 fn caption(ui: &mut Ui, text: &str) {
-    let text = theme::small(ui, text);
-    ui.label(text);
+    ui.label(theme::small(ui, text));
 }
 
 /// The captions of the choices.
@@ -86,17 +78,16 @@ const LESSON: &str = "Lesson";
 const NAME: f32 = 0.45;
 
 /// The scene's name in a place whose size depends on the window alone, so that the menus stand still.
-fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+fn document(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let palette = Palette::here(ui);
     let width = (0.16 * ui.max_rect().width()).clamp(88.0, 208.0);
-    let (place, response) = ui.allocate_exact_size(vec2(width, 24.0), egui::Sense::click());
-    if response.hovered() || response.has_focus() {
+    let (place, response) = ui.allocate_exact_size(vec2(width, 24.0), Sense::click());
+    if theme::is_hot(&response) {
         let edge = if response.has_focus() { palette.accent } else { palette.hovered };
-        let stroke = egui::Stroke::new(1.0, edge);
-        ui.painter().rect(place, 4.0, palette.hovered, stroke, egui::StrokeKind::Inside);
+        ui.painter().rect(place, 4.0, palette.hovered, Stroke::new(1.0, edge), StrokeKind::Inside);
     }
-    let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-    let line = |text: &str, room: f32| theme::elided(ui, text, font.clone(), palette.text, room);
+    let line = |text: &str, room: f32| theme::elided(ui, text, theme::bold(ui), palette.text, room);
     let (mut title, mut whole, room) = (session.title(), session.window_title(), width - 8.0);
     // The lesson says its title itself.
     if session.lesson.is_some() && session.view.left_open {
@@ -113,22 +104,18 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let file = line(file, room - name.size().x);
     let mut at = place.left_center() + vec2(4.0, 0.0);
     for galley in [name, file].into_iter().filter(|g| g.size().x > 0.0) {
-        let rect = egui::Align2::LEFT_CENTER.anchor_size(at, galley.size());
+        let rect = Align2::LEFT_CENTER.anchor_size(at, galley.size());
         ui.painter().galley(rect.min, galley, palette.text);
         at.x = rect.right();
     }
     let state = if session.is_dirty() { "has unsaved changes" } else { "has no unsaved changes" };
     let own = session.own_title();
-    response.widget_info(|| {
-        WidgetInfo::labeled(WidgetType::Button, true, format!("{} {state}", session.window_title()))
-    });
-    if response.clicked() {
-        actions.push(Action::Select(Selection::Room));
-    }
+    theme::says(&response, WidgetType::Button, format!("{} {state}", session.window_title()));
+    context.on_click(&response, || Action::Select(Selection::Room));
     response.on_hover_ui(|ui| {
         ui.label(theme::strong(ui, session.title()));
         if let Some(description) = &session.document.description {
-            ui.label(maths::prose(ui, description, egui::TextStyle::Body));
+            ui.label(maths::prose(ui, description, TextStyle::Body));
         }
         let file =
             session.path.as_ref().map_or("not saved to a file yet".to_owned(), |p| p.shown().to_string());
@@ -139,7 +126,7 @@ fn document(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.label(theme::small(ui, said));
     });
     // The place of the dot is kept, so that nothing moves when it comes and goes.
-    let (rect, dot) = ui.allocate_exact_size(vec2(10.0, 18.0), egui::Sense::hover());
+    let (rect, dot) = ui.allocate_exact_size(vec2(10.0, 18.0), Sense::hover());
     if session.shows_unsaved() {
         ui.painter().circle_filled(rect.center(), 3.5, palette.accent);
         dot.on_hover_text("Unsaved changes");
@@ -156,7 +143,8 @@ fn repeats(title: &str, file: &str) -> bool {
     words(&file).iter().all(|word| word.is_empty() || known.contains(word))
 }
 
-fn menus(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+fn menus(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let beside = |ui: &mut Ui, menu: &Menu, right: f32, actions: &mut Vec<Action>| match menu.name {
         command::EXAMPLES => welcome::menu(ui, right, registry, actions),
         command::LESSONS => list::entries(ui, session, actions),
@@ -170,7 +158,7 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<
             let menu = ui.menu_button(name, |ui| {
                 let all = command::all(session, registry, has_sides(ui.ctx(), session));
                 if let Some(menu) = all.find(name) {
-                    show::content(ui, menu, &beside, actions);
+                    show::content(ui, menu, &beside, &mut context.actions);
                 }
             });
             point::menu(ui, name, menu.response.rect);
@@ -181,14 +169,8 @@ fn menus(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<
 }
 
 /// One button for each shading model, as one control.
-fn shading(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    names: &[&str],
-    apart: bool,
-    actions: &mut Vec<Action>,
-) {
+fn shading(ui: &mut Ui, names: &[&str], apart: bool, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let chosen = registry.shading_models().iter().position(|m| m.declaration.id == session.shading_shown());
     let tip = |ui: &mut Ui, i: usize| {
         let d = registry.shading_models()[i].declaration;
@@ -204,40 +186,22 @@ fn shading(
     let picked = if apart {
         segmented(ui, "Shading", names, chosen, tip)
     } else {
-        let shown = chosen.map_or("–", |i| names[i]);
-        let mut by_key = false;
-        let menu =
-            egui::ComboBox::from_id_salt("shading").width(88.0).selected_text(shown).show_ui(ui, |ui| {
-                let mut picked = None;
-                for (i, name) in names.iter().enumerate() {
-                    let response = menu::choice(ui, chosen == Some(i), *name, &mut by_key);
-                    if response.clicked() {
-                        picked = Some(i);
-                    }
-                    response.on_hover_ui(|ui| tip(ui, i));
-                }
-                picked
-            });
-        menu.response
-            .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("Shading: {shown}")));
-        if by_key {
-            menu.response.request_focus();
-        }
-        menu.inner.flatten()
+        let combo = egui::ComboBox::from_id_salt("shading").width(88.0);
+        menu::list(ui, combo, "Shading", names, chosen, tip).1
     };
     if let Some(i) = picked {
-        actions.push(Action::Edit(session.edit_shading_model(registry.shading_models()[i].declaration.id)));
+        context.edit(session.edit_shading_model(registry.shading_models()[i].declaration.id));
     }
 }
 
 /// Lays out every digit in every place of a frame rate. A glyph that is drawn for the first time reaches
 /// the GPU a frame late, so that a rate that changes with every frame would show gaps.
 fn prepare_digits(ui: &Ui) {
-    let font = egui::TextStyle::Small.resolve(ui.style());
+    let font = TextStyle::Small.resolve(ui.style());
     ui.fonts_mut(|fonts| {
         for digit in 0..10 {
             let text = format!("{digit}{digit}{digit}{digit} fps");
-            fonts.layout_no_wrap(text, font.clone(), egui::Color32::WHITE);
+            fonts.layout_no_wrap(text, font.clone(), Color32::WHITE);
         }
     });
 }
@@ -261,8 +225,7 @@ fn renderer(ui: &mut Ui, session: &Session) {
         return;
     }
     prepare_digits(ui);
-    let text = theme::small(ui, parts.join(" · "));
-    ui.add(egui::Label::new(text).truncate()).on_hover_ui(|ui| {
+    ui.add(Label::new(theme::small(ui, parts.join(" · "))).truncate()).on_hover_ui(|ui| {
         ui.label(format!("{:.2} ms per frame", facts.frame_ms));
         if !facts.adapter.is_empty() {
             ui.label(&facts.adapter);

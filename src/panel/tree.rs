@@ -1,24 +1,12 @@
 //! The scene list at the left: room, observer, lights, objects.
 
-use bevy_egui::egui::{
-    self, Align2, FontId, Id, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, TextStyle, Ui, WidgetInfo,
-    WidgetType, pos2, vec2,
-};
+use bevy_egui::egui::TextEdit;
 
-use super::{
-    Panel, PanelContext, Place, focus, glyphs,
-    icon::{self, Icon},
-    is_panel, knob,
-    lesson::point,
-    state::{Action, Session},
-    theme::{self, Palette},
-};
-use crate::document::{Edit, Selection};
+use super::{focus, glyphs, knob, lesson::point, prelude::*, state::Effect};
 use crate::{
     optics::colour::Encoding,
     parameter::{BASE_COLOUR, Value},
-    registry::Registry,
-    scene::{Light, Object, Part},
+    scene::{Light, Object},
 };
 
 /// Height of a row, in points.
@@ -39,7 +27,7 @@ impl Panel for Tree {
     is_panel!("tree", "Scene", Place::Left);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
+        let session = context.session();
         let (lights, objects) = (session.document.lights.len(), session.document.objects.len());
         // Rows are addressed by index, so that ten thousand objects cost no more than the visible ones.
         let row = |i: usize| match i {
@@ -50,7 +38,7 @@ impl Panel for Tree {
             i if i == 3 + lights => Row::Objects,
             i => Row::Part(Selection::Object(i - 4 - lights)),
         };
-        actions.extend(step(ui, session).map(Action::Select));
+        context.actions.extend(step(ui, session).map(Action::Select));
         focus::first(ui.ctx(), row_id(session.selection));
         ui.spacing_mut().item_spacing.y = 0.0;
         let total = 4 + lights + objects;
@@ -62,13 +50,9 @@ impl Panel for Tree {
         let output = area.show_rows(ui, HEIGHT, total, |ui, range| {
             for i in range {
                 match row(i) {
-                    Row::Part(part) => PartRow::of(part, session, registry).show(ui, actions),
-                    Row::Lights => {
-                        heading(ui, "Lights", lights, HEIGHT, |ui| add_lights(ui, registry, actions));
-                    }
-                    Row::Objects => {
-                        heading(ui, "Objects", objects, HEIGHT, |ui| add_objects(ui, registry, actions));
-                    }
+                    Row::Part(part) => PartRow::of(part, context).show(ui, context),
+                    Row::Lights => heading(ui, "Lights", lights, |ui| add_lights(ui, context)),
+                    Row::Objects => heading(ui, "Objects", objects, |ui| add_objects(ui, context)),
                 }
             }
         });
@@ -99,17 +83,15 @@ fn offset_of_selection(ui: &Ui, memory: Id, session: &Session) -> Option<f32> {
     out_of_sight.then(|| (top - 0.4 * view).max(0.0))
 }
 
-fn add_lights(ui: &mut Ui, registry: &Registry, actions: &mut Vec<Action>) {
-    for light in registry.lights() {
-        let d = light.declaration;
-        add_item(ui, d.glyph, d.name, d.summary, Action::AddLight(d.id.to_owned()), actions);
+fn add_lights(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    for d in context.registry().lights().iter().map(|light| light.declaration) {
+        add_item(ui, [d.glyph, d.name, d.summary], Action::AddLight(d.id.to_owned()), context);
     }
 }
 
-fn add_objects(ui: &mut Ui, registry: &Registry, actions: &mut Vec<Action>) {
-    for shape in registry.shapes() {
-        let d = shape.declaration;
-        add_item(ui, d.glyph, d.name, d.summary, Action::AddObject(d.id.to_owned()), actions);
+fn add_objects(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    for d in context.registry().shapes().iter().map(|shape| shape.declaration) {
+        add_item(ui, [d.glyph, d.name, d.summary], Action::AddObject(d.id.to_owned()), context);
     }
 }
 
@@ -118,7 +100,7 @@ fn step(ui: &Ui, session: &Session) -> Option<Selection> {
     let focus = ui.memory(egui::Memory::focused)?;
     let keys = [Key::ArrowUp, Key::ArrowDown];
     let way = keys.map(|key| ui.input(|i| i.num_presses(key)));
-    if way == [0, 0] || ui.input(|i| i.modifiers.any()) || egui::Popup::is_any_open(ui.ctx()) {
+    if way == [0, 0] || ui.input(|i| i.modifiers.any()) || Popup::is_any_open(ui.ctx()) {
         return None;
     }
     let lights = (0..session.document.lights.len()).map(Selection::Light);
@@ -135,39 +117,29 @@ fn step(ui: &Ui, session: &Session) -> Option<Selection> {
     Some(next)
 }
 
-fn add_item(ui: &mut Ui, glyph: &str, name: &str, summary: &str, action: Action, actions: &mut Vec<Action>) {
+fn add_item(ui: &mut Ui, [glyph, name, summary]: [&str; 3], action: Action, context: &mut PanelContext<'_>) {
     let glyph = glyphs::glyph(ui, glyph, name);
     let response = ui.button(format!("{glyph}  {name}"));
     let response = if summary.is_empty() { response } else { response.on_hover_text(summary) };
     if response.clicked() {
-        actions.push(action);
+        context.act(action);
         ui.close();
     }
 }
 
-fn heading(ui: &mut Ui, name: &str, count: usize, height: f32, menu: impl FnOnce(&mut Ui)) {
-    let palette = Palette::here(ui);
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+fn heading(ui: &mut Ui, name: &str, count: usize, menu: impl FnOnce(&mut Ui)) {
+    let colour = Palette::here(ui).weak;
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let small = TextStyle::Small.resolve(ui.style());
-    let text = ui.painter().text(
-        pos2(rect.left() + 8.0, rect.bottom() - 5.0),
-        Align2::LEFT_BOTTOM,
-        name,
-        FontId::new(small.size, theme::semibold()),
-        palette.weak,
-    );
-    ui.painter().text(
-        pos2(text.right() + 6.0, text.bottom()),
-        Align2::LEFT_BOTTOM,
-        count,
-        small,
-        palette.weak,
-    );
+    let (font, painter) = (FontId::new(small.size, theme::semibold()), ui.painter());
+    let at = pos2(rect.left() + 8.0, rect.bottom() - 5.0);
+    let text = painter.text(at, Align2::LEFT_BOTTOM, name, font, colour);
+    painter.text(text.right_bottom() + vec2(6.0, 0.0), Align2::LEFT_BOTTOM, count, small, colour);
     let place = Rect::from_min_size(pos2(rect.right() - 26.0, rect.top() + 2.0), vec2(22.0, 22.0));
-    let mut child = ui.new_child(egui::UiBuilder::new().id_salt(name).max_rect(place));
+    let mut child = ui.new_child(UiBuilder::new().id_salt(name).max_rect(place));
     let what = if name == "Lights" { "Add a light" } else { "Add an object" };
     let response = icon::button(&mut child, Icon::Plus, what);
-    egui::Popup::menu(&response).show(menu);
+    Popup::menu(&response).show(menu);
 }
 
 /// Width below which the list has tighter spacing, in points.
@@ -184,18 +156,19 @@ struct PartRow<'a> {
 }
 
 impl<'a> PartRow<'a> {
-    fn of(part: Selection, session: &'a Session, registry: &'a Registry) -> Self {
+    fn of(part: Selection, context: &PanelContext<'a>) -> Self {
+        let (session, registry) = (context.session(), context.registry());
         let nested = matches!(part, Selection::Light(_) | Selection::Object(_));
         Self { part, name: session.name_of(part, registry), nested, session, registry }
     }
 
-    fn show(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    fn show(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let Self { part, ref name, nested, session, .. } = *self;
         let palette = Palette::here(ui);
         let selected = session.selection == part;
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
         let response = ui.interact(rect, row_id(part), Sense::click());
-        response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, selected, name));
+        theme::says_chosen(&response, WidgetType::SelectableLabel, selected, name);
         let hovered = ui.rect_contains_pointer(rect);
         point::part(ui, session, part, rect);
         let painter = ui.painter_at(rect);
@@ -213,11 +186,9 @@ impl<'a> PartRow<'a> {
         let dot = self.sign(ui, &painter, square);
         let text_left = x + 14.0;
         if session.renaming == Some(part) {
-            let place = Rect::from_min_max(
-                pos2(text_left - 4.0, rect.top() + 2.0),
-                pos2(ground.right() - 4.0, rect.bottom() - 2.0),
-            );
-            return self.rename(ui, place, actions);
+            let place =
+                rect.shrink2(vec2(0.0, 2.0)).with_min_x(text_left - 4.0).with_max_x(ground.right() - 4.0);
+            return self.rename(ui, place, context);
         }
         let between = if narrow { 22.0 } else { 24.0 };
         let right = ground.right() - if nested { 2.0 * between } else { 8.0 };
@@ -228,11 +199,11 @@ impl<'a> PartRow<'a> {
         painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
         if let Some(rgb) = dot {
             let centre = |from_right: f32| pos2(ground.right() - from_right, rect.center().y);
-            self.toggle(ui, centre(1.5 * between), hovered, actions);
-            self.colour_dot(ui, centre(0.5 * between), rgb, actions);
+            self.toggle(ui, centre(1.5 * between), hovered, context);
+            self.colour_dot(ui, centre(0.5 * between), rgb, context);
         }
-        acted(ui, &response, part, nested, actions);
-        response.context_menu(|ui| menu(ui, session, part, nested, actions));
+        acted(ui, &response, part, nested, context);
+        response.context_menu(|ui| menu(ui, part, nested, context));
         if cut {
             response.on_hover_text(name);
         }
@@ -242,7 +213,7 @@ impl<'a> PartRow<'a> {
     fn sign(&self, ui: &Ui, painter: &egui::Painter, square: Rect) -> Option<[u8; 3]> {
         let Self { part, session, registry, .. } = *self;
         let palette = Palette::here(ui);
-        let (sign, name, rgb) = match part {
+        let (known, rgb) = match part {
             Selection::Room | Selection::Observer => {
                 let icon = if part == Selection::Room { Icon::Room } else { Icon::Eye };
                 icon::paint(painter, square, icon, palette.text);
@@ -250,28 +221,25 @@ impl<'a> PartRow<'a> {
             }
             Selection::Light(i) => {
                 let light = &session.document.lights[i];
-                let known =
-                    registry.light(&light.light_type).map(|e| (e.declaration.glyph, e.declaration.name));
-                let (sign, name) = known.unwrap_or(("?", ""));
-                (sign, name, light.rgb8())
+                let known = registry.light(&light.light_type).map(|e| e.declaration);
+                (known.map(|d| (d.glyph, d.name)), light.rgb8())
             }
             Selection::Object(i) => {
                 let object = &session.document.objects[i];
-                let known =
-                    registry.shape(&object.object_type).map(|e| (e.declaration.glyph, e.declaration.name));
-                let (sign, name) = known.unwrap_or(("?", ""));
+                let known = registry.shape(&object.object_type).map(|e| e.declaration);
                 let colour = object.material.colour(&BASE_COLOUR, Encoding::Off) * 255.0;
-                (sign, name, [colour.x as u8, colour.y as u8, colour.z as u8])
+                (known.map(|d| (d.glyph, d.name)), colour.to_array().map(|c| c as u8))
             }
         };
         let font = FontId::new(14.0, TextStyle::Body.resolve(ui.style()).family);
+        let (sign, name) = known.unwrap_or(("?", ""));
         let sign = glyphs::glyph(ui, sign, name);
         painter.text(square.center(), Align2::CENTER_CENTER, sign, font, palette.text);
         Some(rgb)
     }
 
     /// The eye of an object, or the lamp of a light.
-    fn toggle(&self, ui: &mut Ui, centre: egui::Pos2, row_hovered: bool, actions: &mut Vec<Action>) {
+    fn toggle(&self, ui: &mut Ui, centre: Pos2, row_hovered: bool, context: &mut PanelContext<'_>) {
         let (palette, part) = (Palette::here(ui), self.part);
         let there = is_there(self.session, part);
         let says = format!("{} {}", toggle_words(part, there), self.name);
@@ -284,39 +252,30 @@ impl<'a> PartRow<'a> {
         };
         let strong = row_hovered || !there || response.hovered();
         let colour = if strong { palette.text } else { palette.weak };
-        let square = Rect::from_center_size(centre, vec2(13.0, 13.0));
-        icon::paint(ui.painter(), square, icon, colour);
+        icon::paint(ui.painter(), Rect::from_center_size(centre, vec2(13.0, 13.0)), icon, colour);
         if response.on_hover_text(format!("{says} (V for what is selected)")).clicked() {
-            actions.push(Action::Toggle(part));
+            context.act(Action::Toggle(part));
         }
     }
 
     /// The colour of a part, as a button that changes it.
-    fn colour_dot(&self, ui: &mut Ui, centre: egui::Pos2, [r, g, b]: [u8; 3], actions: &mut Vec<Action>) {
+    fn colour_dot(&self, ui: &mut Ui, centre: Pos2, [r, g, b]: [u8; 3], context: &mut PanelContext<'_>) {
         let (palette, part) = (Palette::here(ui), self.part);
         let says = format!("Colour of {}", self.name);
         let response = spot(ui, centre, ui.id().with(("dot", part)), &says);
-        ui.painter().circle(centre, 4.5, egui::Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
-        egui::Popup::menu(&response).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(
-            |ui| {
-                if let Some(rgb) = knob::picker(ui, response.id.with("picker"), &says, [r, g, b]) {
-                    actions.extend(match part {
-                        Selection::Light(i) => {
-                            Some(Action::Edit(Edit::set(Part::Light(i), Light::colour, rgb)))
-                        }
-                        Selection::Object(i) => {
-                            let edit = Edit::material(Part::Object(i), BASE_COLOUR.name, Value::Colour(rgb));
-                            Some(Action::Edit(edit))
-                        }
-                        Selection::Room | Selection::Observer => None,
-                    });
-                }
-            },
-        );
+        ui.painter().circle(centre, 4.5, Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
+        let popup = Popup::menu(&response);
+        popup.close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
+            let chosen = knob::picker(ui, response.id.with("picker"), &says, [r, g, b]);
+            context.edits(chosen.map(|rgb| match part {
+                Selection::Light(i) => Edit::set(Part::Light(i), Light::colour, rgb),
+                _ => Edit::material(part.into(), BASE_COLOUR.name, Value::Colour(rgb)),
+            }));
+        });
         response.on_hover_text(&says);
     }
 
-    fn rename(&self, ui: &mut Ui, place: Rect, actions: &mut Vec<Action>) {
+    fn rename(&self, ui: &mut Ui, place: Rect, context: &mut PanelContext<'_>) {
         let Self { part, ref name, session, .. } = *self;
         let id = ui.id().with(("rename", part));
         let own = match part {
@@ -335,11 +294,10 @@ impl<'a> PartRow<'a> {
             // Typing replaces the old name.
             theme::select_all(ui, response.id, &text);
         }
-        let done = response.lost_focus();
-        if done || (!first && !response.has_focus()) {
+        if response.lost_focus() || (!first && !response.has_focus()) {
             ui.data_mut(|d| d.remove::<String>(id));
             let given_up = ui.input(|i| i.key_pressed(Key::Escape)) || text.trim() == name.as_str();
-            actions.push(match part {
+            context.act(match part {
                 _ if given_up => Action::CancelRename,
                 Selection::Light(i) => Action::Edit(Edit::set(Part::Light(i), Light::name, text)),
                 Selection::Object(i) => Action::Edit(Edit::set(Part::Object(i), Object::name, text)),
@@ -352,24 +310,25 @@ impl<'a> PartRow<'a> {
 }
 
 /// Clicks on a row, and keys while it has the focus.
-fn acted(ui: &Ui, response: &egui::Response, part: Selection, nested: bool, actions: &mut Vec<Action>) {
+fn acted(ui: &Ui, response: &Response, part: Selection, nested: bool, context: &mut PanelContext<'_>) {
     // The menu of a row applies to the selection.
     if response.clicked() || response.secondary_clicked() {
-        actions.push(Action::Select(part));
+        context.act(Action::Select(part));
     }
     if nested && response.has_focus() && ui.input(|i| i.key_pressed(Key::Delete)) {
-        actions.push(Action::Remove(part));
+        context.act(Action::Remove(part));
     }
     if nested && response.double_clicked() {
-        actions.push(Action::BeginRename(part));
+        context.act(Action::BeginRename(part));
     }
 }
 
 /// The context menu of a row.
-fn menu(ui: &mut Ui, session: &Session, part: Selection, nested: bool, actions: &mut Vec<Action>) {
+fn menu(ui: &mut Ui, part: Selection, nested: bool, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let mut item = |ui: &mut Ui, text: &str, action: Action| {
         if ui.button(text).clicked() {
-            actions.push(action);
+            context.act(action);
             ui.close();
         }
     };
@@ -384,7 +343,7 @@ fn menu(ui: &mut Ui, session: &Session, part: Selection, nested: bool, actions: 
     }
     if part == Selection::Observer {
         let problem = session.observer_problem();
-        let place = |ui: &mut Ui| item(ui, "Set observer to this view", Action::ObserverFromView);
+        let place = |ui: &mut Ui| item(ui, "Set observer to this view", Action::Do(Effect::ObserverFromView));
         let place = ui.add_enabled_ui(problem.is_none(), place).response;
         problem.map(|why| place.on_hover_text(why));
     }
@@ -409,10 +368,10 @@ fn toggle_words(part: Selection, there: bool) -> &'static str {
 }
 
 /// A small clickable area in a row. Tab skips it, since the row offers the same action by keyboard.
-fn spot(ui: &Ui, centre: egui::Pos2, id: egui::Id, says: &str) -> egui::Response {
+fn spot(ui: &Ui, centre: Pos2, id: Id, says: &str) -> Response {
     let rect = Rect::from_center_size(centre, vec2(22.0, 22.0));
     let response = ui.interact(rect, id, Sense::CLICK);
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, says));
+    theme::says(&response, WidgetType::Button, says);
     if response.hovered() {
         ui.painter().rect_filled(rect, 4.0, Palette::here(ui).hovered);
     }

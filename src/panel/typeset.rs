@@ -1,14 +1,11 @@
 //! Typesetting of equations: stacked fractions, roots, brackets as tall as their content, line breaks before + and −.
 
-use bevy_egui::egui::{
-    Color32, Pos2, Shape, Stroke, Ui, Vec2,
-    epaint::{CubicBezierShape, PathShape},
-    vec2,
-};
+use bevy_egui::egui::epaint::{CubicBezierShape, PathShape};
 
 use super::{
     formula::{Node, bare, factors, flattened, is_sign, is_space, multiplied, terms},
     maths::{Atom, Laid, lay_out},
+    prelude::*,
 };
 
 /// A painted element, relative to the left end of the baseline.
@@ -64,8 +61,7 @@ impl Set {
     }
 
     fn append(&mut self, other: Set) {
-        let at = vec2(self.width, 0.0);
-        self.put(other, at);
+        self.put(other, vec2(self.width, 0.0));
     }
 
     /// The symbols and powers: names and cells.
@@ -116,12 +112,9 @@ impl Set {
                 Ink::Bracket(which, up, down) => bracket(ui, at, *which, *size, *up, *down, colour),
                 Ink::Root(up, down) => {
                     let foot = at + vec2(0.36 * size, *down);
-                    let points = vec![
-                        at + vec2(0.02 * size, -0.2 * size),
-                        at + vec2(0.14 * size, -0.28 * size),
-                        foot,
-                        at + vec2(0.58 * size, -up),
-                    ];
+                    let hook = [vec2(0.02 * size, -0.2 * size), vec2(0.14 * size, -0.28 * size)];
+                    let [start, top] = hook.map(|corner| at + corner);
+                    let points = vec![start, top, foot, at + vec2(0.58 * size, -up)];
                     painter.add(Shape::Path(PathShape::line(points, stroke)));
                 }
             }
@@ -148,12 +141,8 @@ fn bracket(ui: &Ui, at: Pos2, which: char, size: f32, up: f32, down: f32, colour
         _ => {
             let bow = 0.3 * (bottom - top);
             let points = [p(0.85, top), p(0.12, top + bow), p(0.12, bottom - bow), p(0.85, bottom)];
-            Shape::CubicBezier(CubicBezierShape::from_points_stroke(
-                points,
-                false,
-                Color32::TRANSPARENT,
-                stroke,
-            ))
+            let (closed, fill) = (false, Color32::TRANSPARENT);
+            Shape::CubicBezier(CubicBezierShape::from_points_stroke(points, closed, fill, stroke))
         }
     });
 }
@@ -185,13 +174,11 @@ impl Setter<'_> {
         let down = if scripts(Atom::sub) { 0.42 } else { 0.24 };
         let width = laid.width;
         let ink = Ink::Atom(laid, atom.symbol(), atom.power());
-        Set {
-            ink: vec![(Vec2::ZERO, self.size, ink)],
-            width,
-            ascent: up * self.size,
-            descent: down * self.size,
-            broken: Break::default(),
-        }
+        self.inked(ink, width, up * self.size, down * self.size)
+    }
+
+    fn inked(self, ink: Ink, width: f32, ascent: f32, descent: f32) -> Set {
+        Set { ink: vec![(Vec2::ZERO, self.size, ink)], width, ascent, descent, broken: Break::default() }
     }
 
     /// Sets nodes side by side.
@@ -212,11 +199,7 @@ impl Setter<'_> {
             Node::Fraction(over, under) if self.stacked => self.fraction(over, under),
             Node::Fraction(over, under) => {
                 let mut set = self.row(over);
-                set.append(self.atom(&Atom::Upright {
-                    base: "/".to_owned(),
-                    sub: String::new(),
-                    sup: String::new(),
-                }));
+                set.append(self.atom(&Atom::upright("/")));
                 set.append(self.row(under));
                 set
             }
@@ -233,13 +216,7 @@ impl Setter<'_> {
             return set;
         }
         let sign = |atom: &Atom| atom.base().chars().next().unwrap_or('(');
-        let tall = |which: char| Set {
-            ink: vec![(Vec2::ZERO, self.size, Ink::Bracket(which, up, down))],
-            width: BRACKET * self.size,
-            ascent: up,
-            descent: down,
-            broken: Break::default(),
-        };
+        let tall = |which: char| self.inked(Ink::Bracket(which, up, down), BRACKET * self.size, up, down);
         let mut set = tall(sign(open));
         set.append(inside);
         set.append(tall(sign(close)));
@@ -249,8 +226,7 @@ impl Setter<'_> {
                 let (sub, sup) = (String::new(), script.to_owned());
                 let mut script = self.atom(&Atom::Upright { base: String::new(), sub, sup });
                 script.ascent = self.size;
-                let at = vec2(set.width, shift);
-                set.put(script, at);
+                set.put(script, vec2(set.width, shift));
             }
         }
         set
@@ -261,16 +237,9 @@ impl Setter<'_> {
         let up = inside.ascent + 0.1 * self.size;
         let down = inside.descent;
         let length = inside.width + 0.08 * self.size;
-        let mut set = Set {
-            ink: vec![
-                (Vec2::ZERO, self.size, Ink::Root(up, down)),
-                (vec2(0.58 * self.size, -up), self.size, Ink::Rule(length)),
-            ],
-            width: ROOT * self.size,
-            ascent: up + 0.08 * self.size,
-            descent: down,
-            broken: Break::default(),
-        };
+        let ascent = up + 0.08 * self.size;
+        let mut set = self.inked(Ink::Root(up, down), ROOT * self.size, ascent, down);
+        set.ink.push((vec2(0.58 * self.size, -up), self.size, Ink::Rule(length)));
         set.append(inside);
         set.width += 0.08 * self.size;
         set
@@ -364,8 +333,7 @@ impl Setter<'_> {
 
 /// The sign at the start of a line that continues the product of the previous line.
 fn times() -> [Node; 2] {
-    let sign = Atom::Upright { base: "×".to_owned(), sub: String::new(), sup: String::new() };
-    [Node::Atom(sign), Node::Atom(Atom::Space)]
+    [Node::Atom(Atom::upright("×")), Node::Atom(Atom::Space)]
 }
 
 #[cfg(test)]
@@ -376,7 +344,7 @@ mod tests {
 
     /// Sets all parts of all equations at this width, and passes the text and its lines to `see`.
     fn set_all(width: f32, shrinks: bool, mut see: impl FnMut(&str, f32, &[Set])) {
-        let ctx = egui::Context::default();
+        let ctx = Context::default();
         ctx.set_fonts(crate::lettering::fonts());
         let registry = crate::registry::Registry::builtin();
         let models = registry.models().iter().flat_map(|m| maths::definitions(m.declaration.equation));
@@ -448,7 +416,7 @@ mod tests {
 
     #[test]
     fn brackets_about_a_fraction_are_as_tall_as_it_is() {
-        let ctx = egui::Context::default();
+        let ctx = Context::default();
         ctx.set_fonts(crate::lettering::fonts());
         for _ in 0..2 {
             let _ = ctx.run_ui(egui::RawInput::default(), |ui| {

@@ -1,28 +1,22 @@
 //! The start without a file: a strip below the picture offers a lesson, an example scene or a new model. Also the menu
 //! of examples.
 
-use std::sync::Arc;
-
-use bevy_egui::egui::{
-    self, Align, Button, Context, FontId, Galley, Label, Layout, Popup, Rect, Response, ScrollArea, Sense,
-    Stroke, StrokeKind, TextStyle, Ui, UiBuilder, WidgetInfo, WidgetType, pos2, text::LayoutJob, vec2,
-};
+use bevy_egui::egui::text::LayoutJob;
 
 use super::{
-    Panel, PanelContext, Place, command,
+    command,
     focus::{self, Region},
-    icon::{self, Icon},
-    is_panel, keys,
+    keys,
     lesson::list,
     maths,
+    prelude::*,
     preview::{self, Source},
-    state::{Action, LessonCommand, LessonSource, ModelCommand, PictureArea, Session, ViewChange},
-    theme::{self, Palette},
+    state::LessonSource,
 };
-use crate::{lesson::shipped::LESSONS, registry::Registry, scene::examples::EXAMPLES};
+use crate::{lesson::shipped::LESSONS, parameter::Outside, scene::examples::EXAMPLES};
 
 /// Size of a picture in the strip, in points.
-const CARD: egui::Vec2 = vec2(112.0, 63.0);
+const CARD: Vec2 = vec2(112.0, 63.0);
 /// Height of the headings, in points.
 const HEADING: f32 = 24.0;
 /// Widths of the sections for lessons and for a new model, and the gap between sections, in points.
@@ -38,7 +32,7 @@ const MODEL_TIP: &str =
 /// Space for the scroll bar below the titles, in points.
 const BAR: f32 = 10.0;
 /// Size of a picture in the menu, in points.
-const ROW: egui::Vec2 = vec2(96.0, 54.0);
+const ROW: Vec2 = vec2(96.0, 54.0);
 /// Minimum height of strip and picture together, in points.
 const LEAST: f32 = 320.0;
 /// Maximum and minimum width of the menu, in points.
@@ -49,21 +43,17 @@ const MENU: [f32; 2] = [580.0, 260.0];
 pub struct Welcome;
 
 impl Panel for Welcome {
-    is_panel!("examples", "Examples", Place::Strip);
-
-    fn is_open(&self, session: &Session) -> bool {
-        session.view.examples_open
-    }
+    is_panel!("examples", "Examples", Place::Strip, |session| session.view.examples_open);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         // The picture has priority; the menus offer the same.
         if self.is_open(context.session()) && ui.available_height() >= LEAST {
-            strip(ui, context.session(), context.registry(), &mut context.actions);
+            strip(ui, context);
         }
     }
 }
 
-fn strip(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+fn strip(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let palette = Palette::here(ui);
     let panel = egui::Panel::bottom("examples").frame(theme::panel_frame(&palette, vec2(12.0, 4.0)));
     let shown = panel.show(ui, |ui| {
@@ -71,10 +61,8 @@ fn strip(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<
         let title = |name: &str| ui.painter().layout(name.to_owned(), font.clone(), palette.text, CARD.x);
         let titles: Vec<_> = EXAMPLES.iter().map(|example| title(&example.name)).collect();
         let below = 4.0 + titles.iter().map(|galley| galley.size().y).fold(0.0, f32::max) + BAR;
-        let whole = Rect::from_min_size(
-            ui.available_rect_before_wrap().min,
-            vec2(ui.available_width(), HEADING + 4.0 + CARD.y + below),
-        );
+        let size = vec2(ui.available_width(), HEADING + 4.0 + CARD.y + below);
+        let whole = Rect::from_min_size(ui.available_rect_before_wrap().min, size);
         let wide = whole.width() >= WIDE;
         let lessons = if wide { LESSON } else { NARROW };
         let model = if wide { MODEL } else { 0.0 };
@@ -89,27 +77,27 @@ fn strip(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<
             show(&mut ui.new_child(UiBuilder::new().id_salt(from as i32).max_rect(place)));
         };
         column(ui, whole.left(), whole.left() + lessons, &mut |ui| {
-            lesson_door(ui, session, registry, actions);
+            lesson_door(ui, context);
             if !wide && small_button(ui, "New model…").on_hover_text(MODEL_TIP).clicked() {
-                actions.push(Action::Model(ModelCommand::New));
+                context.act(Action::Model(ModelCommand::New));
             }
         });
         column(ui, first, last, &mut |ui| {
             heading(ui, "Examples", |ui| {
                 if !wide {
-                    return close(ui, actions);
+                    return close(ui, context);
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     let hint = theme::small(ui, "open as new scenes; also in the File menu");
                     ui.add(Label::new(hint).truncate());
                 });
             });
-            cards(ui, &titles, below, registry, actions);
+            cards(ui, &titles, below, context);
         });
         if wide {
             column(ui, whole.right() - model, whole.right(), &mut |ui| {
-                heading(ui, "Your own model", |ui| close(ui, actions));
-                model_door(ui, actions);
+                heading(ui, "Your own model", |ui| close(ui, context));
+                model_door(ui, context);
             });
         }
         ui.advance_cursor_after_rect(whole);
@@ -126,15 +114,13 @@ fn heading(ui: &mut Ui, text: &str, right: impl FnOnce(&mut Ui)) {
     });
 }
 
-fn close(ui: &mut Ui, actions: &mut Vec<Action>) {
+fn close(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let says = "Close this strip (Esc); its parts stay in the menus File, Edit and Help";
-    if icon::button(ui, Icon::Cross, says).clicked() {
-        actions.push(Action::View(ViewChange::Examples(false)));
-    }
+    context.on_click(&icon::button(ui, Icon::Cross, says), || Action::View(ViewChange::Examples(false)));
 }
 
 /// The examples, side by side.
-fn cards(ui: &mut Ui, titles: &[Arc<Galley>], below: f32, registry: &Registry, actions: &mut Vec<Action>) {
+fn cards(ui: &mut Ui, titles: &[Arc<Galley>], below: f32, context: &mut PanelContext<'_>) {
     let palette = Palette::here(ui);
     // Mouse wheels scroll vertically only.
     ui.style_mut().always_scroll_the_only_direction = true;
@@ -143,14 +129,11 @@ fn cards(ui: &mut Ui, titles: &[Arc<Galley>], below: f32, registry: &Registry, a
             for ((i, example), galley) in EXAMPLES.iter().enumerate().zip(titles) {
                 let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, below), Sense::click());
                 let picture = Rect::from_min_size(rect.min, CARD);
-                face(ui, i, picture, &response, registry);
+                face(ui, i, picture, &response, context.registry());
                 ui.painter().galley(picture.left_bottom() + vec2(0.0, 4.0), galley.clone(), palette.text);
                 frame(ui, picture, &response);
-                if response.clicked() {
-                    actions.push(Action::OpenExample(i));
-                }
-                response.on_hover_ui(|ui| {
-                    ui.set_max_width(320.0);
+                context.on_click(&response, || Action::OpenExample(i));
+                theme::tip(response, 320.0, |ui| {
                     ui.label(theme::strong(ui, &example.name));
                     ui.label(maths::prose(ui, &example.description, TextStyle::Body));
                 });
@@ -160,7 +143,8 @@ fn cards(ui: &mut Ui, titles: &[Arc<Galley>], below: f32, registry: &Registry, a
 }
 
 /// The lesson to go on with, and below it all of them.
-fn lesson_door(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+fn lesson_door(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let palette = Palette::here(ui);
     heading(ui, "Lessons", |_| ());
     let Some(source) = session.progress.next() else { return };
@@ -179,16 +163,14 @@ fn lesson_door(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mu
         let way = if is_new { "Begin here" } else { "Next" };
         minutes.map_or_else(|| way.to_owned(), |minutes| format!("{way}: {minutes} min"))
     });
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, format!("{small}, {title}")));
+    theme::says(&response, WidgetType::Button, format!("{small}, {title}"));
     focus::first(ui.ctx(), response.id);
     card(ui, rect, &response);
     let inside = rect.shrink2(vec2(10.0, 7.0));
-    let font = TextStyle::Small.resolve(ui.style());
-    let line = theme::elided(ui, &small, font, palette.weak, inside.width());
+    let line = theme::elided(ui, &small, TextStyle::Small, palette.weak, inside.width());
     let at = inside.min + vec2(0.0, line.size().y + 1.0);
     ui.painter().galley(inside.min, line, palette.weak);
-    let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-    let mut job = LayoutJob::simple(title.to_owned(), font, palette.text, inside.width());
+    let mut job = LayoutJob::simple(title.to_owned(), theme::bold(ui), palette.text, inside.width());
     job.wrap.max_rows = 2;
     ui.painter().galley(at, ui.painter().layout_job(job), palette.text);
     if let Some(past) = past {
@@ -197,33 +179,30 @@ fn lesson_door(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mu
         ui.painter().rect_filled(bar, 1.5, palette.line);
         ui.painter().rect_filled(part, 1.5, palette.accent);
     }
-    if response.clicked() {
-        actions.push(Action::Lesson(LessonCommand::Continue));
-    }
+    context.on_click(&response, || Action::Lesson(LessonCommand::Continue));
     if let Some(lesson) = shipped {
-        response.on_hover_ui(|ui| {
-            ui.set_max_width(320.0);
+        theme::tip(response, 320.0, |ui| {
             ui.label(theme::strong(ui, title));
             ui.label(maths::prose(ui, &lesson.summary, TextStyle::Body));
         });
     }
     let all = small_button(ui, "All lessons ▾");
     Popup::menu(&all).show(|ui| {
-        list::entries(ui, session, actions);
-        command::show::entries(ui, command::LESSONS, session, registry, actions);
+        list::entries(ui, session, &mut context.actions);
+        command::show::entries(ui, command::LESSONS, session, registry, &mut context.actions);
     });
 }
 
 fn small_button(ui: &mut Ui, text: &str) -> Response {
     ui.spacing_mut().interact_size.y = 0.0;
-    ui.add(Button::new(egui::RichText::new(text).small()).small())
+    ui.add(Button::new(RichText::new(text).small()).small())
 }
 
 /// The section for a new model.
-fn model_door(ui: &mut Ui, actions: &mut Vec<Action>) {
+fn model_door(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CARD.y), Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "New reflection model…"));
+    theme::says(&response, WidgetType::Button, "New reflection model…");
     card(ui, rect, &response);
     let size = 22.0;
     let signs = ["f_r", "(", "L", ",", "V", ")"];
@@ -233,19 +212,16 @@ fn model_door(ui: &mut Ui, actions: &mut Vec<Action>) {
         maths::paint_symbol(ui, at, sign, size, palette.text);
         at.x += width;
     }
-    let font = TextStyle::Small.resolve(ui.style());
-    let words = theme::elided(ui, "New reflection model…", font, palette.text, rect.width());
+    let words = theme::elided(ui, "New reflection model…", TextStyle::Small, palette.text, rect.width());
     ui.painter().galley(rect.left_bottom() + vec2(0.0, 4.0), words, palette.text);
-    if response.clicked() {
-        actions.push(Action::Model(ModelCommand::New));
-    }
+    context.on_click(&response, || Action::Model(ModelCommand::New));
     response.on_hover_text(MODEL_TIP);
 }
 
 /// The background of a section without a picture.
 fn card(ui: &Ui, rect: Rect, response: &Response) {
     let palette = Palette::here(ui);
-    let fill = if response.hovered() || response.has_focus() { palette.hovered } else { palette.raised };
+    let fill = if theme::is_hot(response) { palette.hovered } else { palette.raised };
     ui.painter().rect_filled(rect, 2.0, fill);
     frame(ui, rect, response);
 }
@@ -289,8 +265,7 @@ fn entry(ui: &mut Ui, i: usize, registry: &Registry, actions: &mut Vec<Action>) 
     let palette = Palette::here(ui);
     let left = 4.0 + ROW.x + 10.0;
     let width = ui.available_width() - left - 12.0;
-    let font = egui::FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-    let name = theme::elided(ui, &example.name, font, palette.text, width);
+    let name = theme::elided(ui, &example.name, theme::bold(ui), palette.text, width);
     let mut job = maths::prose(ui, &example.description, TextStyle::Small);
     job.wrap.max_width = width;
     let words = ui.painter().layout_job(job);
@@ -313,19 +288,16 @@ fn entry(ui: &mut Ui, i: usize, registry: &Registry, actions: &mut Vec<Action>) 
 }
 
 fn face(ui: &Ui, i: usize, rect: Rect, response: &Response, registry: &Registry) {
-    let label = || format!("Example: {}", EXAMPLES[i].name);
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, label()));
+    theme::says(response, WidgetType::Button, format!("Example: {}", EXAMPLES[i].name));
     if ui.is_rect_visible(rect) {
-        preview::paint(ui, rect, &preview::of(ui.ctx(), &Source::Example(i), registry));
+        let preview = preview::of(ui.ctx(), &Source::Example(i), registry, Outside::NONE);
+        preview::paint(ui, rect, &preview);
     }
 }
 
 fn frame(ui: &Ui, rect: Rect, response: &Response) {
     let palette = Palette::here(ui);
-    let stroke = if response.hovered() || response.has_focus() {
-        Stroke::new(2.0, palette.accent)
-    } else {
-        Stroke::new(1.0, palette.line)
-    };
+    let (width, edge) = if theme::is_hot(response) { (2.0, palette.accent) } else { (1.0, palette.line) };
+    let stroke = Stroke::new(width, edge);
     ui.painter().rect_stroke(rect, 2.0, stroke, StrokeKind::Inside);
 }

@@ -1,9 +1,9 @@
 //! The widths of the panels beside the picture: if there is little room, panels that the user has not resized give way
 //! to the picture.
 
-use bevy_egui::egui::{Context, Id, Rangef};
+use bevy_egui::egui::Rangef;
 
-use super::state::{Action, Session, View, ViewChange};
+use super::{prelude::*, state::Settings};
 
 /// Fraction of the window that the picture keeps, unless the user makes the panels wider.
 const PICTURE: f32 = 0.45;
@@ -43,7 +43,7 @@ fn dragging() -> Id {
 impl Widths {
     /// The widths in a window that is `whole` points wide.
     pub(super) fn of(ctx: &Context, session: &Session, whole: f32) -> Self {
-        let (view, usual) = (&session.view, View::default());
+        let (view, own, usual) = (&session.view, &session.settings, Settings::default());
         let side = |open, wanted: f32, usual: f32, least: f32, most| Side {
             open,
             own: (wanted != usual).then_some(wanted.min(most)),
@@ -55,10 +55,10 @@ impl Widths {
         let least = if session.lesson.is_some() { 294.0 } else { 280.0 };
         let sides = [
             match session.lesson {
-                Some(_) => side(view.left_open, view.lesson_width, usual.lesson_width, 264.0, 0.45 * whole),
-                None => side(view.left_open, view.left_width, usual.left_width, 120.0, 0.26 * whole),
+                Some(_) => side(view.left_open, own.lesson_width, usual.lesson_width, 264.0, 0.45 * whole),
+                None => side(view.left_open, own.left_width, usual.left_width, 120.0, 0.26 * whole),
             },
-            side(view.right_open, view.right_width, usual.right_width, least, 0.45 * whole),
+            side(view.right_open, own.right_width, usual.right_width, least, 0.45 * whole),
         ];
         // Resizing one panel does not change the other.
         let taken: f32 = sides.iter().filter(|side| side.open).map(|side| side.usual).sum();
@@ -77,13 +77,13 @@ impl Widths {
     /// The action that stores the widths and the height of the bottom strip after dragging; `sizes` are those on
     /// screen.
     pub(super) fn dragged(&self, ctx: &Context, session: &Session, sizes: (f32, f32, f32)) -> Option<Action> {
-        let v = &session.view;
+        let own = &session.settings;
         let kept = |size: f32, given: f32, known: f32| if (size - given).abs() > 1.0 { size } else { known };
-        let known = if session.lesson.is_some() { v.lesson_width } else { v.left_width };
+        let known = if session.lesson.is_some() { own.lesson_width } else { own.left_width };
         let left = kept(sizes.0, self.left.default, known);
-        let right = kept(sizes.1, self.right.default, v.right_width);
-        let bottom = kept(sizes.2, v.bottom_height, v.bottom_height);
-        let moved = (left, right, bottom) != (known, v.right_width, v.bottom_height);
+        let right = kept(sizes.1, self.right.default, own.right_width);
+        let bottom = kept(sizes.2, own.bottom_height, own.bottom_height);
+        let moved = (left, right, bottom) != (known, own.right_width, own.bottom_height);
         let down = ctx.input(|i| i.pointer.any_down());
         if down && ctx.dragged_id().is_some() && moved {
             ctx.data_mut(|d| d.insert_temp(dragging(), true));

@@ -5,26 +5,21 @@
 
 use std::{
     collections::BTreeMap,
-    sync::{
-        Arc, Mutex, PoisonError,
-        mpsc::{self, Receiver, RecvTimeoutError},
-    },
-    thread,
+    sync::{Mutex, PoisonError},
     time::Duration,
 };
 
-use bevy_egui::egui::{Color32, Context, Id, Mesh, Pos2, Rect, Shape, Ui, Vec2};
-use glam::Vec3;
+use bevy_egui::egui::Mesh;
 
-use super::{marks::Lens, state::Session};
+use super::{kept::Background, marks::Lens, prelude::*};
 use crate::{
+    caught::catch,
     channel::DebugChannel,
     document::Revision,
     library::status::Reloaded,
     optics::TermSelection,
     reference::{Settings, WireDrawer, Wires},
-    registry::Registry,
-    scene::{Observer, Scene},
+    scene::Observer,
 };
 
 /// Maximum time that a frame waits for lines.
@@ -65,30 +60,20 @@ struct Sight {
 struct OfView {
     /// Scene of the view, without the camera of the window.
     scene: Option<(Revision, Arc<Scene>)>,
-    drawer: Option<WireDrawer>,
-    running: Option<(Question, Receiver<(WireDrawer, Wires)>)>,
-    shown: Option<(Question, Arc<Wires>)>,
+    drawer: Arc<Mutex<WireDrawer>>,
+    lines: Background<Question, Arc<Wires>>,
     /// The latest drawn mesh.
     drawn: Option<(Arc<Wires>, Sight, Arc<Mesh>)>,
-    calculations: u64,
 }
 
-type Shared = Arc<Mutex<BTreeMap<usize, OfView>>>;
-
-fn shared(ctx: &Context) -> Shared {
-    ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("lines of meshes")).clone())
-}
-
-fn with<T>(ctx: &Context, of: impl FnOnce(&mut BTreeMap<usize, OfView>) -> T) -> T {
-    of(&mut shared(ctx).lock().unwrap_or_else(PoisonError::into_inner))
-}
+type Views = BTreeMap<usize, OfView>;
 
 /// The lines and dots over the picture of a view, and the number of calculations so far.
 #[must_use]
 pub fn shown(ctx: &Context, view: usize) -> Option<(Arc<Wires>, u64)> {
-    with(ctx, |all| {
-        let of = all.get(&view)?;
-        Some((of.shown.as_ref()?.1.clone(), of.calculations))
+    kept::shared(ctx, |all: &mut Views| {
+        let lines = &all.get(&view)?.lines;
+        Some((lines.shown.as_ref()?.1.clone(), lines.calculations))
     })
 }
 
@@ -101,7 +86,7 @@ pub(super) fn remark(ctx: &Context, view: usize) -> Option<String> {
 pub(super) fn paint(ui: &Ui, rect: Rect, part: Rect, view: usize, session: &Session, registry: &Registry) {
     let channel = session.channel_of(view).filter(|channel| channel.has_wires());
     let Some(channel) = channel else {
-        with(ui.ctx(), |all| all.remove(&view));
+        kept::shared(ui.ctx(), |all: &mut Views| all.remove(&view));
         return;
     };
     if !(rect.is_finite() && part.is_positive()) {
@@ -121,7 +106,7 @@ pub(super) fn paint(ui: &Ui, rect: Rect, part: Rect, view: usize, session: &Sess
     };
     let lens = Lens::of(session, rect);
     let sight = Sight { rect, eye: lens.eye(), axes: lens.axes(), field_of_view: fov };
-    let mesh = with(ui.ctx(), |all| {
+    let mesh = kept::shared(ui.ctx(), |all: &mut Views| {
         let of = all.entry(view).or_default();
         let wires = of.answer(ui.ctx(), &question, view, session, registry)?;
         let same =
@@ -148,71 +133,32 @@ impl OfView {
         session: &Session,
         registry: &Registry,
     ) -> Option<Arc<Wires>> {
-        // A running calculation may answer an older question.
-        for _ in 0..2 {
-            if self.shown.as_ref().is_some_and(|(asked, _)| asked == question) {
-                break;
+        let Self { scene, drawer, lines, .. } = self;
+        lines.ask(ctx, question, PATIENCE, || {
+            if !matches!(scene, Some((known, _)) if *known == question.revision) {
+                *scene = Some((question.revision, Arc::new(session.document.seen(view, registry)?.0)));
             }
-            let new = self.running.is_none();
-            if new {
-                let scene = self.scene(question.revision, view, session, registry)?;
-                let drawer = self.drawer.take().unwrap_or_default();
-                let receiver = start(ctx, question.clone(), scene, registry.clone(), drawer);
-                self.running = Some((question.clone(), receiver));
-                self.calculations += 1;
-            }
-            let (asked, receiver) = self.running.as_ref()?;
-            match receiver.recv_timeout(if new { PATIENCE } else { Duration::ZERO }) {
-                Ok((drawer, wires)) => {
-                    self.shown = Some((asked.clone(), Arc::new(wires)));
-                    self.drawer = Some(drawer);
-                }
-                Err(RecvTimeoutError::Timeout) => break,
-                // A bug, for example in a shape of another crate: show nothing until something changes.
-                Err(RecvTimeoutError::Disconnected) => {
-                    self.shown = Some((asked.clone(), Arc::default()));
-                }
-            }
-            self.running = None;
-        }
-        let fits = |(asked, _): &&(Question, Arc<Wires>)| asked.channel == question.channel;
-        self.shown.as_ref().filter(fits).map(|(_, wires)| wires.clone())
-    }
-
-    fn scene(
-        &mut self,
-        revision: Revision,
-        view: usize,
-        session: &Session,
-        registry: &Registry,
-    ) -> Option<Arc<Scene>> {
-        if !matches!(&self.scene, Some((known, _)) if *known == revision) {
-            self.scene = Some((revision, Arc::new(session.document.seen(view, registry)?.0)));
-        }
-        self.scene.as_ref().map(|(_, scene)| scene.clone())
+            let (scene, question) = (scene.as_ref()?.1.clone(), question.clone());
+            let (drawer, registry) = (drawer.clone(), registry.clone());
+            // A bug, for example in a shape of another crate: show nothing until something changes.
+            Some(move || catch(|| wires(question, &scene, &registry, &drawer)).unwrap_or_default())
+        });
+        let (asked, wires) = lines.shown.as_ref()?;
+        (asked.channel == question.channel).then(|| wires.clone())
     }
 }
 
-fn start(
-    ctx: &Context,
-    question: Question,
-    scene: Arc<Scene>,
-    registry: Registry,
-    mut drawer: WireDrawer,
-) -> Receiver<(WireDrawer, Wires)> {
-    let (sender, receiver) = mpsc::channel();
-    let ctx = ctx.clone();
-    thread::spawn(move || {
-        let Question { channel, size: [width, height], observer, terms, .. } = question;
-        let scene = Scene { observer, ..(*scene).clone() };
-        let settings = Settings { width, height, samples: 1, terms };
-        let most = if channel.has_dots() { DOTS } else { LINES };
-        let wires = drawer.wires(&scene, &registry, &settings, channel, most);
-        // The receiver is gone once the channel has changed.
-        drop(sender.send((drawer, wires)));
-        ctx.request_repaint();
-    });
-    receiver
+fn wires(question: Question, scene: &Scene, registry: &Registry, drawer: &Mutex<WireDrawer>) -> Arc<Wires> {
+    let Question { channel, size: [width, height], observer, terms, .. } = question;
+    let scene = Scene { observer, ..scene.clone() };
+    let settings = Settings { width, height, samples: 1, terms };
+    let most = if channel.has_dots() { DOTS } else { LINES };
+    let mut drawer = drawer.lock().unwrap_or_else(PoisonError::into_inner);
+    // After a panic it begins anew.
+    let mut taken = std::mem::take(&mut *drawer);
+    let wires = taken.wires(&scene, registry, &settings, channel, most);
+    *drawer = taken;
+    Arc::new(wires)
 }
 
 /// Lines and dots as projected by the camera.

@@ -1,85 +1,13 @@
 //! Builder methods for declarations of parameters: adding a field to [`Parameter`] does not break existing
-//! declarations.
+//! declarations. They begin with that of a [kind](super::kind).
 
-use std::ops::RangeInclusive;
-
-use super::{
-    declaration::{Parameter, ParameterKind},
-    file::FileFormat,
-};
+use super::{Parameter, ParameterKind};
 
 impl Parameter {
     /// A parameter whose symbol and label are its name, without unit and help.
-    const fn new(name: &'static str, kind: ParameterKind) -> Self {
+    #[must_use]
+    pub const fn new(name: &'static str, kind: ParameterKind) -> Self {
         Self { name, symbol: name, label: name, unit: "", help: "", kind, used_when: None }
-    }
-
-    /// A real number in a range. From [`ABOVE_ZERO`](super::ABOVE_ZERO) on it is greater than zero.
-    ///
-    /// ```
-    /// use lights_camera_models::parameter::Parameter;
-    /// const WIDTH: Parameter = Parameter::number("width", 0.0..=1.0, 0.5)
-    ///     .symbol("w")
-    ///     .unit("m")
-    ///     .help("The width of the stripes.");
-    /// assert_eq!(WIDTH.rule(), "between 0 and 1");
-    /// ```
-    #[must_use]
-    pub const fn number(name: &'static str, range: RangeInclusive<f32>, default: f32) -> Self {
-        Self::new(name, ParameterKind::Number { min: *range.start(), max: *range.end(), default })
-    }
-
-    /// A whole number in a range.
-    #[must_use]
-    pub const fn integer(name: &'static str, range: RangeInclusive<i64>, default: i64) -> Self {
-        let (min, max) = (*range.start(), *range.end());
-        Self::new(name, ParameterKind::Integer { min, max: Some(max), slider_max: max, default })
-    }
-
-    /// A whole number, that or more; `slider_max` is the end of its slider.
-    #[must_use]
-    pub const fn integer_from(name: &'static str, min: i64, slider_max: i64, default: i64) -> Self {
-        Self::new(name, ParameterKind::Integer { min, max: None, slider_max, default })
-    }
-
-    /// A colour: three sRGB-encoded integers, 0–255.
-    #[must_use]
-    pub const fn colour(name: &'static str, default: [u8; 3]) -> Self {
-        Self::new(name, ParameterKind::Colour { default }).unit("sRGB")
-    }
-
-    /// Three real numbers in a range, for red, green and blue.
-    #[must_use]
-    pub const fn triple(name: &'static str, range: RangeInclusive<f32>, default: [f32; 3]) -> Self {
-        Self::new(name, ParameterKind::Triple { min: *range.start(), max: *range.end(), default })
-    }
-
-    /// One of several choices, the name of each in files and that in the window; the default is an index.
-    #[must_use]
-    pub const fn choice(
-        name: &'static str,
-        options: &'static [(&'static str, &'static str)],
-        default: usize,
-    ) -> Self {
-        Self::new(name, ParameterKind::Choice { options, default })
-    }
-
-    /// Yes or no: `true` or `false` in scene files.
-    ///
-    /// ```
-    /// use lights_camera_models::parameter::{Parameter, Value};
-    /// const TWO_SIDED: Parameter = Parameter::flag("two_sided", true);
-    /// assert_eq!(TWO_SIDED.parse("false"), Ok(Value::flag(false)));
-    /// ```
-    #[must_use]
-    pub const fn flag(name: &'static str, default: bool) -> Self {
-        Self::new(name, ParameterKind::flag(default))
-    }
-
-    /// A file of numbers, for light types and object types; the default is the name of a file that is shipped with the format.
-    #[must_use]
-    pub const fn file(name: &'static str, format: &'static FileFormat, default: &'static str) -> Self {
-        Self::new(name, ParameterKind::File { format, default })
     }
 
     /// Sets the symbol for equations.

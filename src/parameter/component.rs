@@ -7,25 +7,31 @@ use bevy::{
     ecs::{
         component::ComponentId,
         prelude::*,
+        query::QueryFilter,
         reflect::AppTypeRegistry,
         world::{EntityRef, EntityWorldMut},
     },
     reflect::GetTypeRegistration,
 };
 
-use super::{
-    declaration::{Parameter, ParameterKind},
-    set::ParameterSet,
-    value::Value,
-    values::Values,
-};
+use super::{Parameter, set::ParameterSet, values::Values};
 use crate::optics::colour::Encoding;
 
 /// The encoding of colours in components: they are linear, whatever the display settings.
 const ENCODING: Encoding = Encoding::Srgb;
 
-/// Finds the entities on which a component changed since the last run of the exclusive system that calls it.
+/// Finds the entities on which components changed since the world's last change tick.
 pub type Watch = Box<dyn FnMut(&mut World, &mut Vec<Entity>) + Send + Sync>;
+
+/// Finds the entities that pass a filter for changes.
+#[must_use]
+pub fn watch<F: QueryFilter + 'static>() -> Watch {
+    let mut changed: Option<QueryState<Entity, F>> = None;
+    Box::new(move |world: &mut World, found: &mut Vec<Entity>| {
+        let changed = changed.get_or_insert_with(|| world.query_filtered());
+        found.extend(changed.iter(world));
+    })
+}
 
 /// A parameter struct as a component, without its type.
 #[derive(Clone, Copy)]
@@ -57,13 +63,7 @@ impl TypeComponent {
                 }
                 world.register_component::<T>()
             },
-            watch: || {
-                let mut changed: Option<QueryState<Entity, Changed<T>>> = None;
-                Box::new(move |world, found| {
-                    let changed = changed.get_or_insert_with(|| world.query_filtered());
-                    found.extend(changed.iter(world));
-                })
-            },
+            watch: watch::<Changed<T>>,
             insert: |entity, values| {
                 let new = T::from_values(values, ENCODING);
                 let known = entity.get::<T>().map(|known| known.to_values(ENCODING));
@@ -87,17 +87,9 @@ impl TypeComponent {
         let mut refused = Ok(());
         for p in self.parameters {
             let Some(value) = values.remove(p.name) else { continue };
-            let (value, rule) = match (&p.kind, value) {
-                (ParameterKind::Colour { .. }, Value::Triple(numbers)) => {
-                    let nearest = Value::Colour(ENCODING.encode(numbers.into()));
-                    let [r, g, b] = numbers;
-                    (nearest, Some(format!("({r}, {g}, {b}), but a linear colour has numbers from 0 to 1")))
-                }
-                (ParameterKind::Choice { options, .. }, Value::Integer(i)) => {
-                    let last = options.len().saturating_sub(1);
-                    (p.default_value(), Some(format!("{i}, but the last choice is {last}")))
-                }
-                (_, value) => (value, None),
+            let (value, rule) = match p.kind.mended(&value) {
+                Some((nearest, rule)) => (nearest, Some(rule)),
+                None => (value, None),
             };
             if let Some(rule) = rule.filter(|_| refused.is_ok()) {
                 refused = Err(format!("the {} of `{}` is {rule}", p.label, self.name));

@@ -16,7 +16,7 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
-use super::outside;
+use super::outside::Outside;
 use crate::files;
 use crate::files::Shown as _;
 
@@ -69,8 +69,8 @@ pub struct NamedFile {
 struct Content {
     /// The file, or its bytes if it is part of the program.
     source: Result<PathBuf, &'static [u8]>,
-    /// The folder of the scenes that name it, which must contain it.
-    folder: PathBuf,
+    /// The folder of the scenes that name it, which must contain it; `None` if it may be anywhere.
+    folder: Option<PathBuf>,
     format: &'static FileFormat,
     /// Set once it was read for the first time.
     first: OnceLock<()>,
@@ -97,8 +97,8 @@ struct Numbers {
 /// Identifies files, whatever their paths: identity and format.
 type Key = (files::Identity, &'static str);
 
-/// The contents of files on disk that are in use, by path, by the folder of the scene and by format.
-type Contents = HashMap<(PathBuf, PathBuf, &'static str), Weak<Content>>;
+/// The contents of files on disk that are in use, by path, by the folder that must contain them and by format.
+type Contents = HashMap<(PathBuf, Option<PathBuf>, &'static str), Weak<Content>>;
 /// The contents of shipped files, by name and format.
 type Shipped = HashMap<(&'static str, &'static str), Arc<Content>>;
 
@@ -193,9 +193,21 @@ pub fn files_read() -> [usize; 2] {
 
 impl NamedFile {
     /// The file with this name in the folder of a scene. If it does not exist, a shipped file may have that
-    /// name. A file outside the folder is not read, unless the user chose it or all are allowed.
+    /// name. A file outside the folder is not read.
     #[must_use]
     pub fn named(name: &str, folder: &Path, format: &'static FileFormat) -> Self {
+        Self::allowed(name, folder, format, Outside::NONE)
+    }
+
+    /// Like [`named`](Self::named), for a file chosen by the user, which may be anywhere.
+    #[must_use]
+    pub fn chosen(name: &str, folder: &Path, format: &'static FileFormat) -> Self {
+        Self::allowed(name, folder, format, Outside::ALL)
+    }
+
+    /// Like [`named`](Self::named), for a scene that may name these files outside its folder.
+    #[must_use]
+    pub fn allowed(name: &str, folder: &Path, format: &'static FileFormat, outside: &Outside) -> Self {
         let path = folder.join(name);
         let shipped = format.shipped.iter().find(|(shipped, _)| *shipped == name && !path.exists());
         if let Some((name, _)) = shipped {
@@ -203,25 +215,8 @@ impl NamedFile {
         }
         // Nothing is the working folder.
         let [path, folder] = [path, folder.join(".")].map(|p| std::path::absolute(&p).unwrap_or(p));
-        if outside::is_trusted() {
-            outside::allow(&path);
-        }
-        let mut contents = CONTENTS.lock().unwrap_or_else(PoisonError::into_inner);
-        contents.retain(|_, content| content.strong_count() > 0);
-        let known = contents.entry((path.clone(), folder.clone(), format.name)).or_default();
-        let content = match known.upgrade() {
-            Some(content) => {
-                // It may have changed since it was read; many parts may name it.
-                if content.first.get().is_some() && !content.is_as_read() {
-                    content.read();
-                }
-                content
-            }
-            None => Content::new(Ok(path), folder, format),
-        };
-        *known = Arc::downgrade(&content);
-        drop(contents);
-        Self { name: Cow::Owned(name.to_owned()), content }
+        let folder = (!outside.allows(&path)).then_some(folder);
+        Self { name: Cow::Owned(name.to_owned()), content: Content::of(path, folder, format) }
     }
 
     /// A shipped file.
@@ -229,16 +224,9 @@ impl NamedFile {
         let bytes =
             format.shipped.iter().find(|(shipped, _)| *shipped == name).map_or(&[][..], |(_, bytes)| bytes);
         let mut shipped = SHIPPED.lock().unwrap_or_else(PoisonError::into_inner);
-        let content = shipped
-            .entry((name, format.name))
-            .or_insert_with(|| Content::new(Err(bytes), PathBuf::new(), format));
+        let content =
+            shipped.entry((name, format.name)).or_insert_with(|| Content::new(Err(bytes), None, format));
         Self { name: Cow::Borrowed(name), content: content.clone() }
-    }
-
-    /// Like [`named`](Self::named), for a file chosen by the user, which may be anywhere.
-    #[must_use]
-    pub fn chosen(name: &str, folder: &Path, format: &'static FileFormat) -> Self {
-        outside::trusting(|| Self::named(name, folder, format))
     }
 
     /// The name as in the scene file.
@@ -271,12 +259,13 @@ impl NamedFile {
         let there = std::path::absolute(folder.join(&*self.name)).ok();
         match self.path() {
             Some(path) if there.as_deref() != Some(path) => {
+                let mut content = self.content.clone();
                 // Anyone who could use it here may use it there.
                 if self.numbers().is_some() {
-                    outside::allow(path);
+                    content = Content::of(path.to_owned(), None, content.format);
+                    content.read_as(&self.content);
                 }
-                let name = Cow::Owned(path.to_string_lossy().into_owned());
-                Self { name, content: self.content.clone() }
+                Self { name: Cow::Owned(path.to_string_lossy().into_owned()), content }
             }
             _ => self.clone(),
         }
@@ -328,13 +317,40 @@ impl NamedFile {
     }
 }
 
+impl Outside {
+    /// Allows those of these files that may be anywhere already, for example because the user chose them.
+    pub fn allow<'f>(&mut self, files: impl IntoIterator<Item = &'f NamedFile>) {
+        let anywhere = files.into_iter().filter(|file| file.content.folder.is_none());
+        anywhere.filter_map(NamedFile::path).for_each(|path| self.add(path));
+    }
+}
+
 impl Content {
     fn new(
         source: Result<PathBuf, &'static [u8]>,
-        folder: PathBuf,
+        folder: Option<PathBuf>,
         format: &'static FileFormat,
     ) -> Arc<Self> {
         Arc::new(Self { source, folder, format, first: OnceLock::new(), state: RwLock::default() })
+    }
+
+    /// The content of a file on disk, shared with those that use it, and read again if it has changed.
+    fn of(path: PathBuf, folder: Option<PathBuf>, format: &'static FileFormat) -> Arc<Self> {
+        let mut contents = CONTENTS.lock().unwrap_or_else(PoisonError::into_inner);
+        contents.retain(|_, content| content.strong_count() > 0);
+        let known = contents.entry((path.clone(), folder.clone(), format.name)).or_default();
+        let content = match known.upgrade() {
+            Some(content) => {
+                // It may have changed since it was read; many parts may name it.
+                if content.first.get().is_some() && !content.is_as_read() {
+                    content.read();
+                }
+                content
+            }
+            None => Self::new(Ok(path), folder, format),
+        };
+        *known = Arc::downgrade(&content);
+        content
     }
 
     /// The content of the file, read now unless read before.
@@ -374,14 +390,12 @@ impl Content {
 
     /// The path from which the file is read, if permitted.
     fn place(&self, path: &Path) -> Result<PathBuf, String> {
-        if outside::is_allowed(path) {
-            return Ok(path.to_owned());
-        }
-        files::inside(&self.folder, path).map_err(|error| match error {
+        let Some(folder) = &self.folder else { return Ok(path.to_owned()) };
+        files::inside(folder, path).map_err(|error| match error {
             files::FileError::Outside(_) => {
                 format!(
                     "{error}, but a scene may read only files in its own folder, unless {} is given",
-                    outside::OPTION
+                    Outside::OPTION
                 )
             }
             error => error.to_string(),

@@ -1,6 +1,6 @@
 //! The layout of parameters for shaders.
 
-use super::{declaration::Parameter, values::Values};
+use super::{Parameter, kind::lanes, values::Values};
 use crate::optics::colour::Encoding;
 
 /// Maximum size of a model's parameters, in bytes.
@@ -13,13 +13,10 @@ pub fn layout(parameters: &[Parameter]) -> Vec<(&'static str, &'static str, usiz
     let mut offset = 0usize;
     let mut fields = Vec::with_capacity(parameters.len());
     for p in parameters {
-        let (size, align) = match p.wgsl_type() {
-            "vec3<f32>" => (12, 16),
-            _ => (4, 4),
-        };
-        offset = offset.next_multiple_of(align);
+        let lanes = lanes(p.wgsl_type());
+        offset = offset.next_multiple_of(4 * lanes.next_power_of_two());
         fields.push((p.name, p.wgsl_type(), offset));
-        offset += size;
+        offset += 4 * lanes;
     }
     fields
 }
@@ -29,25 +26,21 @@ pub fn layout(parameters: &[Parameter]) -> Vec<(&'static str, &'static str, usiz
 #[must_use]
 pub fn stride(parameters: &[Parameter]) -> usize {
     let fields = layout(parameters);
-    let align = if fields.iter().any(|f| f.1 == "vec3<f32>") { 16 } else { 4 };
-    let end = fields.last().map_or(4, |(_, kind, offset)| offset + if *kind == "vec3<f32>" { 12 } else { 4 });
-    end.next_multiple_of(align)
+    let most = fields.iter().map(|(_, kind, _)| lanes(kind)).max().unwrap_or(1);
+    let end = fields.last().map_or(4, |(_, kind, offset)| offset + 4 * lanes(kind));
+    end.next_multiple_of(4 * most.next_power_of_two())
 }
 
 /// The bytes of the parameters of one object, [`stride`] long.
 #[must_use]
 pub fn pack(parameters: &[Parameter], values: &Values, encoding: Encoding) -> Vec<u8> {
     let mut block = vec![0u8; stride(parameters)];
-    for ((_, kind, offset), parameter) in layout(parameters).into_iter().zip(parameters) {
-        let mut put = |at: usize, bytes: [u8; 4]| block[at..at + 4].copy_from_slice(&bytes);
-        match kind {
-            "vec3<f32>" => {
-                for (i, c) in values.colour(parameter, encoding).to_array().into_iter().enumerate() {
-                    put(offset + 4 * i, c.to_le_bytes());
-                }
-            }
-            "u32" => put(offset, values.choice(parameter).to_le_bytes()),
-            _ => put(offset, values.number(parameter).to_le_bytes()),
+    let mut words = Vec::new();
+    for ((.., offset), p) in layout(parameters).into_iter().zip(parameters) {
+        words.clear();
+        p.kind.words(&values.get(p), encoding, &mut words);
+        for (to, word) in block[offset..].chunks_exact_mut(4).zip(&words) {
+            to.copy_from_slice(&word.to_le_bytes());
         }
     }
     block
@@ -58,11 +51,7 @@ pub fn pack(parameters: &[Parameter], values: &Values, encoding: Encoding) -> Ve
 pub fn words(parameters: &[Parameter], values: &Values, encoding: Encoding) -> Vec<u32> {
     let mut words = Vec::new();
     for p in parameters {
-        match p.wgsl_type() {
-            "vec3<f32>" => words.extend(values.colour(p, encoding).to_array().map(f32::to_bits)),
-            "u32" => words.push(values.choice(p)),
-            _ => words.push(values.number(p).to_bits()),
-        }
+        p.kind.words(&values.get(p), encoding, &mut words);
     }
     words
 }
@@ -71,8 +60,8 @@ pub fn words(parameters: &[Parameter], values: &Values, encoding: Encoding) -> V
 mod tests {
     use super::*;
     use crate::parameter::{
+        kind::Value,
         shared::{BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
-        value::Value,
     };
 
     #[test]

@@ -1,13 +1,9 @@
 //! A value from text, as typed on the command line, and the rule that a value breaks.
 
-use std::{borrow::Cow, fmt, path::Path};
+use std::fmt;
 
-use super::{
-    declaration::{Parameter, ParameterKind},
-    file::NamedFile,
-    value::Value,
-};
-use crate::text::{did_you_mean, items, shortened};
+use super::{Parameter, kind::Value};
+use crate::text::shortened;
 
 /// The reason why a text is not a legal value of a parameter. Displayed as the end of a sentence: "is 0.2,
 /// but the diffuse coefficient must be between 0.5 and 1".
@@ -31,7 +27,7 @@ impl std::error::Error for ParseError {}
 
 impl Parameter {
     /// The value written as text: a number, three numbers such as `255,128,0` or `255 128 0`, the name of a choice, or
-    /// the name of a file. One number serves for all three of a [triple](ParameterKind::Triple).
+    /// the name of a file in the current folder. One number serves for all three of a [triple](super::kind::triple).
     ///
     /// ```
     /// use lights_camera_models::parameter::{ALPHA, BASE_COLOUR, K_D, Value};
@@ -45,39 +41,9 @@ impl Parameter {
     /// # Errors
     /// Returns a [`ParseError`] if the text is not a value of the parameter's kind, or the value is out of range.
     pub fn parse(&self, text: &str) -> Result<Value, ParseError> {
-        self.parse_in(text, Path::new(""))
-    }
-
-    /// Like [`parse`](Self::parse), with the folder of the files that the text may name.
-    ///
-    /// # Errors
-    /// Returns an error if [`parse`](Self::parse) does.
-    pub fn parse_in(&self, text: &str, folder: &Path) -> Result<Value, ParseError> {
         let broken = |rule| ParseError { found: text.to_owned(), rule };
-        let value = self.typed(text, folder).ok_or_else(|| broken(self.clause()))?;
+        let value = self.kind.parse(text).ok_or_else(|| broken(self.clause()))?;
         self.check(&value).map(|()| value).map_err(broken)
-    }
-
-    /// A value of the right kind, which may be out of range.
-    fn typed(&self, written: &str, folder: &Path) -> Option<Value> {
-        let text = written.trim();
-        match self.kind {
-            ParameterKind::Number { .. } => text.parse().ok().map(Value::Number),
-            ParameterKind::Integer { .. } => text.parse().ok().map(Value::Integer),
-            ParameterKind::Colour { .. } => all(text)?.try_into().ok().map(Value::Colour),
-            ParameterKind::Triple { .. } => match all(text)?[..] {
-                [all] => Some(Value::Triple([all; 3])),
-                [r, g, b] => Some(Value::Triple([r, g, b])),
-                _ => None,
-            },
-            ParameterKind::Choice { options, .. } => {
-                let known = options.iter().map(|(id, _)| *id).find(|id| *id == text);
-                Some(Value::Choice(known.map_or_else(|| Cow::Owned(text.to_owned()), Cow::Borrowed)))
-            }
-            ParameterKind::File { format, .. } => {
-                Some(Value::File(NamedFile::named(written, folder, format)))
-            }
-        }
     }
 
     /// Checks that the value is legal. The error is the rule that it breaks, with a hint: "the Fresnel term
@@ -89,16 +55,7 @@ impl Parameter {
         if self.allows(value) {
             return Ok(());
         }
-        let hint = match (&self.kind, value) {
-            (ParameterKind::Choice { options, .. }, Value::Choice(id)) if !self.is_flag() => did_you_mean(
-                id,
-                options.iter().map(|(id, name)| (*name, *id)).chain(options.iter().map(|(id, _)| (*id, *id))),
-            ),
-            (ParameterKind::File { .. }, Value::File(file)) => {
-                file.problem().map_or_else(String::new, |problem| format!(": {problem}"))
-            }
-            _ => String::new(),
-        };
+        let hint = if self.kind.owns(value) { self.kind.hint(value) } else { String::new() };
         Err(self.clause() + &hint)
     }
 
@@ -110,18 +67,12 @@ impl Parameter {
         if self.is_flag() {
             return format!("{} must be {}", self.name, self.rule());
         }
-        let unit = match (self.unit, &self.kind) {
-            ("", _) | (_, ParameterKind::Colour { .. } | ParameterKind::Choice { .. }) => String::new(),
-            ("°", _) => " degrees".to_owned(),
-            (unit, _) => format!(" {unit}"),
+        let unit = match self.suffix() {
+            sign if sign == "°" => " degrees".to_owned(),
+            unit => unit,
         };
         format!("the {} must be {}{unit}", self.label, self.rule())
     }
-}
-
-/// Every item of a list as a number.
-fn all<T: std::str::FromStr>(text: &str) -> Option<Vec<T>> {
-    items(text).into_iter().map(|(_, item)| item.parse().ok()).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Structs whose fields are declared parameters.
 
-use super::{declaration::Parameter, values::Values};
+use super::{Parameter, values::Values};
 use crate::optics::colour::Encoding;
 
 /// A type whose fields are declared parameters; written by [`parameters!`](crate::parameters).
@@ -15,8 +15,8 @@ pub trait ParameterSet: Sized + Send + Sync + 'static {
     fn to_values(&self, encoding: Encoding) -> Values;
 }
 
-/// Declares a struct whose fields are the parameters of a model, a light type or an object type, each with its
-/// declaration. A block `derived { field: Type = function }` after it adds fields calculated once from the others. Its
+/// Declares a struct whose fields are the parameters of a model, a light type or an object type, each with the file of
+/// its [kind](crate::parameter::kind) and its declaration. A block `derived { field: Type = function }` after it adds fields calculated once from the others. Its
 /// default has the declared defaults. The struct is also a component of Bevy's, and known to its reflection.
 ///
 /// ```
@@ -45,14 +45,14 @@ macro_rules! parameters {
         $(#[$meta])*
         #[derive(Clone, Debug, PartialEq)]
         $visible struct $name {
-            $( $(#[$field_meta])* pub $field: $crate::parameters!(@type $kind), )*
+            $( $(#[$field_meta])* pub $field: $crate::parameter::kind::$kind::Field, )*
             $( $( $(#[$derived_meta])* pub $derived: $derived_type, )* )?
         }
 
         $crate::parameters!(@copy $name $($kind)*);
 
         $crate::reflect_parameters!($name {
-            $( $field: $crate::parameters!(@type $kind) ),*
+            $( $field: $crate::parameter::kind::$kind::Field ),*
         } derived {
             $( $( $derived = $derive ),* )?
         });
@@ -81,7 +81,7 @@ macro_rules! parameters {
                 encoding: $crate::optics::colour::Encoding,
             ) -> Self {
                 let mut this = Self {
-                    $( $field: $crate::parameters!(@get $kind values encoding $declaration), )*
+                    $( $field: values.field(&$declaration, encoding), )*
                     $( $( $derived: <$derived_type>::default(), )* )?
                 };
                 $( $( this.$derived = ($derive)(&this); )* )?
@@ -91,7 +91,13 @@ macro_rules! parameters {
             #[allow(unused_variables, unused_mut)]
             fn to_values(&self, encoding: $crate::optics::colour::Encoding) -> $crate::parameter::Values {
                 let mut values = $crate::parameter::Values::default();
-                $( $crate::parameters!(@put $kind values self.$field, $declaration, encoding); )*
+                $(
+                    if let Some(value) =
+                        $crate::parameter::kind::Member::value(&self.$field, &$declaration.kind, encoding)
+                    {
+                        values.set($declaration.name, value);
+                    }
+                )*
                 values
             }
         }
@@ -100,40 +106,13 @@ macro_rules! parameters {
     (@copy $name:ident) => { impl ::core::marker::Copy for $name {} };
     (@copy $name:ident file $($kind:ident)*) => {};
     (@copy $name:ident $first:ident $($kind:ident)*) => { $crate::parameters!(@copy $name $($kind)*); };
-    (@put file $values:ident $value:expr, $declaration:expr, $encoding:ident) => {
-        if let Some(file) = &$value.file {
-            $values.set($declaration.name, $crate::parameter::Value::File(file.clone()));
-        }
-    };
-    (@put $kind:ident $values:ident $value:expr, $declaration:expr, $encoding:ident) => {
-        $values.put(&$declaration, $crate::parameters!(@words $kind $value), $encoding);
-    };
-    (@type file) => { $crate::parameter::Table };
-    (@type colour) => { $crate::glam::Vec3 };
-    (@type triple) => { $crate::glam::Vec3 };
-    (@type number) => { f32 };
-    (@type choice) => { u32 };
-    (@type flag) => { bool };
-    (@get colour $values:ident $encoding:ident $declaration:expr) => { $values.colour(&$declaration, $encoding) };
-    (@get triple $values:ident $encoding:ident $declaration:expr) => { $values.colour(&$declaration, $encoding) };
-    (@get number $values:ident $encoding:ident $declaration:expr) => { $values.number(&$declaration) };
-    (@get file $values:ident $encoding:ident $declaration:expr) => {
-        $values.table(&$declaration).unwrap_or_default()
-    };
-    (@get choice $values:ident $encoding:ident $declaration:expr) => { $values.choice(&$declaration) };
-    (@get flag $values:ident $encoding:ident $declaration:expr) => { $values.choice(&$declaration) == 1 };
-    (@words colour $value:expr) => { $value.to_array() };
-    (@words triple $value:expr) => { $value.to_array() };
-    (@words number $value:expr) => { [$value; 3] };
-    (@words choice $value:expr) => { [$value as f32; 3] };
-    (@words flag $value:expr) => { [f32::from($value); 3] };
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{
-        parameter::{BASE_COLOUR, ParameterKind, Value},
+        parameter::{BASE_COLOUR, Value},
         reflection::Microfacet,
     };
 
@@ -149,8 +128,8 @@ mod tests {
         for encoding in [Encoding::Srgb, Encoding::Off] {
             let mut values = Microfacet::default().to_values(encoding);
             for p in Microfacet::PARAMETERS {
-                if let ParameterKind::Choice { options, .. } = p.kind {
-                    values.set(p.name, Value::Choice(options[options.len() - 1].0.into()));
+                if let Some((id, _)) = p.kind.options().last() {
+                    values.set(p.name, Value::Choice((*id).into()));
                 }
             }
             for code in 0..=255 {

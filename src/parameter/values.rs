@@ -1,20 +1,17 @@
 //! The values of parameters, by name.
 
-use std::{borrow::Cow, collections::BTreeMap, ops::RangeInclusive};
+use std::{borrow::Cow, collections::BTreeMap};
 
 use bevy::reflect::Reflect;
 use glam::Vec3;
 use serde::Serialize;
 
 use super::{
-    declaration::{Parameter, ParameterKind},
+    Parameter,
     file::Table,
-    value::Value,
+    kind::{Member, Value},
 };
 use crate::optics::colour::Encoding;
-
-/// The components of a linear colour, which may be beyond their range by as much as 8 bits round it away.
-const LINEAR: RangeInclusive<f32> = -0.5 / 255.0 / 12.92..=1.0 + 0.5 / 255.0;
 
 /// The parameters given by a scene for one object, by name. Absent ones have their defaults; those not used by the
 /// current model are kept.
@@ -46,69 +43,34 @@ impl Values {
         Self(parameters.iter().filter_map(legal).collect())
     }
 
-    /// Sets a parameter from the numbers for calculation: a linear colour is encoded to 8 bits, the index of a choice
-    /// becomes its name. All but colours and triples read the first number. Numbers that are no colour become a triple, an
-    /// index of no choice stays a number: neither is a legal value.
-    pub fn put(&mut self, parameter: &Parameter, numbers: [f32; 3], encoding: Encoding) {
-        let [first, ..] = numbers;
-        let value = match &parameter.kind {
-            ParameterKind::Number { .. } => Value::Number(first),
-            ParameterKind::Integer { .. } => Value::Integer(first.round() as i64),
-            ParameterKind::Colour { .. } if numbers.iter().all(|v| LINEAR.contains(v)) => {
-                Value::Colour(encoding.encode(numbers.into()))
-            }
-            ParameterKind::Colour { .. } => Value::Triple(numbers),
-            ParameterKind::Triple { .. } => Value::Triple(numbers),
-            ParameterKind::Choice { options, .. } => match options.get(first as usize) {
-                Some((id, _)) => Value::Choice((*id).into()),
-                None => Value::Integer(first as i64),
-            },
-            ParameterKind::File { .. } => parameter.default_value(),
-        };
-        self.set(parameter.name, value);
+    /// The parameter as a field of a struct of [`parameters!`](crate::parameters).
+    #[must_use]
+    pub fn field<T: Member>(&self, parameter: &Parameter, encoding: Encoding) -> T {
+        T::of(&parameter.kind, &self.get(parameter), encoding)
     }
 
     /// The parameter as a number for calculation; of three numbers, the first.
     #[must_use]
     pub fn number(&self, parameter: &Parameter) -> f32 {
-        match self.get(parameter) {
-            Value::Number(v) => v,
-            Value::Integer(v) => v as f32,
-            Value::Colour([r, ..]) => f32::from(r),
-            Value::Triple([r, ..]) => r,
-            Value::Choice(_) => self.choice(parameter) as f32,
-            Value::File(_) => 0.0,
-        }
+        self.field(parameter, Encoding::default())
     }
 
     /// The parameter as a linear colour, or as its three numbers, for calculation; zero if it is neither.
     #[must_use]
     pub fn colour(&self, parameter: &Parameter, encoding: Encoding) -> Vec3 {
-        match self.get(parameter) {
-            Value::Colour(rgb) => encoding.decode(rgb),
-            Value::Triple(v) => v.into(),
-            _ => Vec3::ZERO,
-        }
+        self.field(parameter, encoding)
     }
 
     /// The file and its numbers; none if it is not a file.
     #[must_use]
     pub fn table(&self, parameter: &Parameter) -> Option<Table> {
-        match self.get(parameter) {
-            Value::File(file) => file.numbers().map(|numbers| Table { file: Some(file), numbers }),
-            _ => None,
-        }
+        Some(self.field(parameter, Encoding::default())).filter(|table: &Table| table.file.is_some())
     }
 
     /// The index of the chosen option; 0 if it is not a choice.
     #[must_use]
     pub fn choice(&self, parameter: &Parameter) -> u32 {
-        match (&parameter.kind, self.get(parameter)) {
-            (ParameterKind::Choice { options, .. }, Value::Choice(v)) => {
-                options.iter().position(|(id, _)| *id == v.as_ref()).unwrap_or(0) as u32
-            }
-            _ => 0,
-        }
+        self.field(parameter, Encoding::default())
     }
 }
 

@@ -70,16 +70,9 @@ mod path_text {
         Ok(Option::<Text>::deserialize(from)?.map(path))
     }
 
-    #[cfg(unix)]
     fn text(path: &Path) -> Text {
-        use std::os::unix::ffi::OsStrExt as _;
         let text = path.to_str().map(|text| Text::Text(text.to_owned()));
-        text.unwrap_or_else(|| Text::Bytes(path.as_os_str().as_bytes().to_owned()))
-    }
-
-    #[cfg(not(unix))]
-    fn text(path: &Path) -> Text {
-        Text::Text(path.to_string_lossy().into_owned())
+        text.unwrap_or_else(|| Text::Bytes(path.as_os_str().as_encoded_bytes().to_owned()))
     }
 
     fn path(text: Text) -> PathBuf {

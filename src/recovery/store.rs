@@ -8,11 +8,10 @@ use std::{
 };
 
 use super::About;
-use crate::files::Shown as _;
 use crate::{
-    files,
+    files::{self, Shown as _},
     library::assets,
-    parameter::outside,
+    parameter::Outside,
     program,
     registry::Registry,
     scene::{
@@ -214,7 +213,7 @@ impl Abandoned {
         // Paths in the scene are relative to the document's file, not to the copy.
         let folder = self.about.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
         // All files named in it were open in the window.
-        outside::trusting(|| load::in_folder(&bytes, (&name, folder), registry, Defaults::Use))
+        load::in_folder(&bytes, (&name, folder), registry, Defaults::Use.allowing(Outside::ALL))
             .map(|loaded| loaded.scene)
             .map_err(|e| e.to_string().lines().map(str::to_owned).collect())
     }

@@ -162,12 +162,6 @@ impl Keeper {
         self.0.changed(state);
     }
 
-    /// True if there are unsaved changes to keep.
-    #[must_use]
-    pub fn is_needed(&self) -> bool {
-        self.0.lock().wanted.is_some()
-    }
-
     /// The reason why a needed copy could not be written, if so. Reported once.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
@@ -327,6 +321,11 @@ mod tests {
         scene::{Object, Part},
     };
 
+    /// True if there are unsaved changes to keep.
+    fn is_needed(keeper: &Keeper) -> bool {
+        keeper.0.lock().wanted.is_some()
+    }
+
     /// Generous, since machines may be busy.
     const LONG: Duration = Duration::from_secs(60);
 
@@ -374,12 +373,12 @@ mod tests {
     fn unsaved_changes_are_written_by_themselves_and_go_when_they_are_saved() {
         let (store, folder) = store();
         let keeper = Keeper::start(Some(store), || {});
-        assert!(!keeper.is_needed());
+        assert!(!is_needed(&keeper));
         keep(&keeper, "first");
-        assert!(keeper.is_needed());
+        assert!(is_needed(&keeper));
         until("written", || copies(&folder) == 1);
         keeper.forget();
-        assert!(!keeper.is_needed());
+        assert!(!is_needed(&keeper));
         until("removed", || copies(&folder) == 0);
         assert_eq!(keeper.settle(LONG), Settled::Nothing);
     }
@@ -509,7 +508,7 @@ mod tests {
         keep(&document, "b");
         keep(&Document::new(Scene::default()), "c");
         keeper.forget();
-        assert!(!keeper.is_needed());
+        assert!(!is_needed(&keeper));
         keep(&document, "b");
     }
 }

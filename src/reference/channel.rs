@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 
-use super::{Settings, object::Draw};
+use super::{Shot, object::Draw};
 use crate::{
     channel::{Setting, colours::NAN},
     debug::{Leaving, Made, Point, Shows},
@@ -13,8 +13,7 @@ use crate::{
         colour::{Encoding, luminance},
         tone::exposure_factor,
     },
-    registry::Registry,
-    scene::{Scene, emitter, observer::clip_from_room},
+    scene::{emitter, observer::clip_from_room},
     shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
 };
 
@@ -33,7 +32,7 @@ struct Parts {
 }
 
 impl Sight {
-    pub(super) fn new(scene: &Scene, registry: &Registry, settings: &Settings, setting: Setting) -> Self {
+    pub(super) fn new(Shot { scene, registry, settings }: Shot, setting: Setting) -> Self {
         let encoding = scene.display.encoding;
         let size = [settings.width as f32, settings.height as f32];
         let light = setting.light.and_then(|i| scene.shining().nth(i)).and_then(|light| {
@@ -80,10 +79,7 @@ impl Shading for Channelled {
                 let light = self.inner.pixel(lighting, varying, face_normal);
                 self.parts.of_light(formula, light, varying.position)
             }
-            Shows::Geometry(formula, _) => {
-                let normal = varying.normal.normalize_or_zero();
-                self.parts.of_geometry(formula, varying.position, normal, face_normal)
-            }
+            Shows::Geometry(formula, _) => self.parts.of_geometry(formula, varying, face_normal),
             // They are no channel of a single point.
             _ => self.inner.pixel(lighting, varying, face_normal),
         }
@@ -110,21 +106,14 @@ impl Parts {
     /// The pixel that shows a point.
     fn pixel(&self, position: Vec3) -> [u32; 2] {
         let at = self.clip_from_room.project_point3(position);
-        [0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y].map({
-            let mut sides = self.size.into_iter();
-            move |part| (part * sides.next().unwrap_or_default()) as u32
-        })
+        let [width, height] = self.size;
+        [((0.5 + 0.5 * at.x) * width) as u32, ((0.5 - 0.5 * at.y) * height) as u32]
     }
 
     /// The light that shows the geometry at a point.
-    fn of_geometry(
-        &self,
-        formula: fn(&Point<'_>) -> Made,
-        position: Vec3,
-        normal: Vec3,
-        face_normal: Vec3,
-    ) -> Vec3 {
-        let to_eye = self.eye - position;
+    fn of_geometry(&self, formula: fn(&Point<'_>) -> Made, varying: &Varying, face_normal: Vec3) -> Vec3 {
+        let Varying { position, normal, .. } = *varying;
+        let (normal, to_eye) = (normal.normalize_or_zero(), self.eye - position);
         let l = || {
             let (emitter, record) = self.light.as_ref()?;
             match emitter.incident(record, position) {
@@ -147,13 +136,16 @@ mod tests {
             colours::{CLIPPED, INFINITE, NEGATIVE, codes},
         },
         optics::{colour::srgb_decode, viridis::viridis},
+        reference::Settings,
+        registry::Registry,
+        scene::Scene,
     };
 
     fn parts(channel: DebugChannel, exposure: f32) -> Parts {
         let (mut scene, registry) = (Scene::default(), Registry::builtin());
         scene.display.exposure = exposure;
         let setting = Setting::new(channel, &scene, &registry, scene.observer.position, None);
-        let sight = Sight::new(&scene, &registry, &Settings::default(), setting);
+        let sight = Sight::new(Shot::new(&scene, &registry, &Settings::default()), setting);
         Arc::into_inner(sight.0).expect("no one else has it")
     }
 

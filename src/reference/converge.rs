@@ -4,9 +4,9 @@ use std::sync::atomic::AtomicBool;
 
 use glam::Vec4;
 
-use super::{LightSamples, Picture, Settings, render_noting, render_samples};
+use super::{LightSamples, Picture, Settings, render_samples};
+pub use crate::caption::Sampled as Reached;
 use crate::{
-    caption::Sampled,
     optics::colour::luminance,
     progress::{Cancelled, Progress},
     registry::Registry,
@@ -18,31 +18,15 @@ use crate::{
 pub struct Until {
     /// Maximum number of samples of each light.
     pub samples: u32,
-    /// Noise at which it ends earlier; see [`Reached::noise`].
+    /// Noise at which it ends earlier: the root mean square of the standard error of the luminance over all lit pixels,
+    /// divided by their mean luminance. It is estimated from the blocks of samples of which the picture is the mean;
+    /// since these are more evenly distributed together than alone, it is an overestimate.
     pub noise: Option<f32>,
 }
 
 impl Default for Until {
     fn default() -> Self {
         Self { samples: LightSamples::DEFAULT, noise: None }
-    }
-}
-
-/// The state of convergence of a picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reached {
-    /// Number of samples of each light; 0 without light with extent.
-    pub samples: u32,
-    /// The noise: the root mean square of the standard error of the luminance over all lit pixels, divided by
-    /// their mean luminance. It is estimated from the blocks of samples of which the picture is the mean;
-    /// since these are more evenly distributed together than alone, it is an overestimate. `None` with fewer
-    /// than [`Until::FEWEST_FOR_NOISE`] samples.
-    pub noise: Option<f32>,
-}
-
-impl From<Reached> for Sampled {
-    fn from(Reached { samples, noise }: Reached) -> Self {
-        Self { samples, noise }
     }
 }
 
@@ -88,7 +72,8 @@ pub fn render_until(
     progress: &Progress,
 ) -> Result<(Picture, Reached), Cancelled> {
     if !has_extent(scene.shining(), registry) {
-        return Ok((render_noting(scene, registry, settings, odd), Reached { samples: 0, noise: None }));
+        let picture = render_samples(scene, registry, settings, LightSamples::default(), odd);
+        return Ok((picture, Reached { samples: 0, noise: None }));
     }
     let pixels = settings.width as usize * settings.height as usize;
     let mut mean = vec![Vec4::ZERO; pixels];
@@ -125,7 +110,7 @@ pub fn render_until(
     Ok((picture, Reached { samples: taken, noise }))
 }
 
-/// See [`Reached::noise`].
+/// See [`Until::noise`].
 fn noise_of(mean: &[Vec4], squares: &[f64], blocks: u32, samples: u32) -> f32 {
     let mut sums = [0.0f64; 3];
     for (mean, squares) in mean.iter().zip(squares) {

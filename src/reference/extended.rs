@@ -130,7 +130,7 @@ impl Extended {
                 for Arriving { l, light } in arriving {
                     let answer = surface.response(*l, v, frame);
                     watch(*l, answer);
-                    terms = std::array::from_fn(|i| terms[i] + by_term(&answer)[i] * *light);
+                    terms = std::array::from_fn(|i| terms[i] + answer.each()[i] * *light);
                 }
             };
             self.arrive(at, LightSamples { first, count }, &mut take);
@@ -145,15 +145,15 @@ impl Extended {
             }
         };
         let at = At::new(surface.lobes(), p, v, frame, seed);
-        let [ambient, diffuse, specular] = answer(&at, first, count, &mut watch);
+        let terms = answer(&at, first, count, &mut watch);
         let parts: [[Vec3; 3]; PARTS as usize] = std::array::from_fn(|part| {
             let at = At::new(surface.lobes(), p, v, frame, seed ^ (part as u32 + 1) << 26);
             answer(&at, 0, (count / PARTS).max(1), &mut |_, _| ())
         });
         let errors = std::array::from_fn::<_, 3, _>(|i| standard_error(parts.iter().map(|terms| terms[i])));
         Integral {
-            terms: Terms { ambient, diffuse, specular },
-            errors: Terms { ambient: errors[0], diffuse: errors[1], specular: errors[2] },
+            terms: terms.into(),
+            errors: errors.into(),
             error: standard_error(parts.iter().map(|terms| terms.iter().sum())),
             samples: count,
             solid_angle: self.solid_angle((emitter, record), p, seed),
@@ -235,11 +235,6 @@ impl Extended {
             }
         }
     }
-}
-
-/// The ambient, diffuse and specular terms.
-fn by_term(terms: &Terms) -> [Vec3; 3] {
-    [terms.ambient, terms.diffuse, terms.specular]
 }
 
 /// The standard error of the mean of independent values; zero for a single one.

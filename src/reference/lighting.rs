@@ -4,7 +4,10 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use glam::Vec3;
 
-use super::extended::{Extended, Integral, LightSamples};
+use super::{
+    Shot,
+    extended::{Extended, Integral, LightSamples},
+};
 use crate::{
     light::{AT_ONCE, Emitters, Factor, Incident, LightRecord},
     optics::{Frame, TermSelection, Terms, lobes::Lobes, radiometry::Arriving, sequence::pixel_seed},
@@ -24,6 +27,7 @@ pub(super) fn within_bounds(light: Vec3) -> Vec3 {
 }
 
 /// All lights of a scene, ready for calculation.
+#[derive(Default)]
 pub(super) struct Lights {
     /// Consecutive lights of one type together, in the order of the scene.
     groups: Vec<Box<dyn Emitters>>,
@@ -56,7 +60,7 @@ impl Lights {
             first += lights.len() as u32;
         }
         let observer = scene.observer.position;
-        Self { groups, extended, observer, terms, raw: false, odd: AtomicBool::new(false) }
+        Self { groups, extended, observer, terms, ..Self::default() }
     }
 
     /// Sets the samples of lights with extent.
@@ -196,13 +200,12 @@ pub(crate) struct LitBy {
 
 /// The light loop at a point, light by light: each contribution equals the result of the loop for that light
 /// alone, up to rounding.
-pub(super) fn light_by_light(
-    scene: &Scene,
-    registry: &Registry,
-    terms: TermSelection,
+pub(crate) fn light_by_light(
+    Shot { scene, registry, settings }: Shot,
     surface: &dyn Surface,
     point: &Point,
 ) -> Loop {
+    let terms = settings.terms;
     let all = Lights::new(scene, registry, terms);
     let lobes = surface.lobes();
     let lights = all.on(surface, lobes).seeded(point.seed);
@@ -223,14 +226,7 @@ pub(super) fn light_by_light(
                 alone.integral((&*emitter, &record), surface, point.position, v, &frame, point.seed);
             (integral.terms, integral.terms.select(terms), Some(integral))
         } else {
-            let alone = Lights {
-                groups: vec![group],
-                extended: Extended::default(),
-                observer: all.observer,
-                terms,
-                raw: false,
-                odd: AtomicBool::new(false),
-            };
+            let alone = Lights { groups: vec![group], observer: all.observer, terms, ..Lights::default() };
             let response = match incident {
                 Incident::From { l, .. } => surface.response(l, v, &frame),
                 Incident::Uniform { .. } => {

@@ -59,9 +59,15 @@ pub(crate) struct MeshStore {
     polygons: usize,
 }
 
+impl std::fmt::Debug for MeshStore {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("MeshStore").finish_non_exhaustive()
+    }
+}
+
 /// The meshes of the objects that are being drawn.
 pub(super) struct Meshes<'a> {
-    registry: &'a Registry,
+    pub(super) registry: &'a Registry,
     store: MeshStore,
 }
 

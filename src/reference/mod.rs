@@ -139,24 +139,33 @@ impl Picture {
     }
 }
 
+/// A picture to take: of a scene, with what a registry knows, and with some settings.
+#[derive(Clone, Copy)]
+pub(crate) struct Shot<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) registry: &'a Registry,
+    pub(crate) settings: &'a Settings,
+}
+
+impl<'a> Shot<'a> {
+    pub(crate) fn new(scene: &'a Scene, registry: &'a Registry, settings: &'a Settings) -> Self {
+        Self { scene, registry, settings }
+    }
+
+    /// A picture for whose light nobody watches, with the usual samples.
+    fn drawing(self) -> Drawing<'a> {
+        Drawing { shot: self, sight: None, samples: LightSamples::default(), end: None, odd: None }
+    }
+}
+
 /// Renders a scene to light.
 #[must_use]
 pub fn render(scene: &Scene, registry: &Registry, settings: &Settings) -> Picture {
-    render_noting(scene, registry, settings, &AtomicBool::default())
+    Shot::new(scene, registry, settings).drawing().light()
 }
 
-/// Like [`render`]; sets `odd` if light that is not finite was replaced, as shown by the channel
-/// [`NotANumber`](crate::channel::DebugChannel::NotANumber).
-#[must_use]
-pub fn render_noting(scene: &Scene, registry: &Registry, settings: &Settings, odd: &AtomicBool) -> Picture {
-    let pixels =
-        draw(scene, registry, settings, None, (None, odd, LightSamples::default()), Vec4::ZERO, |pixel| {
-            pixel
-        });
-    Picture { width: settings.width, height: settings.height, pixels }
-}
-
-/// Like [`render_noting`], with these samples of lights with extent.
+/// Like [`render`], with these samples of lights with extent. Sets `odd` if light that is not finite was replaced, as
+/// shown by the channel [`NotANumber`](crate::channel::DebugChannel::NotANumber).
 #[must_use]
 pub fn render_samples(
     scene: &Scene,
@@ -165,32 +174,23 @@ pub fn render_samples(
     samples: LightSamples,
     odd: &AtomicBool,
 ) -> Picture {
-    let pixels = draw(scene, registry, settings, None, (None, odd, samples), Vec4::ZERO, |pixel| pixel);
-    Picture { width: settings.width, height: settings.height, pixels }
+    Drawing { odd: Some(odd), samples, ..Shot::new(scene, registry, settings).drawing() }.light()
 }
 
 /// Renders the objects of a scene with the light given by `leaving` at each point.
-pub(crate) fn render_instead(
-    scene: &Scene,
-    registry: &Registry,
-    settings: &Settings,
-    leaving: Arc<Leaving>,
-) -> Picture {
+pub(crate) fn render_instead(shot: Shot, leaving: Arc<Leaving>) -> Picture {
     let instead = Instead(leaving);
-    let seen: &Seen<'_> = &|draw| instead.on(draw);
-    let ever = (None, &AtomicBool::default(), LightSamples::default());
-    let pixels = draw(scene, registry, settings, Some(seen), ever, Vec4::ZERO, |pixel| pixel);
-    Picture { width: settings.width, height: settings.height, pixels }
+    Drawing { sight: Some(&|draw| instead.on(draw)), ..shot.drawing() }.light()
 }
 
 /// Renders a scene with its display settings: the same bytes as [`render`] and [`Picture::to_rgb8`], without ever
 /// holding the whole picture in floating point.
 #[must_use]
 pub fn render_rgb8(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<u8> {
-    render_rgb8_noting(scene, registry, settings, &AtomicBool::default())
+    Shot::new(scene, registry, settings).drawing().rgb8(&scene.display)
 }
 
-/// Like [`render_rgb8`]; sets `odd` as [`render_noting`] does.
+/// Like [`render_rgb8`]; sets `odd` as [`render_samples`] does.
 #[must_use]
 pub fn render_rgb8_noting(
     scene: &Scene,
@@ -198,12 +198,7 @@ pub fn render_rgb8_noting(
     settings: &Settings,
     odd: &AtomicBool,
 ) -> Vec<u8> {
-    let display = DisplayTransform::new(&scene.display);
-    let background = display.apply(Vec4::ZERO);
-    draw(scene, registry, settings, None, (None, odd, LightSamples::default()), background, |pixel| {
-        display.apply(pixel)
-    })
-    .into_flattened()
+    Drawing { odd: Some(odd), ..Shot::new(scene, registry, settings).drawing() }.rgb8(&scene.display)
 }
 
 /// Like [`render_rgb8_noting`], with these samples of lights with extent; `None` if it is not finished by `end`.
@@ -215,11 +210,9 @@ pub fn render_rgb8_until(
     samples: LightSamples,
     end: Instant,
 ) -> Option<Vec<u8>> {
-    let display = DisplayTransform::new(&scene.display);
-    let background = display.apply(Vec4::ZERO);
-    let until = (Some(end), &AtomicBool::default(), samples);
-    let pixels = draw(scene, registry, settings, None, until, background, |pixel| display.apply(pixel));
-    (Instant::now() < end).then(|| pixels.into_flattened())
+    let drawing = Drawing { samples, end: Some(end), ..Shot::new(scene, registry, settings).drawing() };
+    let rgb8 = drawing.rgb8(&scene.display);
+    (Instant::now() < end).then_some(rgb8)
 }
 
 /// Renders a debug channel of a scene: red, green and blue of each pixel, as in its legend.
@@ -241,14 +234,10 @@ pub fn render_channel_by(
     if setting.channel.is_picture() {
         return render_rgb8(&setting.lit(scene), registry, settings);
     }
-    let display = DisplayTransform::new(&Display::default());
-    let background = display.apply(Vec4::ZERO);
-    let ground = Setting { channel: setting.channel.ground(), ..*setting };
-    let sight = Sight::new(scene, registry, settings, ground);
-    let finish = |pixel| display.apply(pixel);
-    let ever = (None, &AtomicBool::default(), samples);
-    let seen: &Seen<'_> = &|draw| sight.seen(draw);
-    let mut rgb8 = draw(scene, registry, settings, Some(seen), ever, background, finish).into_flattened();
+    let shot = Shot::new(scene, registry, settings);
+    let sight = Sight::new(shot, Setting { channel: setting.channel.ground(), ..*setting });
+    let drawing = Drawing { sight: Some(&|draw| sight.seen(draw)), samples, ..shot.drawing() };
+    let mut rgb8 = drawing.rgb8(&Display::default());
     if setting.channel.has_wires() {
         draw_wires(&mut rgb8, scene, registry, settings, setting.channel);
     }
@@ -261,33 +250,48 @@ const POLYGONS_PER_BATCH: usize = 1 << 16;
 /// Replaces the light of an object by another way of drawing it.
 type Seen<'s> = dyn for<'a> Fn(Draw<'a>) -> Draw<'a> + Sync + 's;
 
-/// Draws a scene: `background` where there is neither an object nor a visible light, and elsewhere the result
-/// of `finish` for the light. Anything not done by `end` is skipped; `odd` is set if light was not finite.
-fn draw<T: Copy + Send + Sync>(
-    scene: &Scene,
-    registry: &Registry,
-    settings: &Settings,
-    sight: Option<&Seen<'_>>,
-    (end, odd, samples): (Option<Instant>, &AtomicBool, LightSamples),
-    background: T,
-    finish: impl Fn(Vec4) -> T + Sync,
-) -> Vec<T> {
-    if settings.samples > 1 {
-        draw_sampled::<4, T>(scene, registry, settings, sight, (end, odd, samples), background, finish)
-    } else {
-        draw_sampled::<1, T>(scene, registry, settings, sight, (end, odd, samples), background, finish)
+/// A picture, and how it is drawn.
+#[derive(Clone, Copy)]
+struct Drawing<'a> {
+    shot: Shot<'a>,
+    /// Another way of drawing objects, if any.
+    sight: Option<&'a Seen<'a>>,
+    samples: LightSamples,
+    /// Anything not done by then is skipped.
+    end: Option<Instant>,
+    /// Set if light was not finite.
+    odd: Option<&'a AtomicBool>,
+}
+
+impl Drawing<'_> {
+    /// The light.
+    fn light(&self) -> Picture {
+        let Settings { width, height, .. } = *self.shot.settings;
+        Picture { width, height, pixels: self.draw(Vec4::ZERO, |pixel| pixel) }
+    }
+
+    /// The codes on a display.
+    fn rgb8(&self, display: &Display) -> Vec<u8> {
+        let display = DisplayTransform::new(display);
+        self.draw(display.apply(Vec4::ZERO), |pixel| display.apply(pixel)).into_flattened()
+    }
+
+    /// The picture: `background` where there is neither an object nor a visible light, and elsewhere the result of
+    /// `finish` for the light.
+    fn draw<T: Copy + Send + Sync>(&self, background: T, finish: impl Fn(Vec4) -> T + Sync) -> Vec<T> {
+        match self.shot.settings.samples {
+            0 | 1 => draw_sampled::<1, T>(self, background, finish),
+            _ => draw_sampled::<4, T>(self, background, finish),
+        }
     }
 }
 
 fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
-    scene: &Scene,
-    registry: &Registry,
-    settings: &Settings,
-    sight: Option<&Seen<'_>>,
-    (end, odd, samples): (Option<Instant>, &AtomicBool, LightSamples),
+    &Drawing { shot, sight, samples, end, odd }: &Drawing,
     background: T,
     finish: impl Fn(Vec4) -> T + Sync,
 ) -> Vec<T> {
+    let Shot { scene, registry, settings } = shot;
     let late = || end.is_some_and(|end| Instant::now() >= end);
     let (width, height) = (settings.width as usize, settings.height as usize);
     let mut out = vec![background; width * height];
@@ -301,7 +305,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);
     let frustum = raster::frustum(&clip_from_room);
     // Other ways of drawing show only objects.
-    let visible = sight.is_none().then(|| VisibleLights::new(scene, registry, settings));
+    let visible = sight.is_none().then(|| VisibleLights::new(shot));
 
     let mut tiles: Vec<Option<Tile<S>>> = (0..screen.tiles()).map(|_| None).collect();
     let shown: Vec<_> = scene.shown().collect();
@@ -378,7 +382,9 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
             break;
         }
     }
-    odd.fetch_or(lights.was_odd(), Ordering::Relaxed);
+    if let Some(odd) = odd {
+        odd.fetch_or(lights.was_odd(), Ordering::Relaxed);
+    }
     out
 }
 

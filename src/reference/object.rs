@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::{
     lighting::{Lights, LightsOn},
-    meshes::Prepared,
+    meshes::{Meshes, Prepared},
     raster::{Placed, Screen, Triangle, set_up},
 };
 use crate::{
@@ -78,6 +78,17 @@ impl<'a> Draw<'a> {
             surface,
             anisotropic: model.declaration.anisotropic,
         })
+    }
+
+    /// The first of several objects that are drawn one after the other, unless it is hidden.
+    pub(super) fn first(
+        scene: &'a Scene,
+        meshes: &mut Meshes,
+        objects: &[&'a Object],
+        frustum: &[Vec4],
+    ) -> Option<Self> {
+        let shape = meshes.first(objects).filter(|shape| !hidden(objects[0], shape, frustum))?;
+        Self::new(scene, meshes.registry, objects[0], shape)
     }
 
     /// Some lights as they shine on the object.

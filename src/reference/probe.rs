@@ -9,21 +9,20 @@ use std::{
 use glam::{Mat4, Vec3, Vec4};
 
 use super::{
-    Settings,
-    lighting::{Lights, LightsOn, light_by_light},
+    Shot,
+    lighting::{Lights, LightsOn},
     meshes::{MeshStore, Meshes},
     nearest::nearest,
-    object::{Draw, Face, Posed, hidden},
+    object::{Draw, Face, Posed},
     raster::{self, Screen, Tile},
 };
 use crate::{
     reflection::Surface,
-    registry::Registry,
-    scene::{Observer, Scene, observer::clip_from_room},
+    scene::{Observer, observer::clip_from_room},
     shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
 };
 
-pub(crate) use super::lighting::{LitBy, Loop, Point};
+pub(crate) use super::lighting::{LitBy, Loop, Point, light_by_light as light_loop};
 
 /// The object at a pixel, and the calculation of the pixel's light.
 pub(crate) struct Probe {
@@ -52,16 +51,17 @@ pub(crate) struct Probe {
     pub(crate) light: Vec4,
 }
 
-/// A corner of a triangle.
+/// A corner of the triangle that covers a pixel.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ProbeCorner {
-    /// Index of the vertex in the mesh.
-    pub(crate) vertex: usize,
-    pub(crate) position: Vec3,
-    /// Weight in the pixel, with perspective correction.
-    pub(crate) weight: f32,
-    /// The colour calculated there, if the shading model does so.
-    pub(crate) colour: Vec3,
+pub struct ProbeCorner {
+    /// Index of the vertex in the object's mesh.
+    pub vertex: usize,
+    /// Position in the room.
+    pub position: Vec3,
+    /// Weight in the pixel, with perspective correction; the three add up to 1.
+    pub weight: f32,
+    /// The colour calculated there by the shading model; zero for models that calculate it elsewhere.
+    pub colour: Vec3,
 }
 
 /// A triangle of an object, and the weights of its corners at the point in question.
@@ -74,54 +74,41 @@ struct Found<'a> {
 }
 
 /// The object at a pixel within the picture; `None` for background.
-pub(crate) fn probe(
-    store: &mut MeshStore,
-    scene: &Scene,
-    registry: &Registry,
-    settings: &Settings,
-    pixel: [u32; 2],
-) -> Option<Probe> {
-    let size = [settings.width as usize, settings.height as usize];
+pub(crate) fn probe(store: &mut MeshStore, shot: Shot, pixel: [u32; 2]) -> Option<Probe> {
+    let size = [shot.settings.width as usize, shot.settings.height as usize];
     let pixel = pixel.map(|c| c as usize);
-    let found = first(store, scene, registry, &scene.observer, size, pixel)?;
+    let found = first(store, shot, &shot.scene.observer, size, pixel)?;
     let screen = Screen::of_pixel(size[0], size[1], pixel);
-    Some(shaded(&found, scene, registry, settings, &At::Pixel(&screen, pixel)))
+    Some(shaded(&found, shot, &At::Pixel(&screen, pixel)))
 }
 
 /// The point of an object's surface nearest to a point with a normal, in the coordinates of its mesh: shaded
 /// as if a pixel showed it.
 pub(crate) fn probe_point(
     store: &mut MeshStore,
-    scene: &Scene,
-    registry: &Registry,
-    settings: &Settings,
+    shot: Shot,
     index: usize,
     [point, normal]: [Vec3; 2],
 ) -> Option<Probe> {
-    let object = scene.objects.get(index)?;
-    let mut meshes = Meshes::with(registry, std::mem::take(store));
-    let shape = meshes.first(&[object]);
+    let object = shot.scene.objects.get(index)?;
+    let mut meshes = Meshes::with(shot.registry, std::mem::take(store));
+    let draw = Draw::first(shot.scene, &mut meshes, &[object], &[]);
     *store = meshes.into_store();
-    let draw = Draw::new(scene, registry, object, shape?)?;
+    let draw = draw?;
     let (face, weights) = nearest(&draw.shape.mesh, point, normal)?;
     let posed = draw.posed(&Mat4::IDENTITY, &Screen::new(1, 1, 1));
     let found = Found { object: index, draw, posed, face, weights };
-    Some(shaded(&found, scene, registry, settings, &At::Point(weights)))
+    Some(shaded(&found, shot, &At::Point(weights)))
 }
 
 /// The object and the position that the observer sees in the direction of a point.
-pub(crate) fn towards(
-    store: &mut MeshStore,
-    scene: &Scene,
-    registry: &Registry,
-    point: Vec3,
-) -> Option<(usize, Vec3)> {
+pub(crate) fn towards(store: &mut MeshStore, shot: Shot, point: Vec3) -> Option<(usize, Vec3)> {
     /// Field of view of a picture of one pixel, in degrees.
     const NARROW: f32 = 0.1;
-    let position = scene.observer.position;
+    let position = shot.scene.observer.position;
     let observer = Observer { field_of_view: NARROW, ..Observer::at(position, point - position) };
     let Found { object, posed, face: (_, corners), weights, .. } =
-        first(store, scene, registry, &observer, [1, 1], [0, 0])?;
+        first(store, shot, &observer, [1, 1], [0, 0])?;
     let [a, b, c] = corners.map(|i| posed.positions[i as usize]);
     Some((object, a * weights.x + b * weights.y + c * weights.z))
 }
@@ -129,8 +116,7 @@ pub(crate) fn towards(
 /// The nearest triangle at a pixel.
 fn first<'a>(
     store: &mut MeshStore,
-    scene: &'a Scene,
-    registry: &Registry,
+    Shot { scene, registry, .. }: Shot<'a>,
     observer: &Observer,
     size: [usize; 2],
     pixel: [usize; 2],
@@ -145,11 +131,8 @@ fn first<'a>(
     // In the renderer's order: the first of equally near triangles is visible.
     let mut nearest = Tile::<1, 1>::new();
     let mut found = None;
-    for (i, &object) in shown.iter().enumerate() {
-        let Some(shape) = meshes.first(&shown[i..]).filter(|shape| !hidden(object, shape, &beam)) else {
-            continue;
-        };
-        let Some(draw) = Draw::new(scene, registry, object, shape) else { continue };
+    for (i, &index) in indices.iter().enumerate() {
+        let Some(draw) = Draw::first(scene, &mut meshes, &shown[i..], &beam) else { continue };
         let posed = draw.posed(&clip_from_room, &screen);
         let mut front = None;
         for &face in &posed.visible {
@@ -168,22 +151,11 @@ fn first<'a>(
             }
         }
         if let Some((face, weights)) = front {
-            found = Some(Found { object: indices[i], draw, posed, face, weights });
+            found = Some(Found { object: index, draw, posed, face, weights });
         }
     }
     *store = meshes.into_store();
     found
-}
-
-/// The light loop at a point of an object, light by light.
-pub(crate) fn light_loop(
-    scene: &Scene,
-    registry: &Registry,
-    settings: &Settings,
-    surface: &dyn Surface,
-    point: &Point,
-) -> Loop {
-    light_by_light(scene, registry, settings.terms, surface, point)
 }
 
 /// The clip-space transformation that makes a pixel, with a pixel around it, fill the picture.
@@ -227,7 +199,7 @@ impl At<'_> {
 }
 
 /// Shades a triangle again, recording the calculation.
-fn shaded(found: &Found, scene: &Scene, registry: &Registry, settings: &Settings, at: &At) -> Probe {
+fn shaded(found: &Found, Shot { scene, registry, settings }: Shot, at: &At) -> Probe {
     let Found { object, draw, posed, face, weights } = found;
     let (object, face) = (*object, *face);
     let lights = Lights::new(scene, registry, settings.terms);
@@ -320,13 +292,8 @@ impl Lighting for Asked<'_> {
 
     fn colour(&self, position: Vec3, normal: Vec3, tangent: Vec3) -> Vec3 {
         let colour = self.lighting.colour(position, normal, tangent);
-        self.points.borrow_mut().push(Point {
-            position,
-            normal,
-            tangent,
-            colour,
-            seed: self.lighting.seed(),
-        });
+        let seed = self.lighting.seed();
+        self.points.borrow_mut().push(Point { position, normal, tangent, colour, seed });
         colour
     }
 }

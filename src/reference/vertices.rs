@@ -2,12 +2,7 @@
 
 use glam::{Mat4, Vec3};
 
-use super::{
-    lighting::Lights,
-    meshes::{MeshStore, Meshes},
-    object::Draw,
-    raster::Screen,
-};
+use super::{lighting::Lights, meshes::Meshes, object::Draw, raster::Screen};
 use crate::{
     optics::{TermSelection, colour::luminance},
     registry::Registry,
@@ -39,9 +34,8 @@ pub fn brightest_vertex(
         variants: Vec::new(),
         ..*scene
     };
-    let mut meshes = Meshes::with(registry, MeshStore::default());
-    let own = &scene.objects[0];
-    let draw = Draw::new(scene, registry, own, meshes.first(&[own])?)?;
+    let mut meshes = Meshes::new(registry);
+    let draw = Draw::first(scene, &mut meshes, &[&scene.objects[0]], &[])?;
     if draw.stage != Stage::Vertex {
         return None;
     }

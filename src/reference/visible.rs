@@ -2,12 +2,11 @@
 
 use glam::{Mat3, Vec3};
 
-use super::{Settings, lighting::within_bounds};
+use super::{Shot, lighting::within_bounds};
 use crate::{
     light::{Emitter, LightRecord, extent::Cone},
-    registry::Registry,
     scene::{
-        Light, Scene, emitter,
+        emitter,
         observer::{half_tangents, orientation},
     },
 };
@@ -25,9 +24,9 @@ pub(crate) struct Shown {
 
 /// Radiance and nearness, without the indices.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Sight {
-    radiance: Vec3,
-    nearness: f32,
+pub(super) struct Sight {
+    pub(super) radiance: Vec3,
+    pub(super) nearness: f32,
 }
 
 struct Visible {
@@ -73,29 +72,22 @@ pub(super) struct VisibleLights {
 }
 
 /// The lights visible at the centre of a pixel in front of a point, or of the background.
-pub(crate) fn in_front(
-    scene: &Scene,
-    registry: &Registry,
-    settings: &Settings,
-    pixel: [u32; 2],
-    point: Option<Vec3>,
-) -> Option<Shown> {
-    let shown = VisibleLights::new(scene, registry, settings).at(pixel.map(|c| c as f32 + 0.5))?;
-    let ahead = scene.observer.direction.normalize_or_zero();
-    let nearer = |point: Vec3| shown.nearness * (point - scene.observer.position).dot(ahead) > 1.0;
+pub(crate) fn in_front(shot: Shot, pixel: [u32; 2], point: Option<Vec3>) -> Option<Shown> {
+    let shown = VisibleLights::new(shot).at(pixel.map(|c| c as f32 + 0.5))?;
+    let observer = &shot.scene.observer;
+    let ahead = observer.direction.normalize_or_zero();
+    let nearer = |point: Vec3| shown.nearness * (point - observer.position).dot(ahead) > 1.0;
     point.is_none_or(nearer).then_some(shown)
 }
 
 impl VisibleLights {
-    pub(super) fn new(scene: &Scene, registry: &Registry, settings: &Settings) -> Self {
+    pub(super) fn new(Shot { scene, registry, settings }: Shot) -> Self {
         let encoding = scene.display.encoding;
         let eye = scene.observer.position;
         let shining = scene.lights.iter().enumerate().filter(|(_, light)| light.enabled);
-        let is_visible = |(_, light): &(usize, &Light)| {
-            registry.light(&light.light_type).is_some_and(|entry| entry.is_visible(&light.parameters))
-        };
-        let lights = shining.filter(is_visible).filter_map(|(index, light)| {
-            let (_, emitter, record) = emitter(light, registry, encoding)?;
+        let lights = shining.filter_map(|(index, light)| {
+            let is_visible = registry.light(&light.light_type)?.is_visible(&light.parameters);
+            let (_, emitter, record) = emitter(light, registry, encoding).filter(|_| is_visible)?;
             let cone = emitter.bounds(&record, eye).map(|cone| (cone, cone.half_angle.cos()));
             Some(Visible { emitter, record, index, cone })
         });
@@ -198,7 +190,7 @@ impl Part<'_> {
         &mut self,
         [x, y]: [usize; 2],
         samples: [[f32; 2]; S],
-    ) -> [Option<(Vec3, f32)>; S] {
+    ) -> [Option<Sight>; S] {
         let is_around = !self.around.is_empty();
         if is_around {
             // Pixels with one sample have it at their centre; the others compare with their neighbours.
@@ -213,11 +205,10 @@ impl Part<'_> {
                 None if is_around => sum(&self.around, None, &ray(), self.of.eye),
                 even => even,
             };
-            let sight = match &self.bounded[..] {
+            match &self.bounded[..] {
                 [] => around,
                 bounded => sum(bounded, around, &ray(), self.of.eye),
-            }?;
-            Some((sight.radiance, sight.nearness))
+            }
         })
     }
 
@@ -265,8 +256,9 @@ mod tests {
     use super::*;
     use crate::{
         parameter::Value,
-        reference::{LightSamples, Picture, render_samples},
-        scene::{Light, Object, Observer},
+        reference::{LightSamples, Picture, Settings, render_samples},
+        registry::Registry,
+        scene::{Light, Object, Observer, Scene},
     };
 
     const SIZE: u32 = 64;
@@ -319,7 +311,7 @@ mod tests {
 
     /// The light that the observer receives from straight ahead.
     fn ahead(scene: &Scene) -> Vec3 {
-        let shown = in_front(scene, &Registry::builtin(), &settings(1), [SIZE / 2; 2], None);
+        let shown = in_front(Shot::new(scene, &Registry::builtin(), &settings(1)), [SIZE / 2; 2], None);
         shown.expect("it is in the middle").radiance
     }
 
@@ -385,7 +377,7 @@ mod tests {
                 }
                 scene.lights[0].direction = scene.lights[0].direction.map(|d| d + Vec3::new(0.3, 0.2, 0.0));
                 scene.lights[0].parameters.set("diameter", Value::Number(10.0 + x));
-                let mut lights = VisibleLights::new(&scene, &registry, &settings(1));
+                let mut lights = VisibleLights::new(Shot::new(&scene, &registry, &settings(1)));
                 let differ = |lights: &VisibleLights| {
                     let mut differ = 0;
                     for (column, row) in (0..SIZE as usize / 8).flat_map(|r| (0..8).map(move |c| (c, r))) {
@@ -393,11 +385,13 @@ mod tests {
                         for (x, y) in (0..8).flat_map(|y| (0..8).map(move |x| (x, y))) {
                             let shown = part.as_mut().map(|part| part.pixel([x, y], [[0.5, 0.5]]));
                             let place = [8 * column + x, 8 * row + y].map(|c| c as f32 + 0.5);
-                            let all = VisibleLights::new(&scene, &registry, &settings(1));
+                            let all = VisibleLights::new(Shot::new(&scene, &registry, &settings(1)));
                             let cone = |light: Visible| Visible { cone: None, ..light };
                             let all =
                                 VisibleLights { lights: all.lights.into_iter().map(cone).collect(), ..all };
-                            let known = all.at(place).map(|shown| (shown.radiance, shown.nearness));
+                            let known = all.at(place);
+                            let known =
+                                known.map(|Shown { radiance, nearness, .. }| Sight { radiance, nearness });
                             differ += usize::from(shown.and_then(|[one]| one) != known);
                         }
                     }
@@ -420,7 +414,7 @@ mod tests {
         scene.observer.direction = Vec3::new(0.7, 0.1, -1.0);
         let registry = Registry::builtin();
         let shown = picture(&scene, 4);
-        let exact = VisibleLights::new(&scene, &registry, &settings(4));
+        let exact = VisibleLights::new(Shot::new(&scene, &registry, &settings(4)));
         let samples = [[96.0, 32.0], [224.0, 96.0], [32.0, 160.0], [160.0, 224.0]];
         let (mut edges, mut worst) = (0, 0.0f32);
         for (x, y) in (0..SIZE).flat_map(|y| (0..SIZE).map(move |x| (x, y))) {

@@ -7,10 +7,10 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::{
-    DisplayTransform, Settings,
+    DisplayTransform, Settings, Shot,
     lighting::Lights,
     meshes::{MeshStore, Meshes},
-    object::{Draw, Face, Posed, hidden},
+    object::{Draw, Face, Posed},
     raster::{self, Screen},
 };
 use crate::{
@@ -89,15 +89,9 @@ impl Wires {
 }
 
 /// Finds lines and dots, building the meshes of the scene only once.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct WireDrawer {
     meshes: MeshStore,
-}
-
-impl std::fmt::Debug for WireDrawer {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("WireDrawer").finish_non_exhaustive()
-    }
 }
 
 impl WireDrawer {
@@ -112,7 +106,7 @@ impl WireDrawer {
         most: usize,
     ) -> Wires {
         let mut all = Wires::default();
-        self.each(scene, registry, settings, channel, &mut |some| {
+        self.each(Shot::new(scene, registry, settings), channel, &mut |some| {
             all.objects = some.objects;
             if all.lines.len() + all.dots.len() >= most {
                 return false;
@@ -126,14 +120,8 @@ impl WireDrawer {
     }
 
     /// Passes on lines and dots, some objects at a time and the nearest first, until `take` returns false.
-    fn each(
-        &mut self,
-        scene: &Scene,
-        registry: &Registry,
-        settings: &Settings,
-        channel: DebugChannel,
-        take: &mut dyn FnMut(Wires) -> bool,
-    ) {
+    fn each(&mut self, shot: Shot, channel: DebugChannel, take: &mut dyn FnMut(Wires) -> bool) {
+        let Shot { scene, registry, settings } = shot;
         let (width, height) = (settings.width as usize, settings.height as usize);
         if !channel.has_wires() || width == 0 || height == 0 {
             return;
@@ -148,11 +136,7 @@ impl WireDrawer {
         let mut depths = Depths::new(width, height);
         let mut seen = Vec::new();
         for i in 0..shown.len() {
-            let Some(shape) = meshes.first(&shown[i..]).filter(|shape| !hidden(shown[i], shape, &frustum))
-            else {
-                continue;
-            };
-            let Some(draw) = Draw::new(scene, registry, shown[i], shape) else { continue };
+            let Some(draw) = Draw::first(scene, &mut meshes, &shown[i..], &frustum) else { continue };
             seen.push(i);
             let posed = draw.posed(&clip_from_room, &screen);
             for (_, corners) in &posed.visible {
@@ -164,13 +148,8 @@ impl WireDrawer {
         let display = DisplayTransform::new(&scene.display);
         let view = View { clip_from_room, depths: &depths, eye, up: height as f32 * NORMAL };
         for some in seen.chunks(AT_ONCE) {
-            let draws: Vec<_> = some
-                .iter()
-                .filter_map(|i| {
-                    let shape = meshes.first(&shown[*i..])?;
-                    Draw::new(scene, registry, shown[*i], shape)
-                })
-                .collect();
+            let draws: Vec<_> =
+                some.iter().filter_map(|i| Draw::first(scene, &mut meshes, &shown[*i..], &[])).collect();
             let found: Vec<Wires> = draws
                 .into_par_iter()
                 .map(|draw| {
@@ -206,7 +185,7 @@ pub fn draw_wires(
     // As thick as in a picture of 720 lines.
     let unit = (size[1] as f32 / 720.0).max(1.0);
     let place = |p: Vec3| on_screen(clip_from_room * p.extend(1.0), size.map(|side| side as f32));
-    WireDrawer::default().each(scene, registry, settings, channel, &mut |wires| {
+    WireDrawer::default().each(Shot::new(scene, registry, settings), channel, &mut |wires| {
         for line in &wires.lines {
             if let [Some(a), Some(b)] = line.ends.map(place) {
                 canvas.line([a, b], 0.55 * unit, line.colour, line.opacity);

@@ -1,9 +1,6 @@
 use glam::Vec3;
 
-use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    preset,
-};
+use super::{Declaration, Factor, Measured, Readout, ReflectionModel, built_in, preset};
 use crate::{
     optics::{
         Frame, Terms,
@@ -11,32 +8,21 @@ use crate::{
         geometry::half_slope,
         lobes::{self, Lobe, Lobes},
     },
-    parameter::{BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR, Value},
+    parameter::{BASE_COLOUR, K_S, Parameter, SPECULAR_COLOUR, Value},
     parameters,
-    shader::wgsl,
 };
 
 /// The exponent of the highlight along the tangent.
-const EXPONENT_U: Parameter = Parameter {
-    name: "exponent_u",
-    symbol: "n_u",
-    label: "exponent along the tangent",
-    unit: "",
-    help: "The sharpness of the highlight along the brushing: larger values narrow it in that direction.",
-    kind: ParameterKind::Integer { min: 0, max: None, slider_max: 10_000, default: 10 },
-    used_when: None,
-};
+const EXPONENT_U: Parameter = Parameter::integer_from("exponent_u", 0, 10_000, 10)
+    .symbol("n_u")
+    .label("exponent along the tangent")
+    .help("The sharpness of the highlight along the brushing: larger values narrow it in that direction.");
 
 /// The exponent of the highlight along the bitangent.
-const EXPONENT_V: Parameter = Parameter {
-    name: "exponent_v",
-    symbol: "n_v",
-    label: "exponent across the tangent",
-    unit: "",
-    help: "The sharpness of the highlight across the brushing. If it equals the exponent along the brushing, the surface is isotropic.",
-    kind: ParameterKind::Integer { min: 0, max: None, slider_max: 10_000, default: 200 },
-    used_when: None,
-};
+const EXPONENT_V: Parameter = Parameter::integer_from("exponent_v", 0, 10_000, 200)
+    .symbol("n_v")
+    .label("exponent across the tangent")
+    .help("The sharpness of the highlight across the brushing. If it equals the exponent along the brushing, the surface is isotropic.");
 
 parameters! {
     /// **Ashikhmin–Shirley** — an anisotropic Phong highlight over a diffuse base that dims beneath it.
@@ -78,35 +64,8 @@ parameters! {
 }
 
 impl ReflectionModel for AshikhminShirley {
-    const DECLARATION: Declaration = Declaration {
-        id: "ashikhmin_shirley",
-        name: "Ashikhmin–Shirley",
-        family: Family::Classical,
-        author: "Ashikhmin, Shirley 2000",
-        source: "M. Ashikhmin, P. Shirley (2000), An Anisotropic Phong BRDF Model, journal of graphics tools 5(2), 25–32",
-        summary: "A highlight with a Fresnel factor, stretched on brushed surfaces, over a diffuse base that dims beneath it: lacquer, polished wood.",
-        synonyms: &["anisotropic", "brushed metal", "varnish"],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart { term: Term::Diffuse, text: "I_d = 28/23 C_b (1 − F_0) P_L P_V N·L" },
-            EquationPart {
-                term: Term::Diffuse, text: "P_L = 1 − (1 − N·L/2)^5, P_V = 1 − (1 − N·V/2)^5"
-            },
-            EquationPart {
-                term: Term::Specular,
-                text: "I_s = √((n_u + 1)(n_v + 1))/8 (N·H)^n F N·L / (cos θ_d max(N·L, N·V))",
-            },
-            EquationPart { term: Term::Specular, text: "n = n_u cos^2 φ_h + n_v sin^2 φ_h" },
-            EquationPart {
-                term: Term::Specular, text: "F = F_0 + (1 − F_0) (1 − cos θ_d)^5, F_0 = k_s C_s"
-            },
-        ],
-        quantities: &[],
-        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: true,
-        wgsl: wgsl!("reflection/ashikhmin_shirley.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        built_in!("ashikhmin_shirley", "Ashikhmin–Shirley", Classical).ambient_by_albedo().anisotropic();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

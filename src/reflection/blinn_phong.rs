@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term};
+use super::{Declaration, Readout, ReflectionModel, built_in};
 use crate::{
     optics::{
         Frame, Terms,
@@ -9,7 +9,6 @@ use crate::{
     },
     parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
     parameters,
-    shader::wgsl,
 };
 
 parameters! {
@@ -49,26 +48,7 @@ parameters! {
 }
 
 impl ReflectionModel for BlinnPhong {
-    const DECLARATION: Declaration = Declaration {
-        id: "blinn_phong",
-        name: "Blinn–Phong",
-        family: Family::Basic,
-        author: "J. F. Blinn 1977",
-        source: "J. F. Blinn (1977), Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH '77, 192–198",
-        summary: "Phong with the half vector: cheaper, and its highlights stretch at grazing angles like real ones.",
-        synonyms: &["plastic", "shiny", "specular", "half vector"],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_a + I_d + I_s" },
-            EquationPart { term: Term::Ambient, text: "I_a = k_a C_b" },
-            EquationPart { term: Term::Diffuse, text: "I_d = k_d max(0, N·L) C_b" },
-            EquationPart { term: Term::Specular, text: "I_s = k_s max(0, N·H)^α C_s" },
-        ],
-        quantities: &[],
-        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Formula,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/blinn_phong.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("blinn_phong", "Blinn–Phong", Basic);
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);

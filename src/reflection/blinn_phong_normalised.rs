@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term};
+use super::{Declaration, Readout, ReflectionModel, built_in};
 use crate::{
     optics::{
         Frame, Terms,
@@ -9,7 +9,6 @@ use crate::{
     },
     parameter::{ALPHA, BASE_COLOUR, K_S, SPECULAR_COLOUR},
     parameters,
-    shader::wgsl,
 };
 
 parameters! {
@@ -51,28 +50,8 @@ parameters! {
 }
 
 impl ReflectionModel for BlinnPhongNormalised {
-    const DECLARATION: Declaration = Declaration {
-        id: "blinn_phong_normalised",
-        name: "Normalised Blinn–Phong",
-        family: Family::Classical,
-        author: "Blinn 1977, Giesen 2009",
-        source: "J. F. Blinn (1977), Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH '77; normalised as in F. Giesen (2009), Phong Normalization Factor Derivation",
-        summary: "Blinn–Phong that conserves energy: sharper highlights are brighter, and their light is taken from the diffuse part.",
-        synonyms: &["plastic", "shiny", "specular", "half vector"],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s C_s) C_b max(0, N·L)" },
-            EquationPart {
-                term: Term::Specular,
-                text: "I_s = k_s C_s (α + 2)(α + 4)/(8 (2^{−α/2} + α)) (N·H)^α max(0, N·L)",
-            },
-        ],
-        quantities: &[],
-        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/blinn_phong_normalised.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        built_in!("blinn_phong_normalised", "Normalised Blinn–Phong", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);

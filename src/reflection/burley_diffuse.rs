@@ -1,11 +1,10 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
+use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{Frame, Terms, diffuse::burley, geometry::half_vector, lobes::Lobes},
     parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
     parameters,
-    shader::wgsl,
 };
 
 parameters! {
@@ -40,28 +39,8 @@ parameters! {
 }
 
 impl ReflectionModel for BurleyDiffuse {
-    const DECLARATION: Declaration = Declaration {
-        id: "burley_diffuse",
-        name: "Burley diffuse",
-        family: Family::Diffuse,
-        author: "B. Burley 2012",
-        source: "B. Burley (2012), Physically-Based Shading at Disney, SIGGRAPH course Practical Physically-Based Shading in Film and Game Production",
-        summary: "The base of Disney's model, fitted to measured materials: smooth surfaces darken at the edge, rough ones brighten.",
-        synonyms: &["Disney diffuse", "retroreflection"],
-        equation: &[
-            EquationPart { term: Term::Diffuse, text: "I_d = C_b N·L f_L f_V" },
-            EquationPart {
-                term: Term::Diffuse,
-                text: "f_L = 1 + (F_{90} − 1)(1 − N·L)^5, f_V = 1 + (F_{90} − 1)(1 − N·V)^5",
-            },
-            EquationPart { term: Term::Diffuse, text: "F_{90} = 1/2 + 2 r (H·L)^2" },
-        ],
-        quantities: &[],
-        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/burley_diffuse.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        built_in!("burley_diffuse", "Burley diffuse", Diffuse).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

@@ -2,10 +2,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Quantity, Readout, ReflectionModel,
-    Term, preset,
-};
+use super::{Declaration, Factor, Measured, Readout, ReflectionModel, built_in, preset};
 use crate::{
     optics::{
         Frame, Terms,
@@ -15,55 +12,20 @@ use crate::{
         lobes::{self, Lobe, Lobes},
         masking::v_cavity,
     },
-    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
+    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, Value},
     parameters,
-    shader::wgsl,
 };
 
 /// The fraction of the specular part; the rest is diffuse.
-pub(super) const SPECULAR_WEIGHT: Parameter = Parameter {
-    name: "specular_weight",
-    symbol: "s",
-    label: "specular share",
-    unit: "",
-    help: "The specular fraction of the surface; the rest is diffuse. 1 for metals, about 0.1 to 0.5 for plastics and paints.",
-    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 },
-    used_when: None,
-};
+pub(super) const SPECULAR_WEIGHT: Parameter = Parameter::number("specular_weight", 0.0..=1.0, 0.5)
+    .symbol("s")
+    .label("specular share")
+    .help("The specular fraction of the surface; the rest is diffuse. 1 for metals, about 0.1 to 0.5 for plastics and paints.");
 
-const SLOPE: Parameter = Parameter {
-    name: "slope",
-    symbol: "m",
-    label: "slope of the facets",
-    unit: "",
-    help: "Root mean square slope of the microfacets: smaller values sharpen the highlight. 0.2 is shiny, 0.6 nearly matte.",
-    kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.2 },
-    used_when: None,
-};
-
-/// The Fresnel equations for n + ik at the angle between L and H: `R_s` and `R_p`, of which F is the mean.
-pub(super) const EXACT_FRESNEL: &[Quantity] = &[
-    Quantity::new(
-        "R_s = (w − q + cos^2 θ_d)/(w + q + cos^2 θ_d)",
-        "reflectance for light polarised perpendicular to the plane of incidence",
-    )
-    .source(CONDUCTOR),
-    Quantity::new(
-        "R_p = R_s (w cos^2 θ_d − q sin^2 θ_d + sin^4 θ_d)/(w cos^2 θ_d + q sin^2 θ_d + sin^4 θ_d)",
-        "reflectance for light polarised in the plane of incidence",
-    )
-    .source(CONDUCTOR),
-    Quantity::new(
-        "q = cos θ_d √(2 max(0, w + u))",
-        "2 cos θ_d times the real part of the root of (n + ik)² − sin² θ_d",
-    )
-    .source(CONDUCTOR),
-    Quantity::new("w = √(u^2 + 4 n^2 k^2)", "modulus of (n + ik)² − sin² θ_d").source(CONDUCTOR),
-    Quantity::new("u = n^2 − k^2 − sin^2 θ_d", "real part of (n + ik)² − sin² θ_d").source(CONDUCTOR),
-];
-
-/// The source of the Fresnel equations of conductors in this form.
-pub(super) const CONDUCTOR: &str = "M. Born, E. Wolf 1959; S. Lagarde 2013";
+const SLOPE: Parameter = Parameter::number("slope", 0.001..=1.0, 0.2)
+    .symbol("m")
+    .label("slope of the facets")
+    .help("Root mean square slope of the microfacets: smaller values sharpen the highlight. 0.2 is shiny, 0.6 nearly matte.");
 
 parameters! {
     /// **Cook–Torrance** — microfacets with Beckmann's distribution, and the exact Fresnel equations, which give metals
@@ -115,30 +77,8 @@ parameters! {
 }
 
 impl ReflectionModel for CookTorrance {
-    const DECLARATION: Declaration = Declaration {
-        id: "cook_torrance",
-        name: "Cook–Torrance",
-        family: Family::Microfacet,
-        author: "R. L. Cook, K. E. Torrance 1982",
-        source: "R. L. Cook, K. E. Torrance (1982), A Reflectance Model for Computer Graphics, ACM Transactions on Graphics 1(1), 7–24",
-        summary: "Microfacets with exact Fresnel equations: metals get their colour from measured n and k, and highlights whiten at grazing angles.",
-        synonyms: &["Beckmann", "metal", "microfacets"],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart { term: Term::Diffuse, text: "I_d = (1 − s) C_b (N·L)" },
-            EquationPart { term: Term::Specular, text: "I_s = s π D F G / (4 (N·V))" },
-            EquationPart { term: Term::Specular, text: "D = exp(−tan^2 θ_h / m^2) / (π m^2 cos^4 θ_h)" },
-            EquationPart {
-                term: Term::Specular, text: "G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))"
-            },
-            EquationPart { term: Term::Specular, text: "F = 0.5 (R_s + R_p)" },
-        ],
-        quantities: EXACT_FRESNEL,
-        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/cook_torrance.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        built_in!("cook_torrance", "Cook–Torrance", Microfacet).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

@@ -2,10 +2,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 
 use glam::{Vec2, Vec3};
 
-use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Group, Laws, Measured, Quantity, Readout,
-    ReflectionModel, Term, preset,
-};
+use super::{Declaration, Factor, Group, Measured, Readout, ReflectionModel, built_in, preset};
 use crate::{
     optics::{
         Frame, Terms,
@@ -17,82 +14,38 @@ use crate::{
         lobes::{self, Lobe, Lobes},
         masking::{separable, smith_ggx},
     },
-    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, ROUGHNESS, Value},
+    parameter::{BASE_COLOUR, METALLIC, Parameter, ROUGHNESS, Value},
     parameters,
-    shader::wgsl,
 };
 
-/// A parameter from 0 to 1.
-const fn fraction(
-    name: &'static str,
-    symbol: &'static str,
-    label: &'static str,
-    default: f32,
-    help: &'static str,
-) -> Parameter {
-    let kind = ParameterKind::Number { min: 0.0, max: 1.0, default };
-    Parameter { name, symbol, label, unit: "", help, kind, used_when: None }
-}
-
-const SUBSURFACE: Parameter = fraction(
-    "subsurface",
-    "s_s",
-    "subsurface",
-    0.0,
-    "From 0, light scattered at the surface, to 1, an approximation of subsurface scattering: flatter shading, like skin, wax or marble seen from afar.",
-);
-const SPECULAR: Parameter = fraction(
-    "specular",
-    "s",
-    "specular",
-    0.5,
-    "The reflectance of the non-metallic part at normal incidence: 0.08 s. 0.5 gives 4 %, typical of plastic and glass.",
-);
-const SPECULAR_TINT: Parameter = fraction(
-    "specular_tint",
-    "s_t",
-    "specular tint",
-    0.0,
-    "The amount by which non-metallic reflection takes the hue of the base colour. Not physical; for effect.",
-);
-const ANISOTROPIC: Parameter = fraction(
-    "anisotropic",
-    "a",
-    "anisotropic",
-    0.0,
-    "From 0, isotropic, to 1, highlights stretched along the tangent, as on brushed metal: ten times as long as across.",
-);
-const SHEEN: Parameter = fraction(
-    "sheen",
-    "h",
-    "sheen",
-    0.0,
-    "A bright rim at grazing angles, as from the fibres of cloth. Adds light.",
-);
-const SHEEN_TINT: Parameter = fraction(
-    "sheen_tint",
-    "h_t",
-    "sheen tint",
-    0.5,
-    "The amount by which the sheen takes the hue of the base colour: 0 is white.",
-);
-const CLEARCOAT: Parameter = fraction(
-    "clearcoat",
-    "c",
-    "clear coat",
-    0.0,
-    "The strength of a second, colourless layer of lacquer (refractive index 1.5, at most a quarter of its full reflection). Adds light.",
-);
-const CLEARCOAT_GLOSS: Parameter = fraction(
-    "clearcoat_gloss",
-    "c_g",
-    "gloss of the coat",
-    1.0,
-    "From 0, a satin coat, to 1, a glossy one: its width is 0.1 to 0.001.",
-);
-
-const SCHLICK: &str = "C. Schlick 1994";
-const SMITH: &str = "B. Smith 1967; E. Heitz 2014; B. Burley, disney.brdf";
+const SUBSURFACE: Parameter = Parameter::number("subsurface", 0.0..=1.0, 0.0)
+    .symbol("s_s")
+    .help("From 0, light scattered at the surface, to 1, an approximation of subsurface scattering: flatter shading, like skin, wax or marble seen from afar.");
+const SPECULAR: Parameter = Parameter::number("specular", 0.0..=1.0, 0.5)
+    .symbol("s")
+    .help("The reflectance of the non-metallic part at normal incidence: 0.08 s. 0.5 gives 4 %, typical of plastic and glass.");
+const SPECULAR_TINT: Parameter = Parameter::number("specular_tint", 0.0..=1.0, 0.0)
+    .symbol("s_t")
+    .label("specular tint")
+    .help("The amount by which non-metallic reflection takes the hue of the base colour. Not physical; for effect.");
+const ANISOTROPIC: Parameter = Parameter::number("anisotropic", 0.0..=1.0, 0.0)
+    .symbol("a")
+    .help("From 0, isotropic, to 1, highlights stretched along the tangent, as on brushed metal: ten times as long as across.");
+const SHEEN: Parameter = Parameter::number("sheen", 0.0..=1.0, 0.0)
+    .symbol("h")
+    .help("A bright rim at grazing angles, as from the fibres of cloth. Adds light.");
+const SHEEN_TINT: Parameter = Parameter::number("sheen_tint", 0.0..=1.0, 0.5)
+    .symbol("h_t")
+    .label("sheen tint")
+    .help("The amount by which the sheen takes the hue of the base colour: 0 is white.");
+const CLEARCOAT: Parameter = Parameter::number("clearcoat", 0.0..=1.0, 0.0)
+    .symbol("c")
+    .label("clear coat")
+    .help("The strength of a second, colourless layer of lacquer (refractive index 1.5, at most a quarter of its full reflection). Adds light.");
+const CLEARCOAT_GLOSS: Parameter = Parameter::number("clearcoat_gloss", 0.0..=1.0, 1.0)
+    .symbol("c_g")
+    .label("gloss of the coat")
+    .help("From 0, a satin coat, to 1, a glossy one: its width is 0.1 to 0.001.");
 
 parameters! {
     /// **Disney** — B. Burley's "principled" model: few intuitive parameters, all from 0 to 1, every combination
@@ -205,95 +158,8 @@ impl ReflectionModel for Disney {
         Group::new("Clear coat", &["clearcoat", "clearcoat_gloss"]),
     ];
 
-    const DECLARATION: Declaration = Declaration {
-        id: "disney",
-        name: "Disney",
-        family: Family::Standard,
-        author: "B. Burley 2012",
-        source: "B. Burley (2012), Physically-Based Shading at Disney, SIGGRAPH course Practical Physically Based Shading in Film and Game Production",
-        summary: "Intuitive parameters from 0 to 1: sheen for cloth, clear coat for car paint, anisotropy for brushed metal, a touch of subsurface for skin.",
-        synonyms: &[
-            "PBR",
-            "physically based",
-            "principled",
-            "GGX",
-            "GTR",
-            "Trowbridge–Reitz",
-            "metalness",
-            "clearcoat",
-            "car paint",
-            "plastic",
-            "BSDF",
-        ],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart { term: Term::Diffuse, text: "I_d = (1 − m)(f C_b + π h F_H C_h)(N·L)" },
-            EquationPart { term: Term::Diffuse, text: "f = (1 − s_s) f_d + s_s f_s" },
-            EquationPart {
-                term: Term::Diffuse, text: "f_d = (1 + (F_{90} − 1) F_L)(1 + (F_{90} − 1) F_V)"
-            },
-            EquationPart { term: Term::Diffuse, text: "F_{90} = 1/2 + 2 r (L·H)^2, F_H = (1 − L·H)^5" },
-            EquationPart { term: Term::Specular, text: "I_s = π (D_s F_s G_s + c D_r F_r G_r / 4) (N·L)" },
-            EquationPart {
-                term: Term::Specular,
-                text: "D_s = 1 / (π α_x α_y ((H·T)^2/α_x^2 + (H·B)^2/α_y^2 + (N·H)^2)^2)",
-            },
-            EquationPart { term: Term::Specular, text: "F_s = C_0 + (1 − C_0) F_H" },
-            EquationPart {
-                term: Term::Specular, text: "C_0 = 0.08 (1 − m) s (1 − s_t + s_t C_t) + m C_b"
-            },
-        ],
-        quantities: &[
-            Quantity::new("F_L = (1 − N·L)^5", "Schlick's weight for the light").source(SCHLICK),
-            Quantity::new("F_V = (1 − N·V)^5", "Schlick's weight for the observer").source(SCHLICK),
-            Quantity::new(
-                "f_s = 1.25 ((1 + (F_{ss} − 1) F_L)(1 + (F_{ss} − 1) F_V)(1/(N·L + N·V) − 1/2) + 1/2)",
-                "flat diffuse term in place of subsurface scattering",
-            )
-            .source("P. Hanrahan, W. Krueger 1993; B. Burley 2012"),
-            Quantity::new("F_{ss} = r (L·H)^2", "grazing factor of the flat diffuse term"),
-            Quantity::new("C_h = 1 − h_t + h_t C_t", "colour of the sheen"),
-            Quantity::new("C_t = C_b/Y if Y > 0 else 1", "hue of the base colour: at luminance 1"),
-            Quantity::new(
-                "Y = 3 mean((0.3, 0.6, 0.1) C_b)",
-                "luminance of the base colour, with the weights of Burley's program",
-            ),
-            Quantity::new("α_x = max(0.001, r^2/q)", "roughness along the tangent"),
-            Quantity::new("α_y = max(0.001, r^2 q)", "roughness across the tangent"),
-            Quantity::new(
-                "q = √(1 − 0.9 a)",
-                "root of the ratio of the roughness across and along the tangent",
-            ),
-            Quantity::new("G_s = g_L g_V", "masking of the base, divided by 4 (N·L)(N·V)").source(SMITH),
-            Quantity::new(
-                "g_L = 1/(N·L + √((N·L)^2 + α_x^2 (L·T)^2 + α_y^2 (L·B)^2))",
-                "masking from the light, divided by 2 N·L",
-            )
-            .source(SMITH),
-            Quantity::new(
-                "g_V = 1/(N·V + √((N·V)^2 + α_x^2 (V·T)^2 + α_y^2 (V·B)^2))",
-                "masking from the observer, divided by 2 N·V",
-            )
-            .source(SMITH),
-            Quantity::new(
-                "D_r = (w^2 − 1)/(π ln(w^2) (sin^2 θ_h + w^2 cos^2 θ_h))",
-                "distribution of the facets of the clear coat",
-            ),
-            Quantity::new("w = 0.1 (1 − c_g) + 0.001 c_g", "roughness of the clear coat"),
-            Quantity::new("F_r = 0.04 + 0.96 F_H", "Fresnel reflectance of the clear coat").source(SCHLICK),
-            Quantity::new("G_r = g(N·L) g(N·V)", "masking of the clear coat, divided by 4 (N·L)(N·V)")
-                .source(SMITH),
-            Quantity::new(
-                "g(μ) = 1/(μ + √(μ^2 + 0.25^2 (1 − μ^2)))",
-                "masking of the clear coat from one direction, with α = 0.25",
-            )
-            .source(SMITH),
-        ],
-        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: true,
-        wgsl: wgsl!("reflection/disney.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        built_in!("disney", "Disney", Standard).ambient_by_albedo().anisotropic();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));

@@ -1,11 +1,10 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
+use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{Frame, Terms, diffuse::eon, lobes::Lobes},
     parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
     parameters,
-    shader::wgsl,
 };
 
 parameters! {
@@ -44,41 +43,7 @@ parameters! {
 }
 
 impl ReflectionModel for Eon {
-    const DECLARATION: Declaration = Declaration {
-        id: "eon",
-        name: "EON",
-        family: Family::Diffuse,
-        author: "Portsmouth, Kutz, Hill 2024",
-        source: "J. Portsmouth, P. Kutz, S. Hill (2024), EON: A Practical Energy-Preserving Rough Diffuse BRDF, arXiv 2410.18026; Journal of Computer Graphics Techniques 14(1), 2025",
-        summary: "Energy-preserving Oren–Nayar: flat and rough without darkening. A white surface reflects exactly the incident light.",
-        synonyms: &["clay", "Oren–Nayar"],
-        equation: &[
-            EquationPart {
-                term: Term::Diffuse,
-                text: "I_d = N·L C_b A (1 + r s/t) + N·L ρ_m (1 − E_L) (1 − E_V) / (1 − E_m)",
-            },
-            EquationPart {
-                term: Term::Diffuse,
-                text: "s = L·V − N·L N·V, t = max(N·L, N·V) if s > 0 else 1",
-            },
-            EquationPart { term: Term::Diffuse, text: "A = 1 / (1 + (1/2 − 2/(3π)) r)" },
-            EquationPart { term: Term::Diffuse, text: "ρ_m = C_b^2 E_m / (1 − C_b (1 − E_m))" },
-        ],
-        quantities: &[
-            Quantity::new("E_L = E(θ_i)", "albedo of single reflection for the direction of the light"),
-            Quantity::new("E_V = E(θ_r)", "albedo of single reflection for the direction of the observer"),
-            Quantity::new("E(θ) = A (1 + r/π G(θ))", "albedo of single reflection at an angle"),
-            Quantity::new(
-                "G(θ) = sin θ (θ π/180° − sin θ cos θ) + 2/3 (tan θ (1 − sin^3 θ) − sin θ)",
-                "how that albedo varies with the angle",
-            ),
-            Quantity::new("E_m = A (1 + (2/3 − 28/(15π)) r)", "mean albedo of single reflection"),
-        ],
-        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/eon.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("eon", "EON", Diffuse).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

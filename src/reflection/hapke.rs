@@ -2,79 +2,49 @@ use std::f32::consts::{FRAC_2_PI, PI};
 
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
+use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{Frame, Terms},
-    parameter::{BASE_COLOUR, Parameter, ParameterKind},
+    parameter::{BASE_COLOUR, Parameter},
     parameters,
-    shader::wgsl,
 };
 
 /// Single-scattering albedo.
-const SINGLE_SCATTERING_ALBEDO: Parameter = Parameter {
-    name: "single_scattering_albedo",
-    symbol: "w",
-    label: "single-scattering albedo",
-    unit: "",
-    help: "The fraction of light that a grain scatters rather than absorbs; multiplied by the base colour for red, green and blue. About 0.2 for the Moon's dark plains, nearly 1 for snow.",
-    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.52 },
-    used_when: None,
-};
+const SINGLE_SCATTERING_ALBEDO: Parameter = Parameter::number("single_scattering_albedo", 0.0..=1.0, 0.52)
+    .symbol("w")
+    .label("single-scattering albedo")
+    .help("The fraction of light that a grain scatters rather than absorbs; multiplied by the base colour for red, green and blue. About 0.2 for the Moon's dark plains, nearly 1 for snow.");
 
 /// Width of the lobes of the phase function.
-const GRAIN_ASYMMETRY: Parameter = Parameter {
-    name: "grain_asymmetry",
-    symbol: "b",
-    label: "asymmetry of grains",
-    unit: "",
-    help: "The narrowness of the lobes into which a grain scatters: 0 is even in all directions.",
-    kind: ParameterKind::Number { min: 0.0, max: 0.9, default: 0.213 },
-    used_when: None,
-};
+const GRAIN_ASYMMETRY: Parameter = Parameter::number("grain_asymmetry", 0.0..=0.9, 0.213)
+    .symbol("b")
+    .label("asymmetry of grains")
+    .help("The narrowness of the lobes into which a grain scatters: 0 is even in all directions.");
 
 /// Balance of the lobes of the phase function.
-const BACKSCATTER: Parameter = Parameter {
-    name: "backscatter",
-    symbol: "c",
-    label: "backscattering",
-    unit: "",
-    help: "1: grains scatter back to the light, like rough opaque ones; −1: forward, like clear ones.",
-    kind: ParameterKind::Number { min: -1.0, max: 1.0, default: 1.0 },
-    used_when: None,
-};
+const BACKSCATTER: Parameter = Parameter::number("backscatter", -1.0..=1.0, 1.0)
+    .symbol("c")
+    .label("backscattering")
+    .help("1: grains scatter back to the light, like rough opaque ones; −1: forward, like clear ones.");
 
 /// Height of the opposition surge.
-const OPPOSITION_AMPLITUDE: Parameter = Parameter {
-    name: "opposition_amplitude",
-    symbol: "B_0",
-    label: "opposition surge",
-    unit: "",
-    help: "The increase of single scattering when the light is behind the observer, where every grain hides its own shadow.",
-    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 1.0 },
-    used_when: None,
-};
+const OPPOSITION_AMPLITUDE: Parameter = Parameter::number("opposition_amplitude", 0.0..=1.0, 1.0)
+    .symbol("B_0")
+    .label("opposition surge")
+    .help("The increase of single scattering when the light is behind the observer, where every grain hides its own shadow.");
 
 /// Width of the opposition surge.
-const OPPOSITION_WIDTH: Parameter = Parameter {
-    name: "opposition_width",
-    symbol: "h",
-    label: "width of the surge",
-    unit: "",
-    help: "At a phase angle of 2 arctan h the surge has half its height: 0.05 is 6°. Small for loose powder.",
-    kind: ParameterKind::Number { min: 0.001, max: 1.0, default: 0.05 },
-    used_when: None,
-};
+const OPPOSITION_WIDTH: Parameter =
+    Parameter::number("opposition_width", 0.001..=1.0, 0.05).symbol("h").label("width of the surge").help(
+        "At a phase angle of 2 arctan h the surge has half its height: 0.05 is 6°. Small for loose powder.",
+    );
 
 /// Macroscopic roughness.
-const MEAN_SLOPE: Parameter = Parameter {
-    name: "mean_slope",
-    symbol: "θ_m",
-    label: "mean slope",
-    unit: "°",
-    help: "The ruggedness of the ground at scales larger than the grains: the mean slope of its faces, which shadow and hide each other.",
-    kind: ParameterKind::Number { min: 0.0, max: 45.0, default: 30.0 },
-    used_when: None,
-};
+const MEAN_SLOPE: Parameter = Parameter::number("mean_slope", 0.0..=45.0, 30.0)
+    .symbol("θ_m")
+    .label("mean slope")
+    .unit("°")
+    .help("The ruggedness of the ground at scales larger than the grains: the mean slope of its faces, which shadow and hide each other.");
 
 parameters! {
     /// **Hapke** — the surfaces of moons and planets: scattering grains, shadows between them, slopes.
@@ -204,72 +174,7 @@ fn roughen(l: Vec3, v: Vec3, n: Vec3, tangent: f32) -> (f32, f32, f32) {
 }
 
 impl ReflectionModel for Hapke {
-    const DECLARATION: Declaration = Declaration {
-        id: "hapke",
-        name: "Hapke",
-        family: Family::Classical,
-        author: "B. Hapke 1981, 1984",
-        source: "B. Hapke (1981), Bidirectional Reflectance Spectroscopy 1. Theory, Journal of Geophysical Research 86(B4); (1984), 3. Correction for Macroscopic Roughness, Icarus 59; (1986), 4. The Extinction Coefficient and the Opposition Effect, Icarus 67",
-        summary: "Regolith: the flat disc of the full Moon, and the surge of brightness when the light is behind the observer.",
-        synonyms: &["Moon", "asteroid", "dust", "opposition effect"],
-        equation: &[
-            EquationPart { term: Term::Diffuse, text: "I_d = w C_b/4 μ_l/(μ_l + μ_v) M S" },
-            EquationPart { term: Term::Diffuse, text: "M = (1 + B) P + H(μ_l) H(μ_v) − 1" },
-            EquationPart { term: Term::Diffuse, text: "B = B_0/(1 + tan(g/2)/h), g = 2 θ_d" },
-            EquationPart { term: Term::Diffuse, text: "H(μ) = (1 + 2 μ)/(1 + 2 μ √(1 − w C_b))" },
-            EquationPart {
-                term: Term::Diffuse,
-                text: "P = (1 + c)/2 (1 − b^2)/(1 − 2 b cos g + b^2)^{3/2} + (1 − c)/2 (1 − b^2)/(1 + 2 b cos g + b^2)^{3/2}",
-            },
-        ],
-        quantities: &[
-            Quantity::new(
-                "μ_l = N·L if θ_m = 0 else μ_β if θ_i ≤ θ_r else μ_α",
-                "effective cosine of the light",
-            ),
-            Quantity::new(
-                "μ_v = N·V if θ_m = 0 else μ_α if θ_i ≤ θ_r else μ_β",
-                "effective cosine of the observer",
-            ),
-            Quantity::new(
-                "S = 1 if θ_m = 0 else N·L/η(α) μ_v/η(β) χ/(1 − f + f χ cos β/η(β))",
-                "shadows of slopes on others, and slopes hidden from the observer",
-            ),
-            Quantity::new(
-                "μ_β = χ (cos β + sin β tan θ_m (cos ψ E_2(α) + sin^2(ψ/2) E_2(β))/Z)",
-                "effective cosine of the higher of light and observer",
-            ),
-            Quantity::new(
-                "μ_α = χ (cos α + sin α tan θ_m (E_2(α) − sin^2(ψ/2) E_2(β))/Z)",
-                "effective cosine of the lower of light and observer",
-            ),
-            Quantity::new(
-                "Z = 2 − E_1(α) − ψ/180° E_1(β)",
-                "normalisation for the slopes neither in shadow nor hidden",
-            ),
-            Quantity::new(
-                "η(x) = χ (cos x + sin x tan θ_m E_2(x)/(2 − E_1(x)))",
-                "effective cosine of a direction alone, whatever the other",
-            ),
-            Quantity::new(
-                "E_1(x) = exp(−2/(π tan θ_m tan x))",
-                "effect of steep slopes on the area that a direction reaches",
-            ),
-            Quantity::new(
-                "E_2(x) = exp(−1/(π tan^2 θ_m tan^2 x))",
-                "fraction of slopes steep enough to turn away from a direction",
-            ),
-            Quantity::new("χ = 1/√(1 + π tan^2 θ_m)", "mean cosine of the slopes"),
-            Quantity::new("f = exp(−2 tan(ψ/2))", "fraction of the shadows that is hidden from the observer"),
-            Quantity::new("α = max(θ_i, θ_r)", "larger angle of light and observer to the normal"),
-            Quantity::new("β = min(θ_i, θ_r)", "smaller angle of light and observer to the normal"),
-            Quantity::new("ψ = arccos(cos(φ_l − φ_v))", "azimuth between light and observer, at most 180°"),
-        ],
-        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/hapke.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("hapke", "Hapke", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);

@@ -1,11 +1,10 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
+use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{Frame, Terms, lobes::Lobes},
     parameter::BASE_COLOUR,
     parameters,
-    shader::wgsl,
 };
 
 parameters! {
@@ -28,21 +27,7 @@ parameters! {
 }
 
 impl ReflectionModel for Lambert {
-    const DECLARATION: Declaration = Declaration {
-        id: "lambert",
-        name: "Lambert",
-        family: Family::Basic,
-        author: "J. H. Lambert 1760",
-        source: "J. H. Lambert (1760), Photometria sive de mensura et gradibus luminis, colorum et umbrae",
-        summary: "The ideal matte surface: equally bright from every direction. The reference for all others.",
-        synonyms: &["matte", "diffuse reflector"],
-        equation: &[EquationPart { term: Term::Diffuse, text: "I_d = max(0, N·L) C_b" }],
-        quantities: &[],
-        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-        ambient: Ambient::Formula,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/lambert.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("lambert", "Lambert", Basic);
 
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         Terms { diffuse: frame.n.dot(l).max(0.0) * self.base_colour, ..Terms::default() }

@@ -17,7 +17,7 @@ use crate::{
         sampling::{cone, power_heuristic},
         sequence::Sequence,
     },
-    parameter::{Parameter, ParameterKind, Value, Values},
+    parameter::{Parameter, Value, Values},
 };
 
 /// Maximum relative difference after exchanging directions that is attributed to rounding.
@@ -72,35 +72,8 @@ impl Random {
 
     /// A legal value, often at an end of the range.
     pub fn value(&mut self, parameter: &Parameter) -> Value {
-        let pick = self.unit();
-        let within = self.unit();
-        match &parameter.kind {
-            ParameterKind::Number { min, max, .. } => Value::Number(match pick {
-                p if p < 0.15 => *min,
-                p if p < 0.3 => *max,
-                _ => (min + within * (max - min)).clamp(*min, *max),
-            }),
-            ParameterKind::Integer { min, max, slider_max, .. } => Value::Integer(match pick {
-                p if p < 0.15 => *min,
-                p if p < 0.3 => max.unwrap_or(1_000_000),
-                _ => min + (within * (max.unwrap_or(*slider_max) - min) as f32) as i64,
-            }),
-            ParameterKind::Colour { .. } => Value::Colour(if pick < 0.3 {
-                [255; 3]
-            } else {
-                [0; 3].map(|_: u8| (self.unit() * 255.99) as u8)
-            }),
-            ParameterKind::Triple { min, max, .. } => Value::Triple(match pick {
-                p if p < 0.15 => [*min; 3],
-                p if p < 0.3 => [*max; 3],
-                _ => [0; 3].map(|_: u8| (min + self.unit() * (max - min)).clamp(*min, *max)),
-            }),
-            ParameterKind::Choice { options, .. } => {
-                let i = ((within * options.len() as f32) as usize).min(options.len() - 1);
-                Value::Choice(options[i].0.into())
-            }
-            ParameterKind::File { .. } => parameter.default_value(),
-        }
+        let (pick, within) = (self.unit(), self.unit());
+        parameter.kind.random(pick, within, &mut || self.unit())
     }
 
     /// Legal values of all parameters of a model.
@@ -125,14 +98,9 @@ impl Random {
 
 /// The minimum or maximum of a parameter; any value of a choice.
 fn end(parameter: &Parameter, high: bool, random: &mut Random) -> Value {
-    match parameter.kind {
-        ParameterKind::Number { min, max, .. } => Value::Number(if high { max } else { min }),
-        ParameterKind::Integer { min, max, .. } => {
-            Value::Integer(if high { max.unwrap_or(1_000_000) } else { min })
-        }
-        ParameterKind::Colour { .. } => Value::Colour([if high { 255 } else { 0 }; 3]),
-        ParameterKind::Triple { min, max, .. } => Value::Triple([if high { max } else { min }; 3]),
-        ParameterKind::Choice { .. } | ParameterKind::File { .. } => random.value(parameter),
+    match parameter.kind.limits() {
+        Some(range) => parameter.kind.of_numbers([if high { range.far() } else { range.min }; 3]),
+        None => random.value(parameter),
     }
 }
 
@@ -150,7 +118,7 @@ fn most(model: &ModelEntry) -> Values {
 fn ends(model: &ModelEntry, high: bool) -> Values {
     let mut values = Values::default();
     for parameter in model.parameters {
-        if matches!(parameter.kind, ParameterKind::Number { .. } | ParameterKind::Integer { .. }) {
+        if parameter.kind.is_number() {
             values.set(parameter.name, end(parameter, high, &mut Random(1)));
         }
     }

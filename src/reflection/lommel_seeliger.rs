@@ -1,11 +1,10 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
+use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{Frame, Terms, lobes::Lobes},
     parameter::BASE_COLOUR,
     parameters,
-    shader::wgsl,
 };
 
 parameters! {
@@ -38,21 +37,8 @@ parameters! {
 }
 
 impl ReflectionModel for LommelSeeliger {
-    const DECLARATION: Declaration = Declaration {
-        id: "lommel_seeliger",
-        name: "Lommel–Seeliger",
-        family: Family::Classical,
-        author: "Seeliger 1888, Lommel 1889",
-        source: "H. Seeliger (1888), Zur Photometrie zerstreut reflectirender Substanzen, Sitzungsberichte der Bayerischen Akademie der Wissenschaften 18; E. Lommel (1889), Die Photometrie der diffusen Zurückwerfung, Annalen der Physik 272(2)",
-        summary: "Single scattering in a dark powder, such as the ground of the Moon: under full light a ball looks like a flat disc.",
-        synonyms: &["Moon", "asteroid", "dust"],
-        equation: &[EquationPart { term: Term::Diffuse, text: "I_d = C_b/2 N·L/(N·L + N·V)" }],
-        quantities: &[],
-        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/lommel_seeliger.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        built_in!("lommel_seeliger", "Lommel–Seeliger", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));

@@ -2,10 +2,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Quantity, Readout, ReflectionModel,
-    Term, preset,
-};
+use super::{Declaration, Factor, Measured, Readout, ReflectionModel, built_in, preset};
 use crate::{
     optics::{
         Frame, Terms,
@@ -17,7 +14,6 @@ use crate::{
     },
     parameter::{BASE_COLOUR, METALLIC, REFLECTANCE, ROUGHNESS, Value},
     parameters,
-    shader::wgsl,
 };
 
 parameters! {
@@ -79,47 +75,8 @@ impl MetallicRoughness {
 }
 
 impl ReflectionModel for MetallicRoughness {
-    const DECLARATION: Declaration = Declaration {
-        id: "metallic_roughness",
-        name: "Metallic–roughness",
-        family: Family::Standard,
-        author: "B. Karis 2013; glTF 2.0",
-        source: "B. Karis (2013), Real Shading in Unreal Engine 4, SIGGRAPH course; Khronos Group (2021), glTF 2.0 Specification, appendix B",
-        summary: "The material of today's engines and of glTF: base colour, metallic, roughness, reflectance. Start here for any real material.",
-        synonyms: &[
-            "PBR",
-            "physically based",
-            "GGX",
-            "Trowbridge–Reitz",
-            "metalness",
-            "glTF",
-            "Filament",
-            "Unreal",
-            "plastic",
-            "BSDF",
-        ],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart { term: Term::Diffuse, text: "I_d = (1 − m)(1 − F) C_b (N·L)" },
-            EquationPart { term: Term::Specular, text: "I_s = π D F G / (4 (N·V))" },
-            EquationPart {
-                term: Term::Specular,
-                text: "D = α^2 / (π (α^2 cos^2 θ_h + sin^2 θ_h)^2), α = max(0.001, r^2)",
-            },
-            EquationPart { term: Term::Specular, text: "G = 1 / (1 + Λ(θ_i) + Λ(θ_r))" },
-            EquationPart { term: Term::Specular, text: "F = F_0 + (1 − F_0) (1 − V·H)^5" },
-            EquationPart { term: Term::Specular, text: "F_0 = 0.16 (1 − m) s^2 + m C_b" },
-        ],
-        quantities: &[Quantity::new(
-            "Λ(θ) = (√(1 + α^2 tan^2 θ) − 1)/2",
-            "hidden area of the facets per visible area, from this angle",
-        )
-        .source("B. Smith 1967; height-correlated by E. Heitz 2014")],
-        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/metallic_roughness.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        built_in!("metallic_roughness", "Metallic–roughness", Standard).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

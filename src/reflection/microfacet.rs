@@ -2,10 +2,7 @@ use std::f32::consts::{PI, SQRT_2};
 
 use glam::{Vec2, Vec3};
 
-use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Quantity, Readout, ReflectionModel,
-    Term, cook_torrance::CONDUCTOR, preset,
-};
+use super::{Declaration, Factor, Measured, Readout, ReflectionModel, built_in, preset};
 use crate::{
     optics::{
         Frame, Terms,
@@ -16,103 +13,70 @@ use crate::{
         lobes::{self, Lobe, Lobes},
         masking,
     },
-    parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
+    parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, Parameter, Value},
     parameters,
-    shader::wgsl,
 };
 
-const DISTRIBUTION: Parameter = Parameter {
-    name: "distribution",
-    symbol: "D",
-    label: "distribution",
-    unit: "",
-    help: "The distribution of microfacet normals: the shape of the highlight. With t = tan θ / α and c = cos θ, θ being the angle between N and H: Blinn–Phong D = (n + 2)/(2π) cⁿ, n = 2/α² − 2; Beckmann D = exp(−t²)/(π α² c⁴); GGX D = 1/(π α² c⁴ (1 + t²)²), with longer tails; GTR has γ in place of the 2 and chooses its tails.",
-    kind: ParameterKind::Choice {
-        options: &[("blinn_phong", "Blinn–Phong"), ("beckmann", "Beckmann"), ("ggx", "GGX"), ("gtr", "GTR")],
-        default: 2,
-    },
-    used_when: None,
-};
+const DISTRIBUTION: Parameter = Parameter::choice(
+    "distribution",
+    &[("blinn_phong", "Blinn–Phong"), ("beckmann", "Beckmann"), ("ggx", "GGX"), ("gtr", "GTR")],
+    2,
+)
+.symbol("D")
+.help("The distribution of microfacet normals: the shape of the highlight. With t = tan θ / α and c = cos θ, θ being the angle between N and H: Blinn–Phong D = (n + 2)/(2π) cⁿ, n = 2/α² − 2; Beckmann D = exp(−t²)/(π α² c⁴); GGX D = 1/(π α² c⁴ (1 + t²)²), with longer tails; GTR has γ in place of the 2 and chooses its tails.");
 
-const GAMMA: Parameter = Parameter {
-    name: "gamma",
-    symbol: "γ",
-    label: "exponent of GTR",
-    unit: "",
-    help: "The falloff of the tails of the GTR distribution: 2 is GGX, 1 is Berry's distribution with longer tails.",
-    kind: ParameterKind::Number { min: 1.0, max: 10.0, default: 2.0 },
-    used_when: None,
-};
+const GAMMA: Parameter = Parameter::number("gamma", 1.0..=10.0, 2.0)
+    .symbol("γ")
+    .label("exponent of GTR")
+    .help("The falloff of the tails of the GTR distribution: 2 is GGX, 1 is Berry's distribution with longer tails.");
 
-const MASKING: Parameter = Parameter {
-    name: "masking",
-    symbol: "G",
-    label: "masking",
-    unit: "",
-    help: "The shadowing of microfacets from the light, and their masking from the viewer, by each other. Implicit: G = (N·L)(N·V); V-cavities: min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H)); Neumann: (N·L)(N·V)/max(N·L, N·V); Kelemen: (N·L)(N·V)/(V·H)²; Smith's terms follow from the distribution: separable 1/((1 + Λ(L))(1 + Λ(V))), height-correlated 1/(1 + Λ(L) + Λ(V)), and Schlick's approximation to them.",
-    kind: ParameterKind::Choice {
-        options: &[
-            ("implicit", "Implicit"),
-            ("v_cavity", "V-cavities"),
-            ("neumann", "Neumann"),
-            ("kelemen", "Kelemen"),
-            ("schlick_ggx", "Schlick, Karis k"),
-            ("smith_separable", "Smith, separable"),
-            ("smith_height_correlated", "Smith, height-correlated"),
-        ],
-        default: 6,
-    },
-    used_when: None,
-};
+const MASKING: Parameter = Parameter::choice(
+    "masking",
+    &[
+        ("implicit", "Implicit"),
+        ("v_cavity", "V-cavities"),
+        ("neumann", "Neumann"),
+        ("kelemen", "Kelemen"),
+        ("schlick_ggx", "Schlick, Karis k"),
+        ("smith_separable", "Smith, separable"),
+        ("smith_height_correlated", "Smith, height-correlated"),
+    ],
+    6,
+)
+.symbol("G")
+.help("The shadowing of microfacets from the light, and their masking from the viewer, by each other. Implicit: G = (N·L)(N·V); V-cavities: min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H)); Neumann: (N·L)(N·V)/max(N·L, N·V); Kelemen: (N·L)(N·V)/(V·H)²; Smith's terms follow from the distribution: separable 1/((1 + Λ(L))(1 + Λ(V))), height-correlated 1/(1 + Λ(L) + Λ(V)), and Schlick's approximation to them.");
 
-const FRESNEL: Parameter = Parameter {
-    name: "fresnel",
-    symbol: "F",
-    label: "Fresnel term",
-    unit: "",
-    help: "The reflectance of a microfacet by angle: everything; Schlick's F = F₀ + (1 − F₀)(1 − V·H)⁵ with F₀ from n and k; or the exact equations of dielectrics (n) or conductors (n and k).",
-    kind: ParameterKind::Choice {
-        options: &[
-            ("none", "None (F = 1)"),
-            ("schlick", "Schlick"),
-            ("dielectric", "Dielectric, exact"),
-            ("conductor", "Conductor, exact"),
-        ],
-        default: 2,
-    },
-    used_when: None,
-};
+const FRESNEL: Parameter = Parameter::choice(
+    "fresnel",
+    &[
+        ("none", "None (F = 1)"),
+        ("schlick", "Schlick"),
+        ("dielectric", "Dielectric, exact"),
+        ("conductor", "Conductor, exact"),
+    ],
+    2,
+)
+.symbol("F")
+.label("Fresnel term")
+.help("The reflectance of a microfacet by angle: everything; Schlick's F = F₀ + (1 − F₀)(1 − V·H)⁵ with F₀ from n and k; or the exact equations of dielectrics (n) or conductors (n and k).");
 
-const DIFFUSE: Parameter = Parameter {
-    name: "diffuse",
-    symbol: "f_d",
-    label: "diffuse base",
-    unit: "",
-    help: "The material below the reflecting surface: none, or a body that scatters the light entering it.",
-    kind: ParameterKind::Choice {
-        options: &[
-            ("none", "None"),
-            ("lambert", "Lambert"),
-            ("burley", "Burley"),
-            ("oren_nayar", "Oren–Nayar"),
-        ],
-        default: 1,
-    },
-    used_when: None,
-};
+const DIFFUSE: Parameter = Parameter::choice(
+    "diffuse",
+    &[("none", "None"), ("lambert", "Lambert"), ("burley", "Burley"), ("oren_nayar", "Oren–Nayar")],
+    1,
+)
+.symbol("f_d")
+.label("diffuse base")
+.help("The material below the reflecting surface: none, or a body that scatters the light entering it.");
 
-const MULTIPLE_SCATTERING: Parameter = Parameter {
-    name: "multiple_scattering",
-    symbol: "f_{ms}",
-    label: "multiple scattering",
-    unit: "",
-    help: "Light that bounces between microfacets is lost in the plain model, which darkens rough metals. Kulla and Conty add it as a lobe of its own, Turquin by scaling the highlight.",
-    kind: ParameterKind::Choice {
-        options: &[("none", "None"), ("kulla_conty", "Kulla–Conty"), ("turquin", "Turquin")],
-        default: 0,
-    },
-    used_when: None,
-};
+const MULTIPLE_SCATTERING: Parameter = Parameter::choice(
+    "multiple_scattering",
+    &[("none", "None"), ("kulla_conty", "Kulla–Conty"), ("turquin", "Turquin")],
+    0,
+)
+.symbol("f_{ms}")
+.label("multiple scattering")
+.help("Light that bounces between microfacets is lost in the plain model, which darkens rough metals. Kulla and Conty add it as a lobe of its own, Turquin by scaling the highlight.");
 
 parameters! {
     /// **Microfacet** — every published combination of distribution, masking and Fresnel term as a
@@ -186,224 +150,6 @@ parameters! {
         lobe: LobeAlbedo = Self::lobe_of,
     }
 }
-
-type When = &'static [(&'static str, &'static [&'static str])];
-
-const SMITH_MASKING: When = &[("masking", &["smith_separable", "smith_height_correlated"])];
-const BECKMANN_MASKING: When = &[
-    ("distribution", &["blinn_phong", "beckmann"]),
-    ("masking", &["smith_separable", "smith_height_correlated"]),
-];
-const GGX_MASKING: When =
-    &[("distribution", &["ggx", "gtr"]), ("masking", &["smith_separable", "smith_height_correlated"])];
-const DIELECTRIC: &str = "A. Fresnel 1823";
-const SCHLICK: &str = "C. Schlick 1994";
-const SMITH: &str = "B. Smith 1967; B. Walter and others 2007";
-const BURLEY: &str = "B. Burley 2012";
-const OREN_NAYAR: &str = "M. Oren, S. K. Nayar 1994";
-const KULLA_CONTY: &str = "C. Kulla, A. Conty 2017; S. Hill 2018";
-
-/// The equations of all choices.
-const QUANTITIES: &[Quantity] = &[
-    // The diffuse base.
-    Quantity::new("f_d = 0", "diffuse base: none").when(&[("diffuse", &["none"])]),
-    Quantity::new("f_d = 1", "diffuse base, relative to Lambert's law").when(&[("diffuse", &["lambert"])]),
-    Quantity::new(
-        "f_d = (1 + (F_{90} − 1)(1 − N·L)^5)(1 + (F_{90} − 1)(1 − N·V)^5)",
-        "diffuse base, relative to Lambert's law",
-    )
-    .source(BURLEY)
-    .when(&[("diffuse", &["burley"])]),
-    Quantity::new("F_{90} = 1/2 + 2 r (L·H)^2", "grazing factor of the diffuse base")
-        .source(BURLEY)
-        .when(&[("diffuse", &["burley"])]),
-    Quantity::new("r = √α", "perceptual roughness"),
-    Quantity::new(
-        "f_d = A_1 + A_2 max(0, L·V − (N·L)(N·V))/max(N·L, N·V)",
-        "diffuse base, relative to Lambert's law",
-    )
-    .source(OREN_NAYAR)
-    .when(&[("diffuse", &["oren_nayar"])]),
-    Quantity::new("A_1 = 1 − σ^2/(2 (σ^2 + 0.33))", "part that is the same from everywhere")
-        .source(OREN_NAYAR)
-        .when(&[("diffuse", &["oren_nayar"])]),
-    Quantity::new("A_2 = 0.45 σ^2/(σ^2 + 0.09)", "part that returns towards the light")
-        .source(OREN_NAYAR)
-        .when(&[("diffuse", &["oren_nayar"])]),
-    Quantity::new("σ = α/√2", "spread of the slopes of the facets, as an angle in radians"),
-    Quantity::new("α = √(α_x α_y)", "mean roughness"),
-    // The distribution.
-    Quantity::new("D = cos^{p_h} θ_h/(π α_x α_y)", "distribution of the facet normals")
-        .source("J. Blinn 1977; M. Ashikhmin, P. Shirley 2000")
-        .when(&[("distribution", &["blinn_phong"])]),
-    Quantity::new(
-        "p_h = 2 (cos^2 φ_h/α_x^2 + sin^2 φ_h/α_y^2) − 2",
-        "exponent at the azimuth of the half vector",
-    )
-    .source("B. Walter and others 2007")
-    .when(&[("distribution", &["blinn_phong"])]),
-    Quantity::new("D = exp(−t^2)/(π α_x α_y cos^4 θ_h)", "distribution of the facet normals")
-        .source("P. Beckmann, A. Spizzichino 1963")
-        .when(&[("distribution", &["beckmann"])]),
-    Quantity::new("D = 1/(π α_x α_y cos^4 θ_h (1 + t^2)^2)", "distribution of the facet normals")
-        .source("T. Trowbridge, K. Reitz 1975; B. Walter and others 2007")
-        .when(&[("distribution", &["ggx"])]),
-    Quantity::new(
-        "t = tan θ_h √(cos^2 φ_h/α_x^2 + sin^2 φ_h/α_y^2)",
-        "slope of the facets that face H, over the roughness in its azimuth",
-    )
-    .when(&[("distribution", &["beckmann", "ggx"])]),
-    Quantity::new(
-        "D = M(λ)/(M((γ − 1) λ) π α^2 (cos^2 θ_h + sin^2 θ_h/α^2)^γ)",
-        "distribution of the facet normals",
-    )
-    .source(BURLEY)
-    .when(&[("distribution", &["gtr"])]),
-    Quantity::new("λ = −ln(α^2)", "negative logarithm of the squared roughness")
-        .when(&[("distribution", &["gtr"])]),
-    Quantity::new("M(x) = (1 − exp(−x))/x if x > 0.0001 else 1 − x/2", "mean of exp(−y) for y from 0 to x")
-        .when(&[("distribution", &["gtr"])]),
-    // The Fresnel term.
-    Quantity::new("F(μ) = 1", "Fresnel reflectance: everything").when(&[("fresnel", &["none"])]),
-    Quantity::new("F(μ) = F_0 + (1 − F_0)(1 − μ)^5", "Fresnel reflectance")
-        .source(SCHLICK)
-        .when(&[("fresnel", &["schlick"])]),
-    Quantity::new("F(μ) = (R_s(μ) + R_p(μ))/2", "Fresnel reflectance")
-        .source(DIELECTRIC)
-        .when(&[("fresnel", &["dielectric", "conductor"])]),
-    Quantity::new(
-        "R_s(μ) = (μ − g(μ))^2/(μ + g(μ))^2",
-        "reflectance for light polarised perpendicular to the plane of incidence",
-    )
-    .source(DIELECTRIC)
-    .when(&[("fresnel", &["dielectric"])]),
-    Quantity::new(
-        "R_p(μ) = (n^2 μ − g(μ))^2/(n^2 μ + g(μ))^2",
-        "reflectance for light polarised in the plane of incidence",
-    )
-    .source(DIELECTRIC)
-    .when(&[("fresnel", &["dielectric"])]),
-    Quantity::new(
-        "g(μ) = √(max(0, n^2 − 1 + μ^2))",
-        "n times the cosine of the angle of refraction; 0 for total reflection",
-    )
-    .source(DIELECTRIC)
-    .when(&[("fresnel", &["dielectric"])]),
-    Quantity::new(
-        "R_s(μ) = (w(μ) − q(μ) + μ^2)/(w(μ) + q(μ) + μ^2)",
-        "reflectance for light polarised perpendicular to the plane of incidence",
-    )
-    .source(CONDUCTOR)
-    .when(&[("fresnel", &["conductor"])]),
-    Quantity::new(
-        "R_p(μ) = R_s(μ) (w(μ) μ^2 − q(μ) (1 − μ^2) + (1 − μ^2)^2)/(w(μ) μ^2 + q(μ) (1 − μ^2) + (1 − μ^2)^2)",
-        "reflectance for light polarised in the plane of incidence",
-    )
-    .source(CONDUCTOR)
-    .when(&[("fresnel", &["conductor"])]),
-    Quantity::new(
-        "q(μ) = μ √(2 max(0, w(μ) + u(μ)))",
-        "2 cos θ times the real part of the root of (n + ik)² − sin² θ",
-    )
-    .source(CONDUCTOR)
-    .when(&[("fresnel", &["conductor"])]),
-    Quantity::new("w(μ) = √(u(μ)^2 + 4 n^2 k^2)", "modulus of (n + ik)² − sin² θ")
-        .source(CONDUCTOR)
-        .when(&[("fresnel", &["conductor"])]),
-    Quantity::new("u(μ) = n^2 − k^2 − 1 + μ^2", "real part of (n + ik)² − sin² θ")
-        .source(CONDUCTOR)
-        .when(&[("fresnel", &["conductor"])]),
-    Quantity::new("F_0 = 1", "reflectance at normal incidence").when(&[("fresnel", &["none"])]),
-    Quantity::new("F_0 = (n − 1)^2/(n + 1)^2", "reflectance at normal incidence")
-        .when(&[("fresnel", &["dielectric"])]),
-    Quantity::new("F_0 = ((n − 1)^2 + k^2)/((n + 1)^2 + k^2)", "reflectance at normal incidence")
-        .when(&[("fresnel", &["schlick", "conductor"])]),
-    // Masking.
-    Quantity::new("G = (N·L)(N·V)", "masking, implicit").when(&[("masking", &["implicit"])]),
-    Quantity::new("G = min(1, 2 (N·H)(N·V)/(L·H), 2 (N·H)(N·L)/(L·H))", "masking in V-shaped cavities")
-        .source("K. E. Torrance, E. M. Sparrow 1967; J. Blinn 1977")
-        .when(&[("masking", &["v_cavity"])]),
-    Quantity::new("G = (N·L)(N·V)/max(N·L, N·V)", "masking")
-        .source("L. Neumann and others 1999")
-        .when(&[("masking", &["neumann"])]),
-    Quantity::new("G = (N·L)(N·V)/(L·H)^2", "masking")
-        .source("C. Kelemen, L. Szirmay-Kalos 2001")
-        .when(&[("masking", &["kelemen"])]),
-    Quantity::new("G = G_1(N·L) G_1(N·V)", "masking, from light and observer")
-        .source("C. Schlick 1994; B. Karis 2013")
-        .when(&[("masking", &["schlick_ggx"])]),
-    Quantity::new("G_1(μ) = μ/(μ (1 − κ) + κ)", "masking from one direction")
-        .source(SCHLICK)
-        .when(&[("masking", &["schlick_ggx"])]),
-    Quantity::new("κ = (r + 1)^2/8", "strength of the masking")
-        .source("B. Karis 2013")
-        .when(&[("masking", &["schlick_ggx"])]),
-    Quantity::new("G = 1/((1 + Λ(s_L))(1 + Λ(s_V)))", "masking, from light and observer independently")
-        .source(SMITH)
-        .when(&[("masking", &["smith_separable"])]),
-    Quantity::new("G = 1/(1 + Λ(s_L) + Λ(s_V))", "masking, correlated by the height of the facets")
-        .source("B. Smith 1967; E. Heitz 2014")
-        .when(&[("masking", &["smith_height_correlated"])]),
-    Quantity::new("Λ(s) = (√(1 + s^2) − 1)/2", "hidden area of the facets per visible area, for GGX")
-        .source(SMITH)
-        .when(GGX_MASKING),
-    Quantity::new(
-        "Λ(s) = (s exp(−1/s^2)/√π − Q(1/s))/2 if s > 1/6 else 0",
-        "hidden area of the facets per visible area, for Beckmann",
-    )
-    .source(SMITH)
-    .when(BECKMANN_MASKING),
-    Quantity::new("Q(x) = P(1/(1 + 0.3275911 x)) exp(−x^2)", "complementary error function erfc")
-        .source("M. Abramowitz, I. Stegun 1964, 7.1.26")
-        .when(BECKMANN_MASKING),
-    Quantity::new(
-        "P(y) = 0.2548296 y − 0.28449674 y^2 + 1.4214137 y^3 − 1.453152 y^4 + 1.0614054 y^5",
-        "polynomial of the error function",
-    )
-    .source("M. Abramowitz, I. Stegun 1964, 7.1.26")
-    .when(BECKMANN_MASKING),
-    Quantity::new(
-        "s_L = tan θ_i √(α_x^2 cos^2 φ_l + α_y^2 sin^2 φ_l)",
-        "tangent of the angle of the light, times the roughness in its azimuth",
-    )
-    .source(SMITH)
-    .when(SMITH_MASKING),
-    Quantity::new(
-        "s_V = tan θ_r √(α_x^2 cos^2 φ_v + α_y^2 sin^2 φ_v)",
-        "tangent of the angle of the observer, times the roughness in its azimuth",
-    )
-    .source(SMITH)
-    .when(SMITH_MASKING),
-    // Multiple scattering.
-    Quantity::new("f_{ms} = 0", "light of several bounces between the facets: none")
-        .when(&[("multiple_scattering", &["none"])]),
-    Quantity::new(
-        "f_{ms} = F_{ms} (1 − E(N·L))(1 − E(N·V))/max(0.000001, 1 − E_m) N·L",
-        "light of several bounces between the facets",
-    )
-    .source(KULLA_CONTY)
-    .when(&[("multiple_scattering", &["kulla_conty"])]),
-    Quantity::new(
-        "F_{ms} = F_m^2 E_m/(1 − F_m (1 − E_m))",
-        "reflectance of several bounces between the facets",
-    )
-    .source(KULLA_CONTY)
-    .when(&[("multiple_scattering", &["kulla_conty"])]),
-    Quantity::new("F_m", "mean Fresnel reflectance, 2 ∫ F(μ) μ dμ by quadrature")
-        .when(&[("fresnel", &["dielectric", "conductor"])]),
-    Quantity::new("F_m = 1", "mean Fresnel reflectance").when(&[("fresnel", &["none"])]),
-    Quantity::new("F_m = F_0 + (1 − F_0)/21", "mean Fresnel reflectance").when(&[("fresnel", &["schlick"])]),
-    Quantity::new("E_m", "mean albedo of the lobe with F = 1, 2 ∫ E(μ) μ dμ"),
-    Quantity::new(
-        "f_{ms} = π D F(L·H) G/(4 (N·V)) F_0 (1 − E_V)/E_V",
-        "light of several bounces between the facets",
-    )
-    .source("E. Turquin 2019")
-    .when(&[("multiple_scattering", &["turquin"])]),
-    Quantity::new("E_V = max(0.001, E(N·V))", "albedo of the lobe with F = 1, for the observer")
-        .when(&[("multiple_scattering", &["turquin"])]),
-    Quantity::new("E(μ)", "albedo of the lobe with F = 1, integrated over the hemisphere"),
-];
 
 /// Upper half of the nodes and weights of the eight-point Gauss–Legendre rule on [0, 1], which is symmetric about ½.
 const GAUSS: [(f32, f32); 4] = [
@@ -509,34 +255,8 @@ impl Microfacet {
 }
 
 impl ReflectionModel for Microfacet {
-    const DECLARATION: Declaration = Declaration {
-        id: "microfacet",
-        name: "Microfacet",
-        family: Family::Microfacet,
-        author: "K. Torrance, E. Sparrow 1967",
-        source: "K. E. Torrance, E. M. Sparrow (1967), Theory for Off-Specular Reflection from Roughened Surfaces, Journal of the Optical Society of America 57(9), 1105–1114; factors by several authors",
-        summary: "Distribution, masking, Fresnel term, diffuse base and multiple scattering as choices: every published combination is a setting.",
-        synonyms: &[
-            "PBR",
-            "physically based",
-            "GGX",
-            "Trowbridge–Reitz",
-            "Walter",
-            "Cook–Torrance",
-            "metal",
-            "BSDF",
-        ],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart { term: Term::Diffuse, text: "I_d = f_d C_b (1 − F(N·L)) (1 − F(N·V)) N·L" },
-            EquationPart { term: Term::Specular, text: "I_s = π D F(L·H) G / (4 (N·V)) + f_{ms}" },
-        ],
-        quantities: QUANTITIES,
-        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: true,
-        wgsl: wgsl!("reflection/microfacet.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        built_in!("microfacet", "Microfacet", Microfacet).ambient_by_albedo().anisotropic();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));

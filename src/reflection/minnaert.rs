@@ -1,23 +1,17 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
+use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{Frame, Terms, lobes::Lobes},
-    parameter::{BASE_COLOUR, Parameter, ParameterKind},
+    parameter::{BASE_COLOUR, Parameter},
     parameters,
-    shader::wgsl,
 };
 
 /// Minnaert's exponent.
-const LIMB_DARKENING: Parameter = Parameter {
-    name: "limb_darkening",
-    symbol: "k",
-    label: "limb darkening",
-    unit: "",
-    help: "1 is Lambert. Below 1 the rim of a ball brightens: at 0.5 the full moon is a flat disc. Above 1 the rim darkens, as on velvet lit from the front.",
-    kind: ParameterKind::Number { min: 0.5, max: 2.0, default: 0.6 },
-    used_when: None,
-};
+const LIMB_DARKENING: Parameter = Parameter::number("limb_darkening", 0.5..=2.0, 0.6)
+    .symbol("k")
+    .label("limb darkening")
+    .help("1 is Lambert. Below 1 the rim of a ball brightens: at 0.5 the full moon is a flat disc. Above 1 the rim darkens, as on velvet lit from the front.");
 
 /// The lower bound of cosines raised to a power, within 0.06° of the horizon: for k < 1 the formula is unbounded there,
 /// and rounding would decide the brightness of a rim.
@@ -54,30 +48,7 @@ parameters! {
 }
 
 impl ReflectionModel for Minnaert {
-    const DECLARATION: Declaration = Declaration {
-        id: "minnaert",
-        name: "Minnaert",
-        family: Family::Classical,
-        author: "M. Minnaert 1941",
-        source: "M. Minnaert (1941), The Reciprocity Principle in Lunar Photometry, Astrophysical Journal 93, 403–410",
-        summary: "Powers of both cosines: from a moon that looks like a flat disc to cloth with dark edges.",
-        synonyms: &["Moon", "velvet"],
-        equation: &[EquationPart {
-            term: Term::Diffuse,
-            text: "I_d = C_b (k + 1)/2 N·L μ_i^{k − 1} μ_o^{k − 1}",
-        }],
-        quantities: &[
-            Quantity::new(
-                "μ_i = max(N·L, 0.001)",
-                "cosine of the light, at least 0.001 so that rims stay finite",
-            ),
-            Quantity::new("μ_o = max(N·V, 0.001)", "cosine of the observer, likewise at least 0.001"),
-        ],
-        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/minnaert.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("minnaert", "Minnaert", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));

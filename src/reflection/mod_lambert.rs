@@ -1,24 +1,18 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, ReflectionModel, Term};
+use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{Frame, Terms, lobes::Lobes},
-    parameter::{BASE_COLOUR, K_D, Parameter, ParameterKind},
+    parameter::{BASE_COLOUR, K_D, Parameter},
     parameters,
-    shader::wgsl,
 };
 
 /// The exponent of the wrapped cosine. The CA writes a square and also states that `k_d = 1` equals Lambert,
 /// which holds only for exponent 1; hence a parameter.
-const WRAP_EXPONENT: Parameter = Parameter {
-    name: "wrap_exponent",
-    symbol: "p",
-    label: "wrap exponent",
-    unit: "",
-    help: "The power of the wrapped cosine: 2 is the equation as written and, with a diffuse coefficient of 0.5, Valve's Half-Lambert; 1 is Lambert at a coefficient of 1.",
-    kind: ParameterKind::Number { min: 1.0, max: 4.0, default: 2.0 },
-    used_when: None,
-};
+const WRAP_EXPONENT: Parameter = Parameter::number("wrap_exponent", 1.0..=4.0, 2.0)
+    .symbol("p")
+    .label("wrap exponent")
+    .help("The power of the wrapped cosine: 2 is the equation as written and, with a diffuse coefficient of 0.5, Valve's Half-Lambert; 1 is Lambert at a coefficient of 1.");
 
 parameters! {
     /// **Modified Lambert** — diffuse wrap: light reaches around the edge; instance model 2 of the Commonality Analysis.
@@ -47,23 +41,7 @@ parameters! {
 }
 
 impl ReflectionModel for ModLambert {
-    const DECLARATION: Declaration = Declaration {
-        id: "mod_lambert",
-        name: "Modified Lambert",
-        family: Family::Basic,
-        author: "Mitchell, McTaggart, Green 2006",
-        source: "J. Mitchell, M. McTaggart, C. Green (2006), Shading in Valve's Source Engine, SIGGRAPH course; generalised here: coefficient and exponent can be set",
-        summary: "Diffuse wrap: softens the edge of the shadow and lights the far side. Half-Lambert at a diffuse coefficient of 0.5.",
-        synonyms: &["half Lambert", "wrapped diffuse", "Valve"],
-        equation: &[EquationPart {
-            term: Term::Diffuse, text: "I_d = max(0, (N·L) k_d + (1 − k_d))^p C_b"
-        }],
-        quantities: &[],
-        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Formula,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/mod_lambert.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("mod_lambert", "Modified Lambert", Basic);
 
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         let wrapped = frame.n.dot(l) * self.k_d + (1.0 - self.k_d);

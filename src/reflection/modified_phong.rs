@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term};
+use super::{Declaration, Readout, ReflectionModel, built_in};
 use crate::{
     optics::{
         Frame, Terms, equivalence,
@@ -9,7 +9,6 @@ use crate::{
     },
     parameter::{ALPHA, BASE_COLOUR, K_S, SPECULAR_COLOUR},
     parameters,
-    shader::wgsl,
 };
 
 parameters! {
@@ -50,27 +49,8 @@ parameters! {
 }
 
 impl ReflectionModel for ModifiedPhong {
-    const DECLARATION: Declaration = Declaration {
-        id: "modified_phong",
-        name: "Modified Phong",
-        family: Family::Classical,
-        author: "Lewis 1993, Lafortune & Willems 1994",
-        source: "R. R. Lewis (1993), Making Shaders More Physically Plausible, Eurographics Workshop on Rendering; E. P. Lafortune, Y. D. Willems (1994), Using the Modified Phong Reflectance Model for Physically Based Rendering, Report CW 197, KU Leuven",
-        summary: "Phong made reciprocal and energy conserving. Its highlight fades towards grazing angles, where real ones grow.",
-        synonyms: &["plastic", "shiny", "specular"],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s C_s) C_b max(0, N·L)" },
-            EquationPart {
-                term: Term::Specular, text: "I_s = k_s C_s (α + 2)/2 max(0, R·V)^α max(0, N·L)"
-            },
-        ],
-        quantities: &[],
-        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/modified_phong.wgsl"),
-    };
+    const DECLARATION: Declaration =
+        built_in!("modified_phong", "Modified Phong", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);

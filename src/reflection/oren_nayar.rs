@@ -1,30 +1,25 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
+use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{
         Frame, Terms,
         diffuse::{oren_nayar_full, oren_nayar_qualitative},
         lobes::Lobes,
     },
-    parameter::{BASE_COLOUR, Parameter, ParameterKind, SIGMA},
+    parameter::{BASE_COLOUR, Parameter, SIGMA},
     parameters,
-    shader::wgsl,
 };
 
 /// The choice between the two equations of the paper.
-const OREN_NAYAR_FORM: Parameter = Parameter {
-    name: "oren_nayar_form",
-    symbol: "",
-    label: "form",
-    unit: "",
-    help: "The full equation of the paper, with interreflection between facets, or its short form, which most programs use.",
-    kind: ParameterKind::Choice {
-        options: &[("full", "full, with interreflection"), ("qualitative", "qualitative")],
-        default: 0,
-    },
-    used_when: None,
-};
+const OREN_NAYAR_FORM: Parameter = Parameter::choice(
+    "oren_nayar_form",
+    &[("full", "full, with interreflection"), ("qualitative", "qualitative")],
+    0,
+)
+.symbol("")
+.label("form")
+.help("The full equation of the paper, with interreflection between facets, or its short form, which most programs use.");
 
 parameters! {
     /// **Oren–Nayar** — Lambert for rough surfaces: plaster, sand, clay, the moon.
@@ -63,58 +58,7 @@ parameters! {
 }
 
 impl ReflectionModel for OrenNayar {
-    const DECLARATION: Declaration = Declaration {
-        id: "oren_nayar",
-        name: "Oren–Nayar",
-        family: Family::Diffuse,
-        author: "Oren, Nayar 1994",
-        source: "M. Oren, S. K. Nayar (1994), Generalization of Lambert's Reflectance Model, SIGGRAPH '94, 239–246",
-        summary: "Rough matte surfaces such as plaster and the moon: they reflect light back towards its source, so spheres look flat.",
-        synonyms: &["clay", "Moon"],
-        equation: &[
-            EquationPart { term: Term::Diffuse, text: "I_d = C_b N·L S" },
-            EquationPart {
-                term: Term::Diffuse,
-                text: "S = C_1 + C_2 cos φ tan β + C_3 (1 − |cos φ|) tan((α + β)/2) + 0.17 C_4 C_b",
-            },
-            EquationPart { term: Term::Diffuse, text: "α = max(θ_i, θ_r), β = min(θ_i, θ_r)" },
-        ],
-        quantities: &[
-            Quantity::new("C_1 = 1 − 0.5 s^2/(s^2 + 0.33)", "reflection whatever the azimuth"),
-            Quantity::new("C_2 = 0.45 s^2/(s^2 + 0.09) (sin α − b)", "brightening on the side of the light")
-                .when(&[("oren_nayar_form", &["full"])]),
-            Quantity::new(
-                "C_2 = 0.45 s^2/(s^2 + 0.09) sin α if cos φ > 0 else 0",
-                "brightening on the side of the light",
-            )
-            .when(&[("oren_nayar_form", &["qualitative"])]),
-            Quantity::new(
-                "b = (β/90°)^3 if cos φ < 0 else 0",
-                "correction where light and observer are on opposite sides",
-            )
-            .when(&[("oren_nayar_form", &["full"])]),
-            Quantity::new(
-                "C_3 = 0.125 s^2/(s^2 + 0.09) (α/90° β/90°)^2",
-                "brightening where the light comes from the side",
-            )
-            .when(&[("oren_nayar_form", &["full"])]),
-            Quantity::new("C_3 = 0", "left out in the short form")
-                .when(&[("oren_nayar_form", &["qualitative"])]),
-            Quantity::new(
-                "C_4 = s^2/(s^2 + 0.13) (1 − cos φ (β/90°)^2)",
-                "light reflected by two facets in turn",
-            )
-            .when(&[("oren_nayar_form", &["full"])]),
-            Quantity::new("C_4 = 0", "left out in the short form, reflection by two facets in turn")
-                .when(&[("oren_nayar_form", &["qualitative"])]),
-            Quantity::new("s = σ π/180°", "slope deviation in radians"),
-            Quantity::new("φ = φ_l − φ_v", "azimuth between light and observer"),
-        ],
-        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/oren_nayar.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("oren_nayar", "Oren–Nayar", Diffuse).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, Readout, ReflectionModel, Term};
+use super::{Declaration, Readout, ReflectionModel, built_in};
 use crate::{
     optics::{
         Frame, Terms, equivalence,
@@ -9,7 +9,6 @@ use crate::{
     },
     parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
     parameters,
-    shader::wgsl,
 };
 
 parameters! {
@@ -49,26 +48,7 @@ parameters! {
 }
 
 impl ReflectionModel for Phong {
-    const DECLARATION: Declaration = Declaration {
-        id: "phong",
-        name: "Phong",
-        family: Family::Basic,
-        author: "B. T. Phong 1975",
-        source: "B. T. Phong (1975), Illumination for Computer Generated Pictures, Communications of the ACM 18(6), 311–317",
-        summary: "Ambient, diffuse and a highlight around the mirror direction. Easy to control, but not physical.",
-        synonyms: &["plastic", "shiny", "specular"],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_a + I_d + I_s" },
-            EquationPart { term: Term::Ambient, text: "I_a = k_a C_b" },
-            EquationPart { term: Term::Diffuse, text: "I_d = k_d max(0, N·L) C_b" },
-            EquationPart { term: Term::Specular, text: "I_s = k_s max(0, R·V)^α C_s" },
-        ],
-        quantities: &[],
-        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Formula,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/phong.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("phong", "Phong", Basic);
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);

@@ -2,39 +2,26 @@ use std::f32::consts::FRAC_2_PI;
 
 use glam::Vec3;
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, Measured, ReflectionModel, Term, preset};
+use super::{Declaration, Measured, ReflectionModel, built_in, preset};
 use crate::{
     optics::{
         Frame, Terms,
         lobe::{mirror_tangent_squared, power_of_cosine},
         lobes::{Lobe, Lobes},
     },
-    parameter::{BASE_COLOUR, METALLIC, Parameter, ParameterKind, Value},
+    parameter::{BASE_COLOUR, METALLIC, Parameter, Value},
     parameters,
-    shader::wgsl,
 };
 
 /// Strauss's smoothness.
-const SMOOTHNESS: Parameter = Parameter {
-    name: "smoothness",
-    symbol: "s",
-    label: "smoothness",
-    unit: "",
-    help: "0 is dull, 1 is a mirror. One number sharpens the highlight and darkens the diffuse part.",
-    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.6 },
-    used_when: None,
-};
+const SMOOTHNESS: Parameter = Parameter::number("smoothness", 0.0..=1.0, 0.6)
+    .symbol("s")
+    .help("0 is dull, 1 is a mirror. One number sharpens the highlight and darkens the diffuse part.");
 
 /// Strauss's transparency.
-const TRANSPARENCY: Parameter = Parameter {
-    name: "transparency",
-    symbol: "t",
-    label: "transparency",
-    unit: "",
-    help: "The fraction of light that would pass through and is lost here: nothing is visible behind the surface.",
-    kind: ParameterKind::Number { min: 0.0, max: 1.0, default: 0.0 },
-    used_when: None,
-};
+const TRANSPARENCY: Parameter = Parameter::number("transparency", 0.0..=1.0, 0.0).symbol("t").help(
+    "The fraction of light that would pass through and is lost here: nothing is visible behind the surface.",
+);
 
 /// Shape of F, which replaces Fresnel's equations, as published.
 const K_F: f32 = 1.12;
@@ -118,43 +105,7 @@ impl Strauss {
 }
 
 impl ReflectionModel for Strauss {
-    const DECLARATION: Declaration = Declaration {
-        id: "strauss",
-        name: "Strauss",
-        family: Family::Classical,
-        author: "P. S. Strauss 1990",
-        source: "P. S. Strauss (1990), A Realistic Lighting Model for Computer Animators, IEEE Computer Graphics and Applications 10(6), 56–64",
-        summary: "Smoothness and metalness instead of coefficients: the first model with today's parameters.",
-        synonyms: &["metalness", "plastic"],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart {
-                term: Term::Diffuse, text: "I_d = (1 − s^3)(1 − t)(1 − m s) C_b max(0, N·L)"
-            },
-            EquationPart {
-                term: Term::Specular, text: "I_s = r_j C_s max(0, R·V)^{min(30000, 3/(1 − s))}"
-            },
-            EquationPart { term: Term::Specular, text: "C_s = 1 + m (1 − F(α))(C_b − 1)" },
-            EquationPart {
-                term: Term::Specular,
-                text: "r_j = min(1, r_n + (r_n + 0.1) F(α) G(α) G(γ)), r_n = s^3 (1 − t)",
-            },
-            EquationPart {
-                term: Term::Specular,
-                text: "F(x) = (1/(x − 1.12)^2 − 1/1.12^2) / (1/0.12^2 − 1/1.12^2)",
-            },
-            EquationPart {
-                term: Term::Specular,
-                text: "G(x) = (1/0.01^2 − 1/(x − 1.01)^2) / (1/0.01^2 − 1/1.01^2)",
-            },
-            EquationPart { term: Term::Specular, text: "α = 2 θ_i/180°, γ = 2 θ_r/180°" },
-        ],
-        quantities: &[],
-        laws: Laws { reciprocal: false, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/strauss.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("strauss", "Strauss", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));

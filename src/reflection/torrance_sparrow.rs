@@ -3,8 +3,8 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::Vec3;
 
 use super::{
-    Ambient, Declaration, EquationPart, Factor, Family, Laws, Measured, Readout, ReflectionModel, Term,
-    cook_torrance::{EXACT_FRESNEL, SPECULAR_WEIGHT, conductor_preset},
+    CookTorrance, Declaration, Factor, Measured, Readout, ReflectionModel, built_in,
+    cook_torrance::{SPECULAR_WEIGHT, conductor_preset},
 };
 use crate::{
     optics::{
@@ -14,20 +14,15 @@ use crate::{
         lobes::{self, Lobe, Lobes},
         masking::v_cavity,
     },
-    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, ParameterKind, Value},
+    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, Value},
     parameters,
-    shader::wgsl,
 };
 
-const FACET_SPREAD: Parameter = Parameter {
-    name: "facet_spread",
-    symbol: "β",
-    label: "spread of the facets",
-    unit: "°",
-    help: "The angle from the normal at which facets are rarer by the factor e: smaller values sharpen the highlight. 5° is shiny, 30° nearly matte.",
-    kind: ParameterKind::Number { min: 0.1, max: 60.0, default: 12.0 },
-    used_when: None,
-};
+const FACET_SPREAD: Parameter = Parameter::number("facet_spread", 0.1..=60.0, 12.0)
+    .symbol("β")
+    .label("spread of the facets")
+    .unit("°")
+    .help("The angle from the normal at which facets are rarer by the factor e: smaller values sharpen the highlight. 5° is shiny, 30° nearly matte.");
 
 parameters! {
     /// **Torrance–Sparrow** — the first microfacet model: facets with Gaussian angles, in V-shaped cavities, with the
@@ -86,30 +81,9 @@ fn gaussian(sin_h: f32, cos_h: f32, spread: f32) -> f32 {
 }
 
 impl ReflectionModel for TorranceSparrow {
-    const DECLARATION: Declaration = Declaration {
-        id: "torrance_sparrow",
-        name: "Torrance–Sparrow",
-        family: Family::Microfacet,
-        author: "K. E. Torrance, E. M. Sparrow 1967",
-        source: "K. E. Torrance, E. M. Sparrow (1967), Theory for Off-Specular Reflection from Roughened Surfaces, Journal of the Optical Society of America 57(9), 1105–1114",
-        summary: "The first microfacet model: explains why, under grazing light, the highlight is brightest beyond the mirror direction.",
-        synonyms: &["microfacets", "off-specular peak"],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart { term: Term::Diffuse, text: "I_d = (1 − s) C_b (N·L)" },
-            EquationPart { term: Term::Specular, text: "I_s = s π D F G / (4 (N·V))" },
-            EquationPart { term: Term::Specular, text: "D = exp(−θ_h^2 / β^2) / (π (β π/180°)^2)" },
-            EquationPart {
-                term: Term::Specular, text: "G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H))"
-            },
-            EquationPart { term: Term::Specular, text: "F = 0.5 (R_s + R_p)" },
-        ],
-        quantities: EXACT_FRESNEL,
-        laws: Laws { reciprocal: true, energy_conserving: true, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: false,
-        wgsl: wgsl!("reflection/torrance_sparrow.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("torrance_sparrow", "Torrance–Sparrow", Microfacet)
+        .quantities(CookTorrance::DECLARATION.quantities)
+        .ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

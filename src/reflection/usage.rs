@@ -1,6 +1,6 @@
 //! The parameters used by a model with its present choices.
 
-use crate::parameter::{Parameter, ParameterKind, UsedWhen, Values};
+use crate::parameter::{Parameter, UsedWhen, Values};
 
 /// The unmet condition of a parameter, with the parameter that it concerns. A parameter that depends on an unused one
 /// is itself unused.
@@ -14,9 +14,8 @@ fn unmet<'a>(
     for _ in parameters {
         let condition = here.used_when?;
         let other = parameters.iter().find(|p| p.name == condition.parameter)?;
-        let ParameterKind::Choice { options, .. } = &other.kind else { return None };
-        let chosen = options[values.choice(other) as usize].0;
-        if !condition.choices.contains(&chosen) {
+        let (chosen, _) = other.kind.options().get(values.choice(other) as usize)?;
+        if !condition.choices.contains(chosen) {
             return Some((condition, other));
         }
         here = other;
@@ -39,7 +38,7 @@ pub fn unused(parameters: &[Parameter], parameter: &Parameter, values: &Values) 
     /// Maximum number of choices listed.
     const FEW: usize = 2;
     let (condition, other) = unmet(parameters, parameter, values)?;
-    let ParameterKind::Choice { options, .. } = &other.kind else { return None };
+    let options = other.kind.options();
     // A name with a comma would look like two.
     let quoted =
         |name: &str| if name.contains([',', '(']) { format!("“{name}”") } else { name.to_owned() };
@@ -70,9 +69,10 @@ pub fn problem(parameters: &[Parameter], parameter: &Parameter) -> Option<String
     let Some(other) = parameters.iter().find(|p| p.name == name) else {
         return Some(format!("it must name a parameter of this model; there is no \"{name}\""));
     };
-    let ParameterKind::Choice { options, .. } = &other.kind else {
+    let options = other.kind.options();
+    if options.is_empty() {
         return Some(format!("it must name a parameter of type choice; \"{name}\" has another type"));
-    };
+    }
     if let Some(unknown) = condition.choices.iter().find(|c| options.iter().all(|(id, _)| id != *c)) {
         let known: Vec<_> = options.iter().map(|(id, _)| format!("\"{id}\"")).collect();
         return Some(format!("\"{unknown}\" is not a choice of {name}, which has {}", known.join(", ")));
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
     use crate::{
         optics::{Frame, colour::Encoding},
-        parameter::{BASE_COLOUR, Value},
+        parameter::{BASE_COLOUR, ParameterKind, Value},
         reflection::ModelEntry,
         registry::Registry,
     };
@@ -127,21 +127,18 @@ mod tests {
 
     /// Legal values that differ from the given one.
     fn others(p: &Parameter, now: &Value) -> Vec<Value> {
+        let whole = p.kind.limits().is_some_and(|range| range.whole);
         let candidates = match &p.kind {
-            ParameterKind::Number { min, max, .. } => {
-                [0.2, 0.5, 0.8].map(|t| Value::Number(min + t * (max - min))).to_vec()
-            }
-            ParameterKind::Integer { min, slider_max, .. } => {
-                vec![Value::Integer(min + 1), Value::Integer(*slider_max)]
-            }
-            ParameterKind::Colour { .. } => vec![Value::Colour([200, 120, 40]), Value::Colour([40, 90, 230])],
-            ParameterKind::Triple { min, max, .. } => [[0.15, 0.3, 0.5], [0.7, 0.4, 0.2]]
-                .map(|t| Value::Triple(t.map(|t| min + t * (max - min))))
-                .to_vec(),
-            ParameterKind::Choice { options, .. } => {
-                options.iter().map(|(id, _)| Value::Choice((*id).into())).collect()
-            }
-            ParameterKind::File { .. } => Vec::new(),
+            ParameterKind::Colour(_) => vec![Value::Colour([200, 120, 40]), Value::Colour([40, 90, 230])],
+            kind => match kind.limits() {
+                None => kind.ends(),
+                Some(range) if whole => {
+                    [range.min + 1.0, range.slider_max].map(|v| kind.of_numbers([v; 3])).to_vec()
+                }
+                Some(range) => [[0.2, 0.15, 0.1], [0.5; 3], [0.8, 0.4, 0.2]]
+                    .map(|t| kind.of_numbers(t.map(|t| range.min + t * (range.max - range.min))))
+                    .to_vec(),
+            },
         };
         candidates.into_iter().filter(|v| v != now && p.allows(v)).collect()
     }
@@ -151,10 +148,7 @@ mod tests {
         let choices: Vec<(&Parameter, &str)> = model
             .parameters
             .iter()
-            .flat_map(|p| {
-                let ParameterKind::Choice { options, .. } = &p.kind else { return Vec::new() };
-                options.iter().map(|(id, _)| (p, *id)).collect()
-            })
+            .flat_map(|p| p.kind.options().iter().map(move |(id, _)| (p, *id)))
             .collect();
         let mut all = vec![Values::default()];
         for (i, (p, a)) in choices.iter().enumerate() {
@@ -177,12 +171,13 @@ mod tests {
     fn mixed(model: &ModelEntry, choices: &Values) -> Values {
         let mut values = choices.clone();
         for p in model.parameters {
-            let middle = match &p.kind {
-                ParameterKind::Number { min, max, .. } => Value::Number(min + 0.4 * (max - min)),
-                ParameterKind::Integer { min, slider_max, .. } => Value::Integer((min + slider_max) / 4),
-                ParameterKind::Colour { .. } => Value::Colour([180, 90, 60]),
-                ParameterKind::Triple { min, max, .. } => Value::Triple([min + 0.35 * (max - min); 3]),
-                ParameterKind::Choice { .. } | ParameterKind::File { .. } => continue,
+            let middle = match (&p.kind, p.kind.limits()) {
+                (ParameterKind::Colour(_), _) => Value::Colour([180, 90, 60]),
+                (kind, Some(range)) if range.whole => {
+                    kind.of_numbers([(0.25 * (range.min + range.slider_max)).trunc(); 3])
+                }
+                (kind, Some(range)) => kind.of_numbers([range.min + 0.4 * (range.max - range.min); 3]),
+                (_, None) => continue,
             };
             if p.allows(&middle) {
                 values.set(p.name, middle);
@@ -243,11 +238,7 @@ mod tests {
 
     #[test]
     fn conditions_that_cannot_hold_are_found() {
-        let choice = |name: &'static str| Parameter {
-            name,
-            kind: ParameterKind::Choice { options: &[("a", "A"), ("b", "B")], default: 0 },
-            ..BASE_COLOUR
-        };
+        let choice = |name: &'static str| Parameter::choice(name, &[("a", "A"), ("b", "B")], 0);
         let problem_of = |condition: (&'static str, &'static [&'static str])| {
             let list = [choice("one"), choice("two").used_when(condition.0, condition.1), BASE_COLOUR];
             problem(&list, &list[1]).unwrap_or_default()

@@ -1,27 +1,25 @@
 use glam::{Vec2, Vec3};
 
-use super::{Ambient, Declaration, EquationPart, Family, Laws, Quantity, ReflectionModel, Term};
+use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{
         Frame, Terms,
         geometry::half_slope,
         lobes::{Lobe, Lobes},
     },
-    parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, K_S, Parameter, ParameterKind, SPECULAR_COLOUR},
+    parameter::{ALPHA_X, ALPHA_Y, BASE_COLOUR, K_S, Parameter, SPECULAR_COLOUR},
     parameters,
-    shader::wgsl,
 };
 
 /// The division of the lobe by the cosines of light and view.
-const WARD_FORM: Parameter = Parameter {
-    name: "ward_form",
-    symbol: "",
-    label: "form",
-    unit: "",
-    help: "As published by Ward, the highlight fades at grazing angles; Dür's division by both cosines brightens it there, beyond the incident light.",
-    kind: ParameterKind::Choice { options: &[("ward", "Ward 1992"), ("duer", "Dür 2006")], default: 0 },
-    used_when: None,
-};
+const WARD_FORM: Parameter = Parameter::choice(
+    "ward_form",
+    &[("ward", "Ward 1992"), ("duer", "Dür 2006")],
+    0,
+)
+.symbol("")
+.label("form")
+.help("As published by Ward, the highlight fades at grazing angles; Dür's division by both cosines brightens it there, beyond the incident light.");
 
 parameters! {
     /// **Ward** — a Gaussian highlight, stretched on brushed surfaces.
@@ -68,35 +66,7 @@ parameters! {
 }
 
 impl ReflectionModel for Ward {
-    const DECLARATION: Declaration = Declaration {
-        id: "ward",
-        name: "Ward",
-        family: Family::Classical,
-        author: "G. J. Ward 1992",
-        source: "G. J. Ward (1992), Measuring and Modeling Anisotropic Reflection, SIGGRAPH '92, 265–272; A. Dür (2006), An Improved Normalization for the Ward Reflectance Model, journal of graphics tools 11(1), 51–59",
-        summary: "A Gaussian highlight made to fit measurements, stretched on brushed surfaces. Dür's form conserves the light of small highlights and gains light at grazing angles.",
-        synonyms: &["anisotropic", "brushed metal", "Beckmann"],
-        equation: &[
-            EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-            EquationPart { term: Term::Diffuse, text: "I_d = (1 − k_s) C_b N·L" },
-            EquationPart {
-                term: Term::Specular,
-                text: "I_s = k_s C_s exp(−(x^2/α_x^2 + y^2/α_y^2)) / (4 α_x α_y) c",
-            },
-            EquationPart { term: Term::Specular, text: "x = tan θ_h cos φ_h, y = tan θ_h sin φ_h" },
-        ],
-        quantities: &[
-            Quantity::new("c = √(N·L / N·V)", "division by the roots of both cosines, times N·L")
-                .when(&[("ward_form", &["ward"])]),
-            Quantity::new("c = 1/N·V", "division by both cosines, times N·L")
-                .source("A. Dür 2006")
-                .when(&[("ward_form", &["duer"])]),
-        ],
-        laws: Laws { reciprocal: true, energy_conserving: false, non_negative: true },
-        ambient: Ambient::Albedo,
-        anisotropic: true,
-        wgsl: wgsl!("reflection/ward.wgsl"),
-    };
+    const DECLARATION: Declaration = built_in!("ward", "Ward", Classical).ambient_by_albedo().anisotropic();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));

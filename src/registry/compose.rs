@@ -6,16 +6,16 @@
 //! types, the dispatch over light types (generated), the light loop, the shading model after its parameters
 //! (generated), the debug channels, the last step of a pixel, and the wrapper with bindings and entry points.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
 use crate::{
     debug,
     light::{LightEntry, Twin},
     optics::{
-        albedo::{NODES, NamedCurve, Spacing},
+        albedo::{NODES, Spacing},
         lobes::MAX_LOBES,
     },
-    parameter::{Parameter, Values},
+    parameter::{Parameter, Values, lanes},
     reflection::{Ambient, Family, ModelEntry},
     shader::{
         Source,
@@ -25,37 +25,24 @@ use crate::{
         },
     },
     shading::{self, ShadingEntry},
+    text::template::{chosen, filled},
 };
+
+/// A generated part of sources. Its parts in turn have names that are separated by spaces.
+pub(crate) fn part(names: &str, places: &[(&str, &dyn Display)]) -> String {
+    let wanted = |name: &str| names.split(' ').any(|wanted| wanted == name);
+    filled(&chosen(include_str!("parts.wgsl"), wanted), places)
+}
 
 /// The WGSL struct `Row` of a model, the data of one object in the shader's table, and the functions that
 /// read its curve; `more` are additional fields. The array of rows is `parameter_table`, the index of the
 /// object is `object_row`. Curves are read in place: a copy would cost time for every pixel.
 #[must_use]
 pub fn row_struct(model: &ModelEntry, more: &str) -> String {
-    let mut text = parameter_struct("Parameters", model.parameters);
-    if !model.has_curve() {
-        let _ = write!(text, "struct Row {{\n    parameters: Parameters,\n{more}}}\n");
-        return text;
-    }
-    let harmonics = model.harmonics();
-    let _ = write!(
-        text,
-        "struct Row {{
-    parameters: Parameters,
-    curve: array<vec4<f32>, {}>,
-    lobe_mean: f32,
-{more}}}
-const HARMONICS: u32 = {harmonics}u;
-fn curve_node(i: u32) -> vec4<f32> {{
-    return parameter_table[object_row].curve[i];
-}}
-fn lobe_mean() -> f32 {{
-    return parameter_table[object_row].lobe_mean;
-}}
-",
-        model.curve_length()
-    );
-    text
+    let names = if model.has_curve() { "row curve" } else { "row" };
+    let places: &[(&str, &dyn Display)] =
+        &[("more", &more), ("length", &model.curve_length()), ("harmonics", &model.harmonics())];
+    parameter_struct("Parameters", model.parameters) + &part(names, places)
 }
 
 /// The functions that read the additional curves of a model by name: each begins where the one before ends.
@@ -64,35 +51,21 @@ pub fn named_curves(model: &ModelEntry) -> String {
     let mut text = String::new();
     let mut first = model.harmonics() * NODES;
     for curve in model.curves() {
-        let NamedCurve { name, spacing } = curve;
-        let _ = match spacing {
-            Spacing::Cubic => {
-                write!(
-                    text,
-                    "fn curve_{name}(mu: f32) -> vec4<f32> {{\n    return curve_from(mu, {first}u);\n}}\n"
-                )
-            }
-            Spacing::Values(_) => write!(
-                text,
-                "fn value_{name}(i: u32) -> vec4<f32> {{\n    return curve_node({first}u + i);\n}}\n"
-            ),
-            Spacing::Linear(count) => write!(
-                text,
-                "fn curve_{name}(mu: f32) -> vec4<f32> {{
-    let x = clamp(mu, 0.0, 1.0) * {:?};
-    let i = min(u32(x), {}u);
-    return mix(curve_node({first}u + i), curve_node({}u + i), x - f32(i));
-}}
-",
-                (count - 1) as f32,
-                count - 2,
-                first + 1
-            ),
+        let spacing = match curve.spacing {
+            Spacing::Cubic => "cubic",
+            Spacing::Values(_) => "values",
+            Spacing::Linear(_) => "linear",
         };
-        if !matches!(spacing, Spacing::Values(_)) {
-            let mean = first + curve.nodes();
-            let _ = write!(text, "fn mean_{name}() -> vec4<f32> {{\n    return curve_node({mean}u);\n}}\n");
-        }
+        let steps = curve.nodes().saturating_sub(1);
+        let places: &[(&str, &dyn Display)] = &[
+            ("name", &curve.name),
+            ("first", &first),
+            ("next", &(first + 1)),
+            ("mean", &(first + curve.nodes())),
+            ("steps", &format!("{:?}", steps as f32)),
+            ("last", &steps.saturating_sub(1)),
+        ];
+        text.push_str(&part(spacing, places));
         first += curve.length();
     }
     text
@@ -109,16 +82,9 @@ fn push_model(c: &mut Composer, model: &ModelEntry, more: &str) {
     }
     c.source(&model.declaration.wgsl);
     if model.declaration.ambient == Ambient::Albedo {
-        c.push("(ambient)", AMBIENT);
+        c.push("(ambient)", &part("ambient", &[]));
     }
 }
-
-/// The response to uniform light for models that declare their albedo as such.
-pub(crate) const AMBIENT: &str =
-    "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
-    return directional_albedo(v, frame);
-}
-";
 
 /// The values of a parameter struct in WGSL, from its [`words`](crate::parameter::words): `word` reads the
 /// one with an index as a type.
@@ -130,9 +96,9 @@ fn values(parameters: &[Parameter], word: impl Fn(usize, &str) -> String) -> Str
     };
     let fields: Vec<_> = parameters
         .iter()
-        .map(|p| match p.wgsl_type() {
-            "vec3<f32>" => format!("vec3({})", [(); 3].map(|()| next("f32")).join(", ")),
-            kind => next(kind),
+        .map(|p| match lanes(p.wgsl_type()) {
+            1 => next(p.wgsl_type()),
+            n => format!("vec{n}({})", (0..n).map(|_| next("f32")).collect::<Vec<_>>().join(", ")),
         })
         .collect();
     fields.join(", ")
@@ -176,18 +142,7 @@ fn any_extent(lights: &[LightEntry]) -> bool {
 /// light's own parameters, read from its [`words`](LightEntry::words). Lights of other types are dark.
 #[must_use]
 pub fn light_dispatch(lights: &[LightEntry]) -> String {
-    let mut text = String::from(
-        "fn illumination_number(i: u32) -> f32 {
-    return bitcast<f32>(light_words[i]);
-}
-fn light_word(light: Light, i: u32) -> u32 {
-    return light_words[light.first_word + i];
-}
-fn light_number(light: Light, i: u32) -> f32 {
-    return illumination_number(light.first_word + i);
-}
-",
-    );
+    let mut text = part("words", &[]);
     let mut dispatch = |twin: &Twin, function: &str, extent: bool| {
         let [taken, given] = twin.more;
         let result = twin.result;
@@ -242,7 +197,7 @@ pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
     if light.declaration.extent {
         // No directions of lobes are sampled here.
         c.source(&SAMPLING);
-        c.push("(lobes)", NO_LOBES);
+        c.push("(lobes)", &part("no_lobes", &[]));
     }
     push_light(&mut c, light);
     let tables = light.parameters.iter().filter_map(|p| Values::default().table(p));
@@ -259,17 +214,7 @@ pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
         )
     };
     let calls: String = Twin::all(extent).iter().map(call).collect();
-    c.push(
-        LIGHT_ALONE,
-        &format!(
-            "struct FileRow {{ numbers: array<f32, {numbers}> }}
-@group(0) @binding(0) var<storage, read> {FILE_TABLE}: array<FileRow>;
-fn illumination_number(i: u32) -> f32 {{
-    return {FILE_TABLE}[0].numbers[i];
-}}
-{calls}"
-        ),
-    );
+    c.push(LIGHT_ALONE, &(part("light_alone", &[("numbers", &numbers)]) + &calls));
     c.composed
 }
 
@@ -280,57 +225,11 @@ fn illumination_number(i: u32) -> f32 {{
 pub fn compose_shading(sources: &Sources, shading: &ShadingEntry) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().chain([&SHADING]).for_each(|s| c.source(s));
-    c.push(
-        SHADING_ALONE,
-        &format!(
-            "struct Row {{ shading: array<vec4<u32>, {}> }}
-@group(0) @binding(0) var<storage, read> parameter_table: array<Row>;
-var<private> object_row: u32;
-var<private> to_the_right: vec3<f32>;
-var<private> downwards: vec3<f32>;
-fn dpdx(place: vec3<f32>) -> vec3<f32> {{
-    return to_the_right;
-}}
-fn dpdy(place: vec3<f32>) -> vec3<f32> {{
-    return downwards;
-}}
-fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {{
-    return 0.5 + 0.25 * normal + 0.125 * tangent.yzx + 0.03125 * position.zxy;
-}}
-",
-            shading::PARAMETER_WORDS / 4
-        ),
-    );
+    c.push(SHADING_ALONE, &part("shading_alone", &[("words", &(shading::PARAMETER_WORDS / 4))]));
     push_shading(&mut c, shading);
-    c.push(
-        SHADING_ALONE,
-        "fn pixel_alone(passed: Varying, right: vec3<f32>, down: vec3<f32>) -> vec3<f32> {
-    to_the_right = right;
-    downwards = down;
-    return shade_pixel(passed);
-}
-",
-    );
+    c.push(SHADING_ALONE, &part("pixel_alone", &[]));
     c.composed
 }
-
-/// The lobes of the object being drawn.
-const LOBE_ROW: &str = "fn lobe_row(i: u32) -> vec4<f32> {
-    return parameter_table[object_row].lobes[i];
-}
-";
-
-/// The lobes if no object is drawn.
-const NO_LOBES: &str = "fn lobe_row(i: u32) -> vec4<f32> {
-    return vec4(0.0);
-}
-";
-
-/// Replaces the code of lights with extent if there are none.
-const NOT_EXTENDED: &str = "fn extended(position: vec3<f32>, v: vec3<f32>, frame: Frame) -> vec3<f32> {
-    return vec3(0.0);
-}
-";
 
 /// The complete source for drawing with a model and a shading model under the given light types, those of the
 /// scene: an error in another type does not affect the picture.
@@ -353,7 +252,7 @@ pub fn compose(
     );
     push_model(&mut c, model, &words);
     if extent {
-        c.push("(lobes)", LOBE_ROW);
+        c.push("(lobes)", &part("lobes", &[]));
     }
     lights.iter().for_each(|light| push_light(&mut c, light));
     c.push("(light types)", &light_dispatch(lights));
@@ -361,7 +260,7 @@ pub fn compose(
     if extent {
         c.source(&EXTENDED);
     } else {
-        c.push("(no light with extent)", NOT_EXTENDED);
+        c.push("(no light with extent)", &part("not_extended", &[]));
     }
     push_shading(&mut c, shading);
     c.source(&CHANNELS);
@@ -376,7 +275,7 @@ pub fn compose(
 pub fn compose_seen(sources: &Sources, lights: &[LightEntry]) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().chain([&LIGHTS, &SAMPLING]).for_each(|s| c.source(s));
-    c.push("(lobes)", NO_LOBES);
+    c.push("(lobes)", &part("no_lobes", &[]));
     let lights: Vec<_> = lights.iter().filter(|light| light.declaration.extent).copied().collect();
     lights.iter().for_each(|light| push_light(&mut c, light));
     c.push("(light types)", &light_dispatch(&lights));

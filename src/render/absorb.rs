@@ -17,9 +17,10 @@ use glam::Vec3;
 use super::{
     entities::{Absorbed, CurrentScene, SceneEntities},
     mirror::{Part, read_light, read_object, read_observer, read_place},
-    parts::{Animated, IsPart, SceneLight, SceneObject, SceneObserver, Surface, Tessellation, Touched},
+    noticed,
+    parts::{Animated, SceneLight, SceneObject, SceneObserver, Touched},
     shown::show_objects,
-    typed::{PartTypes, Watches},
+    typed::PartTypes,
 };
 use crate::{
     document::Extent,
@@ -31,20 +32,6 @@ use crate::{
     },
     text::sentence,
 };
-
-/// Components that belong to a part, besides its transform and the component of its type.
-type OfPart = (
-    IsPart,
-    Or<(
-        Changed<SceneLight>,
-        Changed<SceneObject>,
-        Changed<SceneObserver>,
-        Changed<Surface>,
-        Changed<Tessellation>,
-        Changed<Visibility>,
-        Changed<Name>,
-    )>,
-);
 
 /// Refusals that were reported.
 #[derive(Default)]
@@ -59,29 +46,25 @@ pub struct Reported {
     tried: Option<Tick>,
 }
 
-/// Adopts what other systems changed in the entities of parts, spawned and despawned. Values written by
-/// [`reconcile`] itself equal those of the scene, and change nothing. Exclusive, since each type has a
-/// different component.
-///
-/// [`reconcile`]: super::entities::reconcile
-pub fn absorb(
-    world: &mut World,
-    moved: &mut QueryState<Entity, (Changed<Transform>, IsPart, Without<Animated>)>,
-    changed: &mut QueryState<Entity, OfPart>,
-    mut reported: Local<Reported>,
-) {
-    let Touched { entities: mut touched, rested } = std::mem::take(&mut *world.resource_mut::<Touched>());
+/// Adopts what other systems changed in the entities of parts, spawned and despawned. Exclusive, since each
+/// type has a different component.
+pub fn absorb(world: &mut World, mut reported: Local<Reported>) {
+    let touched = noticed::take(world);
+    let left = absorb_touched(world, touched, &mut reported);
+    noticed::give_back(world, left);
+}
+
+/// Adopts what was touched. Returns what has to wait.
+fn absorb_touched(world: &mut World, all: Touched, reported: &mut Reported) -> Touched {
+    let Touched { entities: mut touched, moved, rested } = all;
     touched.extend(&rested);
-    touched.extend(changed.iter(world));
-    let mut watches = std::mem::take(&mut *world.resource_mut::<Watches>());
-    watches.changed(world, &mut touched);
-    *world.resource_mut::<Watches>() = watches;
     let entities = world.resource::<SceneEntities>();
     // Nothing else reports changes of these, which all kinds of entities have.
     let bare = world.removed::<Transform>().chain(world.removed::<Visibility>());
     touched.extend(bare.filter(|entity| entities.part_of(*entity).is_some()));
     let mut places = Vec::new();
-    for entity in moved.iter(world) {
+    // Some may be animated meanwhile.
+    for entity in moved.into_iter().filter(|entity| world.get::<Animated>(*entity).is_none()) {
         match entities.place_of(entity) {
             Some(i) => places.push((entity, i)),
             // Lights and the observer are few; others are new.
@@ -93,8 +76,7 @@ pub fn absorb(
     if !entities.stands_for(&world.resource::<CurrentScene>().0) {
         // Another scene was set meanwhile: the entities follow it first.
         touched.extend(places.into_iter().map(|(entity, _)| entity));
-        *world.resource_mut::<Touched>() = Touched { entities: touched, rested };
-        return;
+        return Touched { entities: touched, rested, ..Touched::default() };
     }
     let before = Some(world.resource_ref::<CurrentScene>().last_changed());
     if std::mem::replace(&mut reported.tried, before) != before && !reported.waiting.is_empty() {
@@ -105,7 +87,7 @@ pub fn absorb(
     // Without a window, nothing else reads it.
     world.resource_mut::<SceneEntities>().bypass_change_detection().absorbed = Absorbed::default();
     if touched.is_empty() && places.is_empty() {
-        return;
+        return Touched::default();
     }
     places.retain(|(entity, _)| touched.binary_search(entity).is_err());
     // Not with `resource_scope`, after which Bevy marks the resource as changed.
@@ -119,7 +101,7 @@ pub fn absorb(
         entities: &mut entities,
         types: &types,
         registry: &registry,
-        reported: &mut reported,
+        reported,
         tried: Vec::new(),
         lost: Vec::new(),
         new: Vec::new(),
@@ -154,6 +136,7 @@ pub fn absorb(
     *world.resource_mut::<SceneEntities>().bypass_change_detection() = entities;
     touched.extend(back);
     show_objects(world, &touched);
+    Touched::default()
 }
 
 /// The value of a part before a tentative change.

@@ -15,15 +15,10 @@ use crate::{
     },
 };
 use bevy::{
-    camera::{
-        Camera, Camera3d, ClearColorConfig, Hdr, PerspectiveProjection, Projection, visibility::RenderLayers,
-    },
-    color::Color,
+    camera::{Hdr, visibility::RenderLayers},
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
-    ecs::prelude::*,
     light::cluster::ClusterConfig,
-    render::view::Msaa,
-    transform::components::Transform,
+    prelude::*,
 };
 
 /// The camera that draws the picture.
@@ -49,18 +44,12 @@ pub struct ForDisplay {
 /// values.
 #[must_use]
 pub fn picture_camera(samples: u8) -> impl Bundle {
+    let ([r, g, b], fov) = (BACKGROUND, Observer::default().field_of_view.to_radians());
     (
         PictureCamera { follows_observer: true, fits_width: false },
         Camera3d::default(),
-        Camera {
-            clear_color: ClearColorConfig::Custom(Color::srgb_u8(
-                BACKGROUND[0],
-                BACKGROUND[1],
-                BACKGROUND[2],
-            )),
-            ..Camera::default()
-        },
-        projection(&Observer::default()),
+        Camera { clear_color: ClearColorConfig::Custom(Color::srgb_u8(r, g, b)), ..default() },
+        Projection::Perspective(PerspectiveProjection { fov, near: NEAR, ..default() }),
         Tonemapping::None,
         // Bevy's lights are not used.
         ClusterConfig::Single,
@@ -69,14 +58,6 @@ pub fn picture_camera(samples: u8) -> impl Bundle {
         RenderLayers::from_layers(&[SCENE_LAYER, GIZMO_LAYER]),
         if samples == 4 { Msaa::Sample4 } else { Msaa::Off },
     )
-}
-
-fn projection(observer: &Observer) -> Projection {
-    Projection::Perspective(PerspectiveProjection {
-        fov: observer.field_of_view.to_radians(),
-        near: NEAR,
-        ..PerspectiveProjection::default()
-    })
 }
 
 /// The renderer's pass for a tone mapping.
@@ -114,9 +95,7 @@ pub fn follow_scene(
         if camera.follows_observer {
             let wanted =
                 Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
-            if *transform != wanted {
-                *transform = wanted;
-            }
+            transform.set_if_neq(wanted);
         }
         let Projection::Perspective(perspective) = &*lens else { continue };
         let inset = view.and_then(|view| view.inset).map(|inset| inset.size().as_vec2());
@@ -131,8 +110,6 @@ pub fn follow_scene(
         let seen = hdr || display;
         let display = overrides.map_or(scene.0.display, |o| o.seen_through(&scene.0));
         let wanted = if seen { tonemapping(display.tone_mapping) } else { Tonemapping::None };
-        if *tone != wanted {
-            *tone = wanted;
-        }
+        tone.set_if_neq(wanted);
     }
 }

@@ -7,14 +7,10 @@
 use std::sync::Arc;
 
 use bevy::{
-    asset::{AssetId, Assets, Handle, RenderAssetUsages},
-    ecs::{
-        resource::Resource,
-        world::{FromWorld, World},
-    },
+    asset::RenderAssetUsages,
+    prelude::*,
     render::{render_resource::BufferUsages, storage::ShaderBuffer},
 };
-use glam::Vec3;
 
 use super::converge::Part;
 use crate::{
@@ -39,32 +35,6 @@ const SAMPLE_BYTES: usize = 12;
 pub const LIGHT_BYTES: usize = 48;
 /// Initial capacity of the parameter buffer, in words: four for each light.
 const WORDS: usize = 4 * MAX_LIGHTS;
-
-/// Byte offsets of the fields of `Light` in `lights.wgsl`; a test compares them with the shader's.
-pub const LIGHT_LAYOUT: [(&str, usize); 6] = [
-    ("position", 0),
-    ("light_type", 12),
-    ("direction", 16),
-    ("intensity", 28),
-    ("colour", 32),
-    ("first_word", 44),
-];
-/// Byte offsets of the fields of `Illumination` in `lights.wgsl`.
-pub const ILLUMINATION_LAYOUT: [(&str, usize); 13] = [
-    ("count", 0),
-    ("terms", 4),
-    ("exposure", 8),
-    ("gamma_naive", 12),
-    ("channel", 16),
-    ("channel_light", 20),
-    ("channel_low", 24),
-    ("channel_high", 28),
-    ("first_sample", SAMPLES_AT),
-    ("sample_count", SAMPLES_AT + 4),
-    ("is_part", SAMPLES_AT + 8),
-    ("spare", SAMPLES_AT + 12),
-    ("lights", HEADER_BYTES),
-];
 
 /// The displayed terms of the equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Resource)]
@@ -255,6 +225,38 @@ pub fn illumination_bytes(
         put(base + 44, (*first as u32).to_le_bytes());
     }
     (bytes, places.words(lights).into_iter().flat_map(u32::to_le_bytes).collect())
+}
+
+/// What shaders must have too.
+#[cfg(test)]
+pub(crate) mod layout {
+    use super::{HEADER_BYTES, SAMPLES_AT};
+
+    /// Byte offsets of the fields of `Light` in `lights.wgsl`.
+    pub(crate) const LIGHT: [(&str, usize); 6] = [
+        ("position", 0),
+        ("light_type", 12),
+        ("direction", 16),
+        ("intensity", 28),
+        ("colour", 32),
+        ("first_word", 44),
+    ];
+    /// Byte offsets of the fields of `Illumination` in `lights.wgsl`.
+    pub(crate) const ILLUMINATION: [(&str, usize); 13] = [
+        ("count", 0),
+        ("terms", 4),
+        ("exposure", 8),
+        ("gamma_naive", 12),
+        ("channel", 16),
+        ("channel_light", 20),
+        ("channel_low", 24),
+        ("channel_high", 28),
+        ("first_sample", SAMPLES_AT),
+        ("sample_count", SAMPLES_AT + 4),
+        ("is_part", SAMPLES_AT + 8),
+        ("spare", SAMPLES_AT + 12),
+        ("lights", HEADER_BYTES),
+    ];
 }
 
 #[cfg(test)]

@@ -8,29 +8,19 @@
 use std::{collections::HashMap, marker::PhantomData};
 
 use bevy::{
-    asset::{Asset, AssetId, Assets, Handle},
-    ecs::{
-        change_detection::Mut,
-        resource::Resource,
-        system::{SystemParamItem, lifetimeless::SRes},
-        world::{EntityWorldMut, World},
-    },
-    mesh::{Mesh, MeshVertexAttribute, MeshVertexBufferLayoutRef},
-    pbr::{Material, MaterialPipeline, MaterialPipelineKey, MaterialPlugin, MeshMaterial3d},
-    prelude::App,
-    reflect::TypePath,
+    ecs::system::{SystemParamItem, lifetimeless::SRes},
+    mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef},
+    pbr::{MaterialPipeline, MaterialPipelineKey},
+    prelude::*,
     render::{
         render_asset::RenderAssets,
         render_resource::{
-            AsBindGroup, AsBindGroupError, BindGroupLayout, BindGroupLayoutEntries, BindGroupLayoutEntry,
-            BindingResources, OwnedBindingResource, RenderPipelineDescriptor, ShaderStages,
-            SpecializedMeshPipelineError, UnpreparedBindGroup, VertexFormat,
             binding_types::{storage_buffer_read_only_sized, uniform_buffer_sized},
+            *,
         },
         renderer::RenderDevice,
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
-    shader::Shader,
 };
 
 use super::{illumination::LightBuffers, trial::MARK};
@@ -76,11 +66,7 @@ pub struct MaterialInputs {
 /// The material of objects with the model `M`; custom models share [`CustomFile`].
 #[derive(Asset, Clone, Debug)]
 pub struct ModelMaterial<M: Clone + 'static> {
-    parameters: Handle<ShaderBuffer>,
-    illumination: LightBuffers,
-    shader: Handle<Shader>,
-    faces: bool,
-    gamma_naive: bool,
+    inputs: MaterialInputs,
     model: PhantomData<fn() -> M>,
 }
 
@@ -90,13 +76,6 @@ pub struct PipelineKey {
     shader: Handle<Shader>,
     faces: bool,
     gamma_naive: bool,
-}
-
-impl<M: Clone + 'static> From<&ModelMaterial<M>> for PipelineKey {
-    fn from(material: &ModelMaterial<M>) -> Self {
-        let ModelMaterial { faces, gamma_naive, .. } = *material;
-        Self { shader: material.shader.clone(), faces, gamma_naive }
-    }
 }
 
 // Written by hand, because a uniform buffer shared between materials cannot be derived.
@@ -109,7 +88,8 @@ impl<M: Clone + 'static> AsBindGroup for ModelMaterial<M> {
     }
 
     fn bind_group_data(&self) -> PipelineKey {
-        self.into()
+        let MaterialInputs { faces, gamma_naive, .. } = self.inputs;
+        PipelineKey { shader: self.inputs.shader.clone(), faces, gamma_naive }
     }
 
     fn unprepared_bind_group(
@@ -119,8 +99,8 @@ impl<M: Clone + 'static> AsBindGroup for ModelMaterial<M> {
         buffers: &mut SystemParamItem<'_, '_, Self::Param>,
         _: bool,
     ) -> Result<UnpreparedBindGroup, AsBindGroupError> {
-        let LightBuffers { lights, words } = &self.illumination;
-        bound(buffers, [(0, &self.parameters), (1, lights), (2, words)])
+        let LightBuffers { lights, words } = &self.inputs.illumination;
+        bound(buffers, [(0, &self.inputs.parameters), (1, lights), (2, words)])
     }
 
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
@@ -146,16 +126,26 @@ pub(super) fn bound<const N: usize>(
     Ok(UnpreparedBindGroup { bindings: BindingResources(bindings) })
 }
 
+/// Sets the shader of a material's pipelines, with definitions for both stages.
+pub(super) fn set_shader(
+    RenderPipelineDescriptor { vertex, fragment, .. }: &mut RenderPipelineDescriptor,
+    shader: &Handle<Shader>,
+    defs: &[&str],
+    gamma_naive: bool,
+) {
+    (vertex.shader, vertex.entry_point) = (shader.clone(), Some("vertex".into()));
+    vertex.shader_defs.extend(defs.iter().map(|def| (*def).into()));
+    if let Some(fragment) = fragment {
+        (fragment.shader, fragment.entry_point) = (shader.clone(), Some("fragment".into()));
+        // Not a choice at run time: software renderers calculate both sides of a branch for every pixel.
+        let naive = gamma_naive.then_some(&"GAMMA_NAIVE");
+        fragment.shader_defs.extend(defs.iter().chain(naive).map(|def| (*def).into()));
+    }
+}
+
 impl<M: Clone + 'static> From<MaterialInputs> for ModelMaterial<M> {
     fn from(inputs: MaterialInputs) -> Self {
-        Self {
-            parameters: inputs.parameters,
-            illumination: inputs.illumination,
-            shader: inputs.shader,
-            faces: inputs.faces,
-            gamma_naive: inputs.gamma_naive,
-            model: PhantomData,
-        }
+        Self { inputs, model: PhantomData }
     }
 }
 
@@ -186,35 +176,14 @@ impl<M: Clone + 'static> Material for ModelMaterial<M> {
         layout: &MeshVertexBufferLayoutRef,
         key: MaterialPipelineKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        let mut attributes = vec![
-            Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
-            Mesh::ATTRIBUTE_NORMAL.at_shader_location(1),
-            TANGENT.at_shader_location(2),
-        ];
-        if key.bind_group_data.faces {
-            attributes.push(FACE_NORMAL.at_shader_location(3));
-            attributes.push(FACE_TANGENT.at_shader_location(4));
-            attributes.push(FACE_CENTRE.at_shader_location(5));
-            descriptor.vertex.shader_defs.push("FACES".into());
-        }
-        // One pipeline with this mark serves as the example with which edited shaders are tried.
-        descriptor.vertex.shader_defs.push(MARK.into());
+        let PipelineKey { shader, faces, gamma_naive } = key.bind_group_data;
+        let of_vertices = [Mesh::ATTRIBUTE_POSITION, Mesh::ATTRIBUTE_NORMAL, TANGENT];
+        let of_faces = [FACE_NORMAL, FACE_TANGENT, FACE_CENTRE].into_iter().filter(|_| faces);
+        let attributes = (0..).zip(of_vertices.into_iter().chain(of_faces));
+        let attributes: Vec<_> = attributes.map(|(i, attribute)| attribute.at_shader_location(i)).collect();
         descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
-        descriptor.vertex.shader = key.bind_group_data.shader.clone();
-        descriptor.vertex.entry_point = Some("vertex".into());
-        if let Some(fragment) = descriptor.fragment.as_mut() {
-            if key.bind_group_data.faces {
-                fragment.shader_defs.push("FACES".into());
-            }
-            if key.bind_group_data.gamma_naive {
-                // Not a choice at run time: software renderers calculate both sides of a branch for every
-                // pixel.
-                fragment.shader_defs.push("GAMMA_NAIVE".into());
-            }
-            fragment.shader_defs.push(MARK.into());
-            fragment.shader = key.bind_group_data.shader;
-            fragment.entry_point = Some("fragment".into());
-        }
+        // One pipeline with this mark serves as the example with which edited shaders are tried.
+        set_shader(descriptor, &shader, if faces { &["FACES", MARK] } else { &[MARK] }, gamma_naive);
         Ok(())
     }
 }
@@ -251,26 +220,16 @@ impl Attachments {
     }
 }
 
-/// Registers Material types with the renderer.
-pub trait MaterialApp {
-    /// Registers the Material type of the model `M`.
-    fn add_model_material<M: ReflectionModel>(&mut self) -> &mut Self;
-    /// Registers the Material type of all custom models.
-    fn add_custom_material(&mut self) -> &mut Self;
+/// Registers the Material type of the model `M` with the renderer.
+pub(super) fn add_model_material<M: ReflectionModel>(app: &mut App) {
+    let attachment = attachment::<M>(app);
+    app.world_mut().resource_mut::<Attachments>().by_id.insert(M::DECLARATION.id, attachment);
 }
 
-impl MaterialApp for App {
-    fn add_model_material<M: ReflectionModel>(&mut self) -> &mut Self {
-        let attachment = attachment::<M>(self);
-        self.world_mut().resource_mut::<Attachments>().by_id.insert(M::DECLARATION.id, attachment);
-        self
-    }
-
-    fn add_custom_material(&mut self) -> &mut Self {
-        let attachment = attachment::<CustomFile>(self);
-        self.world_mut().resource_mut::<Attachments>().own = Some(attachment);
-        self
-    }
+/// Registers the Material type of all custom models.
+pub(super) fn add_custom_material(app: &mut App) {
+    let attachment = attachment::<CustomFile>(app);
+    app.world_mut().resource_mut::<Attachments>().own = Some(attachment);
 }
 
 /// The attachment of a material type, which is registered with the renderer.
@@ -302,7 +261,7 @@ fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, inputs: MaterialInput
             };
             // A table that was rebuilt for more objects, or another encoding.
             if let Some(material) = materials.get(handle)
-                && (material.parameters != inputs.parameters || material.gamma_naive != inputs.gamma_naive)
+                && material.inputs != inputs
             {
                 let _ = materials.insert(handle.id(), ModelMaterial::<M>::from(inputs));
             }

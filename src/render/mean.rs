@@ -8,20 +8,14 @@
 use std::collections::{HashMap, HashSet};
 
 use bevy::{
-    app::{App, Plugin},
-    asset::AssetId,
     core_pipeline::{Core3d, Core3dSystems, tonemapping::tonemapping},
-    ecs::prelude::*,
-    log::error_once,
+    prelude::*,
     render::{
-        Extract, ExtractSchedule, Render, RenderApp, RenderSystems,
+        Extract, Render, RenderApp, RenderSystems,
         render_asset::RenderAssets,
         render_resource::{
-            BindGroupEntries, BindGroupLayout, BindGroupLayoutEntries, BufferInitDescriptor, BufferUsages,
-            Extent3d, LoadOp, Operations, RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
-            ShaderStages, StoreOp, TextureDescriptor, TextureDimension, TextureFormat, TextureSampleType,
-            TextureUsages, TextureView, TextureViewDescriptor,
             binding_types::{texture_2d, uniform_buffer_sized},
+            *,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         storage::{GpuShaderBuffer, ShaderBuffer},
@@ -31,9 +25,10 @@ use bevy::{
 };
 
 use super::{
-    converge::{Converged, Convergence, Part},
+    converge::{Convergence, Part},
     illumination::{IlluminationBuffer, SAMPLES_AT, sample_bytes},
-    noise::{Grown, Measuring, Noise},
+    noise::{Frame, Grown, Measuring, Noise},
+    pass::parts,
     stage::Stage,
     view::{Drawing, View},
 };
@@ -47,37 +42,25 @@ const SQUARES: TextureFormat = TextureFormat::R32Float;
 const FRAME: TextureFormat = TextureFormat::Rgba16Float;
 
 /// Adds frames to means.
-pub(super) struct MeanPlugin;
-
-impl Plugin for MeanPlugin {
-    fn build(&self, app: &mut App) {
-        if let Some(render) = app.get_sub_app_mut(RenderApp) {
-            render
-                .init_resource::<Samples>()
-                .add_systems(ExtractSchedule, extract)
-                .add_systems(Render, (write, prepare).in_set(RenderSystems::PrepareResources))
-                .add_systems(Core3d, join.after(Core3dSystems::MainPass).before(tonemapping));
-        }
-    }
+pub(super) fn plugin(app: &mut App) {
+    let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
+    render
+        .init_resource::<Samples>()
+        .add_systems(ExtractSchedule, extract)
+        .add_systems(Render, (write, prepare).in_set(RenderSystems::PrepareResources))
+        .add_systems(Core3d, join.after(Core3dSystems::MainPass).before(tonemapping));
 }
 
 /// The contribution of a view's frame to its mean.
 #[derive(Component, Clone, Copy, Debug)]
 struct Joins {
-    /// The view in the main world.
-    view: Entity,
-    /// Number of the frame.
-    frame: u64,
-    /// Number of samples in the mean, including those of the frame, and its target.
-    converged: Converged,
-    /// Number of samples in the frame.
-    count: u32,
+    frame: Frame,
     illumination: AssetId<ShaderBuffer>,
 }
 
 impl Joins {
     fn begins(&self) -> bool {
-        self.converged.done == self.count
+        self.frame.converged.done == self.frame.count
     }
 }
 
@@ -135,7 +118,7 @@ fn extract(
     samples.all = convergence.target;
     noise.keep(|view| views.contains(view));
     for (view, entity, drawing, stage) in &views {
-        let Some(part) = drawing.part() else {
+        let Some(part) = drawing.part else {
             if known.contains(entity) {
                 commands.entity(entity).remove::<(Joins, Mean)>();
             }
@@ -143,13 +126,9 @@ fn extract(
         };
         let illumination = stage.map_or(&shared.buffers, |stage| &stage.illumination).lights.id();
         samples.wanted.insert(illumination, part);
-        commands.entity(entity).insert(Joins {
-            view,
-            frame: drawing.drawn(),
-            converged: drawing.converged(),
-            count: part.count,
-            illumination,
-        });
+        let (number, converged) = (drawing.drawn(), drawing.converged());
+        let frame = Frame { view, number, converged, count: part.count };
+        commands.entity(entity).insert(Joins { frame, illumination });
     }
 }
 
@@ -198,28 +177,12 @@ struct Pass {
 
 impl Pass {
     fn new(device: &RenderDevice) -> Self {
-        let float = TextureSampleType::Float { filterable: false };
-        let entries = BindGroupLayoutEntries::sequential(
-            ShaderStages::FRAGMENT,
-            (
-                texture_2d(float),
-                texture_2d(float),
-                texture_2d(float),
-                uniform_buffer_sized(false, None),
-                uniform_buffer_sized(false, None),
-            ),
-        );
-        let layout = device.create_bind_group_layout("mean", &entries);
+        let float = texture_2d(TextureSampleType::Float { filterable: false });
+        let uniform = uniform_buffer_sized(false, None);
+        let entries = (float, float, float, uniform, uniform);
+        let entries = BindGroupLayoutEntries::sequential(ShaderStages::FRAGMENT, entries);
         let text = format!("{}{}", wgsl!("terms.wgsl").text, include_str!("mean.wgsl"));
-        let module = device.create_and_validate_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("mean"),
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("mean"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
+        let (layout, pipeline_layout, module) = parts(device, "mean", text.into(), &entries);
         let targets = [FRAME, MEAN, SQUARES].map(|format| Some(format.into()));
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("mean"),
@@ -257,7 +220,7 @@ fn join(
     mut context: RenderContext,
 ) {
     let (target, joins, Mean { frames, textures: [known, next], .. }) = view.into_inner();
-    let Joins { view, frame: number, converged, count, .. } = *joins;
+    let Frame { converged, count, .. } = joins.frame;
     let Some(illumination) = buffers.get(joins.illumination) else { return };
     if target.main_texture_format() != FRAME {
         error_once!(
@@ -305,6 +268,6 @@ fn join(
     pass.set_bind_group(0, &*group, &[]);
     pass.draw(0..3, 0..1);
     drop(pass);
-    let grown = Grown { view, frame: number, frames: *frames, converged, count };
+    let grown = Grown { frame: joins.frame, frames: *frames };
     measuring.measure(grown, next.each_ref(), &device, context.command_encoder(), &noise);
 }

@@ -6,9 +6,9 @@ use std::{
 };
 
 use bevy::{
-    asset::{Assets, Handle, RenderAssetUsages},
-    ecs::prelude::*,
-    mesh::{Indices, Mesh, Mesh3d, PrimitiveTopology},
+    asset::RenderAssetUsages,
+    mesh::{Indices, PrimitiveTopology},
+    prelude::*,
 };
 
 use rayon::prelude::*;
@@ -276,38 +276,28 @@ pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
 /// polygon.
 #[must_use]
 pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
-    let (vertex_normals, vertex_tangents) = (mesh.vertex_normals(), mesh.vertex_tangents());
-    let (polygon_normals, polygon_tangents) = (mesh.polygon_normals(), mesh.polygon_tangents());
-    let mut positions = Vec::new();
-    let mut normals = Vec::new();
-    let mut tangents = Vec::new();
-    let mut face_normals = Vec::new();
-    let mut face_tangents = Vec::new();
-    let mut face_centres = Vec::new();
-    let mut indices = Vec::new();
-    for (i, (polygon, centre)) in mesh.polygons.iter().zip(mesh.polygon_centres()).enumerate() {
-        let first = positions.len() as u32;
-        for &corner in polygon.corners() {
-            positions.push(mesh.positions[corner as usize]);
-            normals.push(vertex_normals[corner as usize]);
-            tangents.push(vertex_tangents[corner as usize]);
-            face_normals.push(polygon_normals[i]);
-            face_tangents.push(polygon_tangents[i]);
-            face_centres.push(centre);
-        }
+    let corners = || {
+        let all = mesh.polygons.iter().enumerate();
+        all.flat_map(|(i, polygon)| polygon.corners().iter().map(move |corner| (i, *corner as usize)))
+    };
+    let of_vertices = |of: &[Vec3]| corners().map(|(_, vertex)| of[vertex].to_array()).collect::<Vec<_>>();
+    let of_polygons = |of: &[Vec3]| corners().map(|(i, _)| of[i].to_array()).collect::<Vec<_>>();
+    let (mut first, mut indices) = (0, Vec::new());
+    for polygon in &mesh.polygons {
         indices.extend(polygon.triangles().iter().flatten().map(|&i| first + i as u32));
+        first += polygon.corners().len() as u32;
     }
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&positions))
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&normals))
-        .with_inserted_attribute(TANGENT, arrays(&tangents))
-        .with_inserted_attribute(FACE_NORMAL, arrays(&face_normals))
-        .with_inserted_attribute(FACE_TANGENT, arrays(&face_tangents))
-        .with_inserted_attribute(FACE_CENTRE, arrays(&face_centres))
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, of_vertices(&mesh.positions))
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, of_vertices(&mesh.vertex_normals()))
+        .with_inserted_attribute(TANGENT, of_vertices(&mesh.vertex_tangents()))
+        .with_inserted_attribute(FACE_NORMAL, of_polygons(&mesh.polygon_normals()))
+        .with_inserted_attribute(FACE_TANGENT, of_polygons(&mesh.polygon_tangents()))
+        .with_inserted_attribute(FACE_CENTRE, of_polygons(&mesh.polygon_centres()))
         .with_inserted_indices(Indices::U32(indices))
 }
 
-fn arrays(vectors: &[glam::Vec3]) -> Vec<[f32; 3]> {
+fn arrays(vectors: &[Vec3]) -> Vec<[f32; 3]> {
     vectors.iter().map(|v| v.to_array()).collect()
 }
 

@@ -3,13 +3,11 @@
 
 use bevy::{
     camera::{
-        CameraProjection as _, PerspectiveProjection, Projection,
+        CameraProjection as _,
         primitives::{Frustum, Sphere},
     },
-    ecs::prelude::*,
-    transform::components::Transform,
+    prelude::*,
 };
-use glam::Vec3;
 
 use super::{camera::PictureCamera, entities::CurrentScene, meshes::Need, shown::Shown};
 use crate::{

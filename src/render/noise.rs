@@ -11,21 +11,22 @@ use std::{
 };
 
 use bevy::{
-    app::{App, Plugin},
-    ecs::prelude::*,
+    prelude::*,
     render::{
         Render, RenderApp, RenderSystems,
         render_resource::{
-            BindGroupEntries, BindGroupLayout, BindGroupLayoutEntries, Buffer, BufferDescriptor,
-            BufferUsages, CommandEncoder, ComputePassDescriptor, ComputePipeline, MapMode, ShaderStages,
-            TextureSampleType, TextureView,
             binding_types::{storage_buffer_sized, texture_2d},
+            *,
         },
         renderer::RenderDevice,
     },
 };
 
-use super::{converge::Converged, view::Drawing};
+use super::{
+    converge::Converged,
+    pass::{Compute, buffer},
+    view::Drawing,
+};
 use crate::reference::relative_error;
 
 /// Number of workgroups that sum, each over some of the rows.
@@ -38,23 +39,15 @@ const ENOUGH: u32 = 4;
 const BETWEEN: u32 = 16;
 
 /// Measures the noise of converging views.
-pub(super) struct NoisePlugin;
-
-impl Plugin for NoisePlugin {
-    fn build(&self, app: &mut App) {
-        // Without drawing there are no measurements, and nobody waits for them.
-        if app.get_sub_app(RenderApp).is_none() {
-            return;
-        }
-        let noise = Noise::default();
-        app.insert_resource(noise.clone());
-        if let Some(render) = app.get_sub_app_mut(RenderApp) {
-            render
-                .insert_resource(noise)
-                .init_resource::<Measuring>()
-                .add_systems(Render, read.in_set(RenderSystems::Cleanup));
-        }
-    }
+pub(super) fn plugin(app: &mut App) {
+    // Without drawing there are no measurements, and nobody waits for them.
+    let noise = Noise::default();
+    let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
+    render
+        .insert_resource(noise.clone())
+        .init_resource::<Measuring>()
+        .add_systems(Render, read.in_set(RenderSystems::Cleanup));
+    app.insert_resource(noise);
 }
 
 /// The noise of the pictures of views.
@@ -87,78 +80,50 @@ impl Noise {
     /// The noise of a view's picture as a fraction of its mean luminance, if known.
     #[must_use]
     pub fn of(&self, view: Entity, drawing: &Drawing) -> Option<f32> {
-        self.known(view).filter(|known| known.frame >= drawing.began())?.noise
+        self.known(view).filter(|known| known.frame >= drawing.began)?.noise
     }
 
     /// True if a picture has all its samples, and its known noise is older.
     #[must_use]
     pub fn is_awaited(&self, view: Entity, drawing: &Drawing) -> bool {
-        let older = |known: Known| (drawing.began()..drawing.drawn()).contains(&known.frame);
+        let older = |known: Known| (drawing.began..drawing.drawn()).contains(&known.frame);
         drawing.rests() && self.known(view).is_some_and(older)
     }
 }
 
-/// A picture to which a frame was added.
+/// A frame that is added to the mean of a view.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grown {
+pub(super) struct Frame {
+    /// The view in the main world.
     pub(super) view: Entity,
-    /// Number of the frame.
-    pub(super) frame: u64,
-    /// Number of frames in the mean.
-    pub(super) frames: u32,
-    /// Number of samples, including those of the frame, and the target.
+    pub(super) number: u64,
+    /// Number of samples in the mean, including those of the frame, and the target.
     pub(super) converged: Converged,
     /// Number of samples in the frame.
     pub(super) count: u32,
 }
 
+/// A picture to which a frame was added.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grown {
+    pub(super) frame: Frame,
+    /// Number of frames in the mean.
+    pub(super) frames: u32,
+}
+
 impl Grown {
     fn is_measured(self) -> bool {
-        let step = |samples: u32| samples / BETWEEN;
-        let done = self.converged.done;
-        self.frames >= ENOUGH && (self.converged.is_done() || step(done) > step(done - self.count))
+        let (Frame { converged, count, .. }, step) = (self.frame, |samples: u32| samples / BETWEEN);
+        let grows = step(converged.done) > step(converged.done - count);
+        self.frames >= ENOUGH && (converged.is_done() || grows)
     }
 }
 
 /// The sums that the GPU calculates in this frame.
 #[derive(Default, Resource)]
 pub(super) struct Measuring {
-    pass: Option<Pass>,
+    pass: Option<Compute>,
     sums: Vec<(Buffer, Grown)>,
-}
-
-struct Pass {
-    layout: BindGroupLayout,
-    pipeline: ComputePipeline,
-}
-
-impl Pass {
-    fn new(device: &RenderDevice) -> Self {
-        let float = TextureSampleType::Float { filterable: false };
-        let entries = BindGroupLayoutEntries::sequential(
-            ShaderStages::COMPUTE,
-            (texture_2d(float), texture_2d(float), storage_buffer_sized(false, None)),
-        );
-        let layout = device.create_bind_group_layout("noise", &entries);
-        let module = device.create_and_validate_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("noise"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("noise.wgsl").into()),
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("noise"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("noise"),
-            layout: Some(&pipeline_layout),
-            module: &module,
-            entry_point: Some("sum"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        Self { layout, pipeline }
-    }
 }
 
 impl Measuring {
@@ -171,27 +136,25 @@ impl Measuring {
         encoder: &mut CommandEncoder,
         noise: &Noise,
     ) {
+        let Frame { view, number: frame, converged, .. } = grown.frame;
         if !grown.is_measured() {
-            if grown.converged.is_done() {
-                noise.tell(grown.view, Known { frame: grown.frame, noise: None });
+            if converged.is_done() {
+                noise.tell(view, Known { frame, noise: None });
             }
             return;
         }
-        let Pass { layout, pipeline } = self.pass.get_or_insert_with(|| Pass::new(device));
-        let buffer = |usage| {
-            let label = Some("noise");
-            device.create_buffer(&BufferDescriptor { label, size: BYTES, usage, mapped_at_creation: false })
-        };
-        let sums = buffer(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-        let read = buffer(BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+        let pass = self.pass.get_or_insert_with(|| {
+            let float = texture_2d(TextureSampleType::Float { filterable: false });
+            let entries = BindGroupLayoutEntries::sequential(
+                ShaderStages::COMPUTE,
+                (float, float, storage_buffer_sized(false, None)),
+            );
+            Compute::new(device, "noise", include_str!("noise.wgsl").into(), "sum", &entries)
+        });
+        let sums = buffer(device, "noise", BYTES, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let read = buffer(device, "noise", BYTES, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
         let entries = BindGroupEntries::sequential((mean, squares, sums.as_entire_buffer_binding()));
-        let group = device.create_bind_group("noise", layout, &entries);
-        let mut pass = encoder
-            .begin_compute_pass(&ComputePassDescriptor { label: Some("noise"), timestamp_writes: None });
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &*group, &[]);
-        pass.dispatch_workgroups(GROUPS, 1, 1);
-        drop(pass);
+        pass.run(device, encoder, &entries, GROUPS);
         encoder.copy_buffer_to_buffer(&sums, 0, &read, 0, BYTES);
         self.sums.push((read, grown));
     }
@@ -203,8 +166,9 @@ fn read(mut measuring: ResMut<Measuring>, noise: Res<Noise>) {
         let (noise, mapped) = (noise.clone(), buffer.clone());
         buffer.slice(..).map_async(MapMode::Read, move |result| {
             let sums = result.is_ok().then(|| mapped.slice(..).get_mapped_range().to_vec());
-            let known = sums.and_then(|bytes| noise_of(&bytes, grown.frames, grown.converged.done));
-            noise.tell(grown.view, Known { frame: grown.frame, noise: known });
+            let Frame { view, number: frame, converged, .. } = grown.frame;
+            let known = sums.and_then(|bytes| noise_of(&bytes, grown.frames, converged.done));
+            noise.tell(view, Known { frame, noise: known });
         });
     }
 }
@@ -240,7 +204,7 @@ mod tests {
         let entity = Entity::PLACEHOLDER;
         let grown = |frames, done, count| {
             let converged = Converged { done, total: 100 };
-            Grown { view: entity, frame: 1, frames, converged, count }
+            Grown { frame: Frame { view: entity, number: 1, converged, count }, frames }
         };
         for (frames, done, count, is) in [
             (1, 1, 1, false),

@@ -2,15 +2,13 @@
 //! object type, such as `Spot` or `Torus`, is an additional component.
 
 use bevy::{
-    camera::visibility::Visibility,
     ecs::{
         component::{Immutable, StorageType},
         lifecycle::HookContext,
-        prelude::*,
         world::DeferredWorld,
     },
-    reflect::{Reflect, impl_reflect_opaque, std_traits::ReflectDefault},
-    transform::components::Transform,
+    prelude::*,
+    reflect::impl_reflect_opaque,
 };
 
 use crate::{
@@ -19,11 +17,13 @@ use crate::{
     scene::{Light, Observer, observer::observer},
 };
 
-/// Entities with removed components.
+/// Entities that others changed, and that the scene has not followed yet.
 #[derive(Debug, Default, Resource)]
 pub(super) struct Touched {
-    /// Entities that lost a component of a part, or were despawned.
+    /// Entities with other components, and those that were despawned.
     pub(super) entities: Vec<Entity>,
+    /// Entities with another transform, unless they are [`Animated`].
+    pub(super) moved: Vec<Entity>,
     /// Entities that are no longer [`Animated`].
     pub(super) rested: Vec<Entity>,
 }

@@ -1,34 +1,30 @@
 //! The scene as a plugin.
 
-use bevy::{
-    app::{App, MainScheduleOrder, Plugin, Update},
-    asset::Assets,
-    ecs::{prelude::*, schedule::LogLevel},
-    render::storage::ShaderBuffer,
-};
+use bevy::{app::MainScheduleOrder, ecs::schedule::LogLevel, prelude::*, render::storage::ShaderBuffer};
 
 use super::{
     absorb::absorb,
     camera::follow_scene,
     converge::Convergence,
-    entities::{CurrentScene, SceneEntities, reconcile},
+    entities::{CurrentScene, SceneEntities},
     illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
-    live::{LiveShadersPlugin, exchange},
-    material::MaterialApp as _,
-    mean::MeanPlugin,
+    live::{self, exchange},
+    material::add_custom_material,
+    mean,
     meshes::ShapeMeshes,
-    noise::NoisePlugin,
+    noise,
     overrides::Overrides,
     parts,
+    reconcile::reconcile,
     schedule::{LabFrame, LabSystems, detect},
-    seen::SeenPlugin,
+    seen,
     shown::{Shown, show_lights},
     stage::{Stage, set_stages},
     straight::StraightPlugin,
     swap::swap,
-    tables::TablesPlugin,
+    tables,
     typed::know_types,
-    view::ViewPlugin,
+    view,
 };
 use crate::{
     document::PartId,
@@ -42,8 +38,14 @@ pub struct ScenePlugin;
 
 impl Plugin for ScenePlugin {
     fn build(&self, app: &mut App) {
+        use LabSystems::{Capture, Edit, Load, Spawn, Swap, Upload};
+        let spawn = (
+            know_types.run_if(resource_changed::<Registry>),
+            reconcile.run_if(resource_changed::<CurrentScene>),
+            set_stages,
+        );
         register_builtin(app);
-        app.add_custom_material();
+        add_custom_material(app);
         app.world_mut().resource_mut::<MainScheduleOrder>().insert_after(Update, LabFrame);
         app.init_resource::<CurrentScene>()
             .init_resource::<SceneEntities>()
@@ -59,43 +61,13 @@ impl Plugin for ScenePlugin {
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
             .init_schedule(LabFrame)
-            .configure_sets(
-                LabFrame,
-                (
-                    LabSystems::Load,
-                    LabSystems::Spawn,
-                    LabSystems::Edit,
-                    LabSystems::Swap,
-                    LabSystems::Upload,
-                    LabSystems::Capture,
-                )
-                    .chain(),
-            )
-            .add_systems(
-                LabFrame,
-                (
-                    (
-                        know_types.run_if(resource_changed::<Registry>),
-                        reconcile.run_if(resource_changed::<CurrentScene>),
-                        set_stages,
-                    )
-                        .chain()
-                        .in_set(LabSystems::Spawn),
-                    absorb.in_set(LabSystems::Edit),
-                    show_lights.in_set(LabSystems::Swap).before(exchange),
-                    swap.in_set(LabSystems::Swap).after(exchange),
-                    (upload_lights, follow_scene).in_set(LabSystems::Upload),
-                ),
-            )
-            .add_plugins((
-                LiveShadersPlugin,
-                ViewPlugin,
-                TablesPlugin,
-                StraightPlugin,
-                SeenPlugin,
-                MeanPlugin,
-                NoisePlugin,
-            ));
+            .configure_sets(LabFrame, (Load, Spawn, Edit, Swap, Upload, Capture).chain())
+            .add_systems(LabFrame, spawn.chain().in_set(Spawn))
+            .add_systems(LabFrame, absorb.in_set(Edit))
+            .add_systems(LabFrame, (show_lights.before(exchange), swap.after(exchange)).in_set(Swap))
+            .add_systems(LabFrame, (upload_lights, follow_scene).in_set(Upload))
+            .add_plugins((live::plugin, view::plugin, tables::plugin, StraightPlugin))
+            .add_plugins((seen::plugin, mean::plugin, noise::plugin));
         // Systems that access the same data must have a defined order.
         detect(app, LogLevel::Warn);
     }

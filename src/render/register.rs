@@ -3,9 +3,9 @@
 
 use std::path::PathBuf;
 
-use bevy::{app::App, ecs::change_detection::Mut};
+use bevy::prelude::*;
 
-use super::{material::MaterialApp as _, typed::know_types};
+use super::{material::add_model_material, typed::know_types};
 use crate::{
     light::LightType,
     reflection::ReflectionModel,
@@ -39,7 +39,7 @@ impl Register for App {
         admission: Admission,
     ) -> Result<(), RegistrationError> {
         registry(self).admit_reflection_model::<M>(admission)?;
-        self.add_model_material::<M>();
+        add_model_material::<M>(self);
         Ok(())
     }
 

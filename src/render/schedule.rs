@@ -1,11 +1,8 @@
 //! The order of the lab's systems in a frame.
 
 use bevy::{
-    app::App,
-    ecs::{
-        prelude::*,
-        schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor},
-    },
+    ecs::schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor},
+    prelude::*,
 };
 
 /// The schedule of the lab's systems in a frame; runs after Bevy's `Update`.
@@ -56,9 +53,6 @@ pub fn run_on_one_thread(app: &mut App) {
 /// Sets how systems with an undefined order are reported.
 pub(super) fn detect(app: &mut App, level: LogLevel) {
     app.edit_schedule(LabFrame, |schedule| {
-        schedule.set_build_settings(ScheduleBuildSettings {
-            ambiguity_detection: level,
-            ..ScheduleBuildSettings::default()
-        });
+        schedule.set_build_settings(ScheduleBuildSettings { ambiguity_detection: level, ..default() });
     });
 }

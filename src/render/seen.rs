@@ -3,27 +3,22 @@
 //! visible lights with extent.
 
 use bevy::{
-    app::{App, Plugin},
-    asset::{Asset, Assets, Handle, RenderAssetUsages},
+    asset::RenderAssetUsages,
     camera::visibility::{NoFrustumCulling, RenderLayers},
-    ecs::{
-        prelude::*,
-        system::{SystemParamItem, lifetimeless::SRes},
-    },
-    mesh::{Mesh, Mesh3d, MeshVertexBufferLayoutRef, PrimitiveTopology},
-    pbr::{Material, MaterialPipeline, MaterialPipelineKey, MaterialPlugin, MeshMaterial3d},
-    reflect::TypePath,
+    ecs::system::{SystemParamItem, lifetimeless::SRes},
+    mesh::{MeshVertexBufferLayoutRef, PrimitiveTopology},
+    pbr::{MaterialPipeline, MaterialPipelineKey},
+    prelude::*,
     render::{
         render_asset::RenderAssets,
         render_resource::{
-            AsBindGroup, AsBindGroupError, BindGroupLayout, BindGroupLayoutEntries, BindGroupLayoutEntry,
-            RenderPipelineDescriptor, ShaderStages, SpecializedMeshPipelineError, UnpreparedBindGroup,
             binding_types::{storage_buffer_read_only_sized, uniform_buffer_sized},
+            *,
         },
         renderer::{RenderAdapter, RenderDevice},
         storage::GpuShaderBuffer,
     },
-    shader::{Shader, ValidateShader},
+    shader::ValidateShader,
 };
 use wgpu::DownlevelFlags;
 
@@ -31,7 +26,7 @@ use super::{
     entities::CurrentScene,
     illumination::{IlluminationBuffer, LightBuffers},
     live::LiveShaders,
-    material::bound,
+    material::{bound, set_shader},
     overrides::Overrides,
     schedule::{LabFrame, LabSystems},
     shown::Shown,
@@ -47,14 +42,10 @@ use crate::{
 };
 
 /// Draws lights with extent.
-pub(super) struct SeenPlugin;
-
-impl Plugin for SeenPlugin {
-    fn build(&self, app: &mut App) {
-        app.add_plugins(MaterialPlugin::<SeenMaterial>::default())
-            .init_resource::<SeenShader>()
-            .add_systems(LabFrame, show.in_set(LabSystems::Swap).after(swap));
-    }
+pub(super) fn plugin(app: &mut App) {
+    app.add_plugins(MaterialPlugin::<SeenMaterial>::default())
+        .init_resource::<SeenShader>()
+        .add_systems(LabFrame, show.in_set(LabSystems::Swap).after(swap));
 }
 
 /// The lights of a view, and how they are drawn.
@@ -125,21 +116,7 @@ impl Material for SeenMaterial {
         let sampled = by_sample && descriptor.multisample.count > 1;
         descriptor.vertex.buffers =
             vec![layout.0.get_layout(&[Mesh::ATTRIBUTE_POSITION.at_shader_location(0)])?];
-        descriptor.vertex.shader = shader.clone();
-        descriptor.vertex.entry_point = Some("vertex".into());
-        if sampled {
-            descriptor.vertex.shader_defs.push("SAMPLED".into());
-        }
-        if let Some(fragment) = descriptor.fragment.as_mut() {
-            if sampled {
-                fragment.shader_defs.push("SAMPLED".into());
-            }
-            if gamma_naive {
-                fragment.shader_defs.push("GAMMA_NAIVE".into());
-            }
-            fragment.shader = shader;
-            fragment.entry_point = Some("fragment".into());
-        }
+        set_shader(descriptor, &shader, if sampled { &["SAMPLED"] } else { &[] }, gamma_naive);
         Ok(())
     }
 }
@@ -250,7 +227,7 @@ fn wanted(world: &mut World) -> Vec<(Option<Entity>, usize, SeenMaterial)> {
     let mut stages = world.try_query::<(Entity, &Stage, &Overrides)>();
     let stages = stages.iter_mut().flat_map(|stages| stages.iter(world)).map(|(view, stage, overrides)| {
         let encoding = overrides.display_of(scene).encoding;
-        (Some(view), stage.layer(), material(&stage.illumination, encoding))
+        (Some(view), stage.layer, material(&stage.illumination, encoding))
     });
     all.extend(stages);
     all

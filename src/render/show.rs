@@ -1,25 +1,19 @@
 //! Views in the window: their textures are copied to their positions, and the panels are drawn over them in
 //! one pass.
 
-use bevy::math::URect;
 use bevy::{
-    app::{App, Plugin},
-    asset::Handle,
     core_pipeline::{Core2d, Core2dSystems},
-    ecs::prelude::*,
-    image::Image,
-    log::error_once,
+    prelude::*,
     render::{
         RenderApp,
         extract_component::{ExtractComponent, ExtractComponentPlugin},
         render_asset::RenderAssets,
-        render_resource::{Extent3d, Origin3d, TexelCopyTextureInfo, TextureAspect},
+        render_resource::{Extent3d, Origin3d, TexelCopyTextureInfo, Texture},
         renderer::{RenderContext, ViewQuery},
         texture::GpuImage,
         view::ViewTarget,
     },
 };
-use glam::UVec2;
 
 /// Shows pictures as given by [`Shows`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,6 +46,11 @@ pub struct ShownPicture {
     pub part: Option<URect>,
 }
 
+/// A texture from a pixel on.
+fn from(texture: &Texture, UVec2 { x, y }: UVec2) -> TexelCopyTextureInfo<'_> {
+    TexelCopyTextureInfo { origin: Origin3d { x, y, z: 0 }, ..texture.as_image_copy() }
+}
+
 fn copy(
     view: ViewQuery<(&ViewTarget, &Shows)>,
     images: Res<RenderAssets<GpuImage>>,
@@ -78,16 +77,8 @@ fn copy(
             continue;
         }
         context.command_encoder().copy_texture_to_texture(
-            TexelCopyTextureInfo {
-                origin: Origin3d { x: part.min.x, y: part.min.y, z: 0 },
-                ..image.texture.as_image_copy()
-            },
-            TexelCopyTextureInfo {
-                texture: window,
-                mip_level: 0,
-                origin: Origin3d { x: at.x, y: at.y, z: 0 },
-                aspect: TextureAspect::All,
-            },
+            from(&image.texture, part.min),
+            from(window, at),
             Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
         );
     }

@@ -3,11 +3,10 @@
 //! themselves.
 
 use bevy::{
-    asset::Assets,
-    camera::visibility::{RenderLayers, Visibility},
-    ecs::{entity::EntityHashMap, lifecycle::HookContext, prelude::*, world::DeferredWorld},
+    camera::visibility::RenderLayers,
+    ecs::{entity::EntityHashMap, lifecycle::HookContext, world::DeferredWorld},
+    prelude::*,
     render::storage::ShaderBuffer,
-    transform::components::Transform,
 };
 
 use super::{
@@ -29,23 +28,13 @@ pub const GIZMO_LAYER: usize = 1;
 #[derive(Component, Debug)]
 #[component(on_remove = strike)]
 pub struct Stage {
-    layer: usize,
+    /// The render layer.
+    pub(super) layer: usize,
     pub(super) illumination: LightBuffers,
     /// Copies by object.
-    copies: EntityHashMap<Entity>,
-    /// The [list](SceneEntities::list) of the copied objects.
+    pub(super) copies: EntityHashMap<Entity>,
+    /// The [list](SceneEntities::lists) of the copied objects.
     list: Option<u64>,
-}
-
-impl Stage {
-    /// The render layer of the stage.
-    pub(super) fn layer(&self) -> usize {
-        self.layer
-    }
-
-    pub(super) fn copy(&self, object: Entity) -> Option<Entity> {
-        self.copies.get(&object).copied()
-    }
 }
 
 /// A copy of an object, and its child, for one view.
@@ -105,7 +94,7 @@ fn strike(mut world: DeferredWorld, context: HookContext) {
 
 /// Creates missing copies of the objects in a view.
 pub(super) fn copies(world: &mut World, view: Entity) {
-    let list = Some(world.resource::<SceneEntities>().list());
+    let list = Some(world.resource::<SceneEntities>().lists);
     let Some(mut stage) = world.get_mut::<Stage>(view).filter(|stage| stage.list != list) else { return };
     let (layer, mut known) = (stage.layer, std::mem::take(&mut stage.bypass_change_detection().copies));
     world.resource_scope(|world, mut entities: Mut<SceneEntities>| {

@@ -3,22 +3,20 @@
 //! into half floats, maps it in a second pass and copies it to the texture in a third.
 
 use bevy::{
-    app::{App, Plugin},
-    camera::{ClearColor, ClearColorConfig, Hdr},
+    camera::Hdr,
     core_pipeline::{
         Core3d,
         core_3d::{Opaque3d, Transparent3d},
         tonemapping::Tonemapping,
     },
     ecs::{
-        prelude::*,
         schedule::{ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor},
         system::SystemParam,
     },
-    log::error_once,
     pbr::{
         clear_indirect_parameters_metadata, early_gpu_preprocess, main_build_indirect_parameters, unpack_bins,
     },
+    prelude::*,
     render::{
         RenderApp,
         batching::gpu_preprocessing::GpuPreprocessingSupport,
@@ -26,7 +24,7 @@ use bevy::{
         render_phase::{ViewBinnedRenderPhases, ViewSortedRenderPhases},
         render_resource::{RenderPassColorAttachment, RenderPassDescriptor, StoreOp},
         renderer::{RenderContext, ViewQuery},
-        view::{ExtractedView, Msaa, ViewDepthTexture, ViewTarget},
+        view::{ExtractedView, ViewDepthTexture, ViewTarget},
     },
 };
 
@@ -55,12 +53,8 @@ impl Plugin for StraightPlugin {
         app.add_systems(LabFrame, choose.in_set(LabSystems::Upload).after(follow_scene));
         if let Some(render) = app.get_sub_app_mut(RenderApp) {
             for mut schedule in [Schedule::new(Straight), Schedule::new(Layer)] {
-                schedule.set_executor(SingleThreadedExecutor::new()).set_build_settings(
-                    ScheduleBuildSettings {
-                        auto_insert_apply_deferred: false,
-                        ..ScheduleBuildSettings::default()
-                    },
-                );
+                let settings = ScheduleBuildSettings { auto_insert_apply_deferred: false, ..default() };
+                schedule.set_executor(SingleThreadedExecutor::new()).set_build_settings(settings);
                 render.add_schedule(schedule);
             }
             render.add_systems(Straight, draw).add_systems(Layer, draw_layer);

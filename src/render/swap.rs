@@ -3,12 +3,7 @@
 
 use std::iter;
 
-use bevy::{
-    asset::Assets,
-    ecs::prelude::*,
-    mesh::{Mesh, Mesh3d, MeshTag},
-    render::storage::ShaderBuffer,
-};
+use bevy::{mesh::MeshTag, prelude::*, render::storage::ShaderBuffer};
 use rayon::prelude::*;
 
 use super::{
@@ -29,7 +24,7 @@ use crate::{
     optics::colour::Encoding,
     parameter::{Value, file_changes},
     reflection::ModelEntry,
-    registry::{LightSet, Registry},
+    registry::Registry,
     scene::{MAX_OBJECTS, Object, Scene, shines_from_everywhere},
     shading,
 };
@@ -50,16 +45,6 @@ struct Pending {
     now: Drawn,
 }
 
-/// Settings shared by all objects.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Common {
-    model: String,
-    shading: String,
-    encoding: Encoding,
-    everywhere: bool,
-    lights: LightSet,
-}
-
 /// Drawables that have never been drawn, or that wait for their shader.
 type Unfinished = (Or<(With<ShownObject>, With<ViewCopy>)>, Or<(Without<Drawn>, With<AwaitsShader>)>);
 
@@ -77,7 +62,7 @@ enum Suspects {
 /// Exclusive, so that mesh and material change in one step.
 pub fn swap(
     world: &mut World,
-    mut last: Local<Option<Common>>,
+    mut last: Local<Option<Drawn>>,
     mut files: Local<u64>,
     changed: &mut QueryState<Entity, Changed<ShownObject>>,
     unfinished: &mut QueryState<(Entity, Option<(&'static ViewCopy, &'static ChildOf)>), Unfinished>,
@@ -135,14 +120,8 @@ pub fn swap(
         .par_iter()
         .map(|Pending { shown, now, .. }| {
             let (model, shading) = (registry.model(&now.model)?, registry.shading_model(&now.shading)?);
-            Some(row(
-                model,
-                shading,
-                &shown.material,
-                now.encoding,
-                now.everywhere,
-                registry.has_extent(now.lights),
-            ))
+            let extent = registry.has_extent(now.lights);
+            Some(row(model, shading, &shown.material, now.encoding, now.everywhere, extent))
         })
         .collect();
     let eyes = nearest::eyes(world);
@@ -206,13 +185,15 @@ fn hold_lights(world: &mut World, views: &[Entity]) -> bool {
     })
 }
 
-fn common(scene: &Scene, shown: &Shown, registry: &Registry) -> Common {
-    Common {
+/// The settings shared by all objects.
+fn common(scene: &Scene, shown: &Shown, registry: &Registry) -> Drawn {
+    Drawn {
         model: scene.reflection_model.clone(),
         shading: scene.shading_model.clone(),
         encoding: scene.display.encoding,
         everywhere: shines_from_everywhere(shown.shining(), scene.display.encoding, registry),
         lights: shown.types,
+        version: 0,
     }
 }
 
@@ -220,7 +201,7 @@ fn common(scene: &Scene, shown: &Shown, registry: &Registry) -> Common {
 fn find(
     world: &mut World,
     view: Option<Entity>,
-    common: &Common,
+    common: &Drawn,
     suspects: Suspects,
     pending: &mut Vec<Pending>,
 ) {
@@ -244,7 +225,7 @@ fn find(
     };
     let visits = objects.len() as u64;
     for entity in objects {
-        let drawable = stage.map_or(Some(entity), |stage| stage.copy(entity));
+        let drawable = stage.map_or(Some(entity), |stage| stage.copies.get(&entity).copied());
         let Some(drawable) = drawable.and_then(|d| world.get_entity(d).ok()) else { continue };
         let (drawn, waits) = (drawable.get::<Drawn>(), drawable.contains::<AwaitsShader>());
         let Some(object) = world.get_entity(entity).ok().and_then(|e| e.get_ref::<ShownObject>()) else {

@@ -3,18 +3,16 @@
 use std::{collections::HashMap, ops::Range};
 
 use bevy::{
-    app::{App, Plugin},
-    asset::{AssetId, Assets, Handle, RenderAssetUsages},
-    ecs::{lifecycle::HookContext, prelude::*, world::DeferredWorld},
+    asset::RenderAssetUsages,
+    ecs::{lifecycle::HookContext, world::DeferredWorld},
+    prelude::*,
     render::{
-        ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems,
+        MainWorld, Render, RenderApp, RenderSystems,
         render_asset::RenderAssets,
         renderer::RenderQueue,
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
 };
-
-use glam::Vec4;
 
 use crate::{
     optics::{colour::Encoding, lobes::MAX_LOBES},
@@ -112,18 +110,13 @@ struct Upload {
 }
 
 /// Uploads tables to the renderer: as a whole when they are new, row by row after that.
-pub(super) struct TablesPlugin;
-
-impl Plugin for TablesPlugin {
-    fn build(&self, app: &mut App) {
-        app.init_resource::<ParameterTables>();
-        if let Some(render) = app.get_sub_app_mut(RenderApp) {
-            render
-                .init_resource::<Uploads>()
-                .add_systems(ExtractSchedule, extract)
-                .add_systems(Render, write.in_set(RenderSystems::PrepareResources));
-        }
-    }
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<ParameterTables>();
+    let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
+    render
+        .init_resource::<Uploads>()
+        .add_systems(ExtractSchedule, extract)
+        .add_systems(Render, write.in_set(RenderSystems::PrepareResources));
 }
 
 /// The uploads in the render world.

@@ -1,18 +1,13 @@
 //! The components of light types and object types, from the registry.
 
-use bevy::{
-    ecs::{
-        component::ComponentId,
-        observer::Observer,
-        prelude::*,
-        world::{EntityRef, EntityWorldMut},
-    },
-    log::warn,
-};
+use bevy::{ecs::component::ComponentId, prelude::*};
 
-use super::parts::{LightPower, SceneLight, SceneObject, Touched};
+use super::{
+    noticed::Watches,
+    parts::{LightPower, SceneLight, SceneObject, Touched},
+};
 use crate::{
-    parameter::{TypeComponent, Values, Watch},
+    parameter::{TypeComponent, Values},
     registry::Registry,
 };
 
@@ -105,23 +100,12 @@ pub(super) struct PartTypes {
     pub(super) objects: TypeList,
 }
 
-/// Detects changes of the components of all types.
-#[derive(Default, Resource)]
-pub(super) struct Watches(Vec<Watch>);
-
-impl Watches {
-    /// The entities with changes since the last run of the exclusive system that calls this.
-    pub(super) fn changed(&mut self, world: &mut World, found: &mut Vec<Entity>) {
-        self.0.iter_mut().for_each(|watch| watch(world, found));
-    }
-}
-
 /// Registers the components of all types in the registry with a world: they require the component shared by
 /// all lights or all objects.
 pub(crate) fn know_types(world: &mut World) {
     world.init_resource::<Touched>();
     world.init_resource::<PartTypes>();
-    world.init_resource::<Watches>();
+    world.get_resource_or_insert_with(Watches::of_parts);
     let registry = world.resource::<Registry>().clone();
     for entry in registry.lights() {
         let declaration = entry.declaration;
@@ -147,7 +131,7 @@ fn know<C: Component + Copy>(
     if !list(&mut world.resource_mut::<PartTypes>()).put(PartType { id, component, of }) {
         return;
     }
-    world.resource_mut::<Watches>().0.push((of.watch)());
+    world.resource_mut::<Watches>().add((of.watch)());
     // Bevy's required components would need the type itself.
     let bring = move |new: On<Add>, marked: Query<(), With<C>>, mut commands: Commands| {
         if !marked.contains(new.entity) {

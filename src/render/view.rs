@@ -4,26 +4,20 @@
 //! nothing is drawn, so that windows can show it as often as they like.
 
 use bevy::{
-    app::{App, Plugin, PostUpdate},
-    asset::{AssetEvent, AssetEventSystems, Assets, Handle, RenderAssetUsages},
+    asset::{AssetEventSystems, RenderAssetUsages},
     camera::{
-        Camera, CameraUpdateSystems, ClearColorConfig, Hdr, Projection, RenderTarget, SubCameraView,
-        primitives::Frustum, visibility::Visibility, visibility::VisibilitySystems,
+        CameraUpdateSystems, Hdr, RenderTarget, SubCameraView, primitives::Frustum,
+        visibility::VisibilitySystems,
     },
-    color::Color,
     core_pipeline::tonemapping::Tonemapping,
-    ecs::{prelude::*, system::SystemParam},
-    image::Image,
-    math::{URect, primitives::ViewFrustum},
-    mesh::Mesh,
-    prelude::Shader,
+    ecs::system::SystemParam,
+    math::primitives::ViewFrustum,
+    prelude::*,
     render::{
         render_resource::{TextureFormat, TextureUsages},
         storage::ShaderBuffer,
     },
-    transform::components::{GlobalTransform, Transform},
 };
-use glam::UVec2;
 use std::collections::HashSet;
 
 use super::{
@@ -44,24 +38,14 @@ use crate::registry::Registry;
 const PICTURES: u32 = 2;
 
 /// Creates the textures of views, and draws views only when something changed.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ViewPlugin;
-
-impl Plugin for ViewPlugin {
-    fn build(&self, app: &mut App) {
-        app.init_resource::<Convergence>().add_systems(
-            PostUpdate,
-            (
-                fit.before(AssetEventSystems).before(CameraUpdateSystems),
-                frame.after(VisibilitySystems::UpdateFrusta),
-                rest.after(AssetEventSystems)
-                    .after(CameraUpdateSystems)
-                    .before(VisibilitySystems::CheckVisibility),
-            )
-                .chain()
-                .in_set(ViewSystems),
-        );
-    }
+pub(super) fn plugin(app: &mut App) {
+    let rest = rest.after(AssetEventSystems).after(CameraUpdateSystems);
+    let systems = (
+        fit.before(AssetEventSystems).before(CameraUpdateSystems),
+        frame.after(VisibilitySystems::UpdateFrusta),
+        rest.before(VisibilitySystems::CheckVisibility),
+    );
+    app.init_resource::<Convergence>().add_systems(PostUpdate, systems.chain().in_set(ViewSystems));
 }
 
 /// The systems that create the textures of views and decide which views are drawn.
@@ -90,41 +74,27 @@ impl View {
 }
 
 /// The state of a view's picture.
-#[derive(Component, Clone, Debug)]
+#[derive(Component, Clone, Debug, Default)]
 pub struct Drawing {
     last: Option<Look>,
-    /// Number of pictures still to be drawn.
-    due: u32,
+    /// Number of pictures drawn since the last change, at most [`PICTURES`].
+    recent: u32,
     /// Number of pictures drawn.
     drawn: u64,
     /// Number of the first of them after the last change.
-    began: u64,
+    pub(super) began: u64,
     /// True if one is drawn in this frame.
     draws: bool,
     /// The samples of light with extent; none without such light.
     converged: Converged,
     /// The samples drawn in this frame.
-    part: Option<Part>,
-}
-
-impl Default for Drawing {
-    fn default() -> Self {
-        Self {
-            last: None,
-            due: PICTURES,
-            drawn: 0,
-            began: 0,
-            draws: false,
-            converged: Converged::default(),
-            part: None,
-        }
-    }
+    pub(super) part: Option<Part>,
 }
 
 impl Drawing {
     /// Draws the picture again, after a change known only to the caller.
     pub fn redraw(&mut self) {
-        self.due = PICTURES;
+        self.recent = 0;
     }
 
     /// True in a frame in which the picture is drawn.
@@ -136,18 +106,13 @@ impl Drawing {
     /// True once the picture is up to date.
     #[must_use]
     pub fn is_done(&self) -> bool {
-        self.due == 0 && self.converged.is_done()
+        self.recent == PICTURES && self.converged.is_done()
     }
 
     /// The samples of light with extent of which the picture is the mean; 0 of 0 without such light.
     #[must_use]
     pub fn converged(&self) -> Converged {
         self.converged
-    }
-
-    /// The samples drawn in this frame, if the picture converges.
-    pub(super) fn part(&self) -> Option<Part> {
-        self.part
     }
 
     /// True if the picture is up to date, and is not drawn in this frame.
@@ -160,11 +125,6 @@ impl Drawing {
     #[must_use]
     pub fn drawn(&self) -> u64 {
         self.drawn
-    }
-
-    /// The number of the first picture that shows the present state.
-    pub(super) fn began(&self) -> u64 {
-        self.began
     }
 }
 
@@ -319,17 +279,17 @@ fn rest(
             all || some.contains(&overrides.map(|_| entity)) || drawing.last.as_ref() != Some(&look);
         if changed || drawing.converged.total != total {
             drawing.last = Some(look);
-            drawing.due = PICTURES;
+            drawing.recent = 0;
             drawing.converged.total = total;
         }
-        let starts = drawing.due > 0;
+        let starts = drawing.recent < PICTURES;
         if starts {
             drawing.converged.done = 0;
             drawing.began = drawing.drawn + 1;
         }
         let draws = !drawing.is_done() && view.size.min_element() > 0;
         if draws {
-            drawing.due = drawing.due.saturating_sub(1);
+            drawing.recent = (drawing.recent + 1).min(PICTURES);
             drawing.drawn += 1;
             let Converged { done, total } = drawing.converged;
             begins |= starts && total > 0;

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::{
     MAX_DIMENSION, Scene, SceneSize, check,
     error::{Path, Problem, Segment},
-    load::Missing,
+    reading::Missing,
 };
 
 /// An extent of the room: its key, and functions that get its value from a position and a size.

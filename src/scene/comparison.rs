@@ -5,50 +5,9 @@ use super::{
     field::Kind,
     held::{Word, word},
     part::part,
-    variant::{LETTERS, MAX_VARIANTS},
+    views::{LETTERS, MAX_VARIANTS},
 };
-
-/// A choice with an id for files, a name for people, and one sentence.
-macro_rules! choice {
-    ($(#[$doc:meta])* $name:ident { $($(#[$default:ident])? $variant:ident $id:literal $label:literal $help:literal,)+ }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-        pub enum $name {
-            $(#[doc = $help] $(#[$default])? $variant,)+
-        }
-
-        impl $name {
-            /// Every choice, in the order of presentation.
-            pub const ALL: &[Self] = &[$(Self::$variant),+];
-
-            /// The id in scene files and on the command line.
-            #[must_use]
-            pub const fn id(self) -> &'static str {
-                match self { $(Self::$variant => $id,)+ }
-            }
-
-            /// The name for people.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $label,)+ }
-            }
-
-            /// One sentence of explanation.
-            #[must_use]
-            pub const fn summary(self) -> &'static str {
-                match self { $(Self::$variant => $help,)+ }
-            }
-
-            /// The choice with this id.
-            #[must_use]
-            pub fn from_id(id: &str) -> Option<Self> {
-                Self::ALL.iter().copied().find(|choice| choice.id() == id)
-            }
-        }
-
-        word! { $name: |choice| choice.name(), choice.summary(); }
-    };
-}
+use crate::declared::choice;
 
 choice! {
     /// The arrangement of the views.
@@ -99,6 +58,14 @@ choice! {
         Codes "codes" "display codes" "The picture as displayed, 0 to 255: after exposure, tone mapping and encoding.",
         Light "light" "linear light" "The light of the picture, before exposure, tone mapping and encoding.",
     }
+}
+
+word! {
+    Layout: |layout| layout.name(), layout.summary();
+    Edge: |edge| edge.name(), edge.summary();
+    Sign: |sign| sign.name(), sign.summary();
+    Channel: |channel| channel.name(), channel.summary();
+    Compared: |compared| compared.name(), compared.summary();
 }
 
 /// The views of a layout.

@@ -1,97 +1,17 @@
 //! Errors of a scene and their messages: file, line, column, path, value, rule.
 
-use std::{fmt, io, path::Path as FilePath};
+use std::io;
 
-use serde::{Serialize, Serializer};
+use super::reading::{MAX_PICTURE_BYTES, Missing};
+use crate::files::{Kind, words};
 
-use super::{
-    formats::{self, UnknownExtension},
-    load::{MAX_PICTURE_BYTES, Missing},
-};
-use crate::files::Shown as _;
+pub use super::problem::Problem;
 pub use crate::text::{
     path::{Path, Segment},
     place::Place,
 };
-use crate::{
-    files::{FileError, Kind, follow, words},
-    registry::Registry,
-};
 
-/// One problem of a scene.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
-    /// The position in the file, if the scene came from one.
-    pub place: Option<Place>,
-    /// The path of the value in the scene.
-    pub path: Path,
-    /// The value as written, if a value breaks a rule.
-    pub found: Option<String>,
-    /// The broken rule, as the end of "k_d is 0.2, but …"; without a value, the whole predicate: "is missing;
-    /// …".
-    pub rule: String,
-}
-
-impl Problem {
-    /// A value that breaks a rule.
-    #[must_use]
-    pub fn value(path: Path, found: impl fmt::Display, rule: impl Into<String>) -> Self {
-        Self { place: None, path, found: Some(found.to_string()), rule: rule.into() }
-    }
-
-    /// A problem without a value: a missing field, an unknown key.
-    #[must_use]
-    pub fn about(path: Path, predicate: impl Into<String>) -> Self {
-        Self { place: None, path, found: None, rule: predicate.into() }
-    }
-
-    /// The predicate without position and path: "is 0.2, but the diffuse coefficient must be between 0.5 and
-    /// 1".
-    #[must_use]
-    pub fn message(&self) -> String {
-        match &self.found {
-            Some(found) => format!("is {found}, but {}", self.rule),
-            None => self.rule.clone(),
-        }
-    }
-}
-
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(place) = self.place {
-            write!(f, "{place}: ")?;
-        }
-        if self.path.segments().is_empty() {
-            write!(f, "the scene {}", self.message())
-        } else {
-            write!(f, "{} {}", self.path, self.message())
-        }
-    }
-}
-
-impl Serialize for Problem {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        /// The problem in machine-readable form.
-        #[derive(Serialize)]
-        struct Record<'a> {
-            line: Option<usize>,
-            column: Option<usize>,
-            path: Option<&'a Path>,
-            value: Option<&'a str>,
-            message: String,
-        }
-        Record {
-            line: self.place.map(|p| p.line),
-            column: self.place.map(|p| p.column),
-            path: Some(&self.path),
-            value: self.found.as_deref(),
-            message: Self { place: None, ..self.clone() }.to_string(),
-        }
-        .serialize(serializer)
-    }
-}
-
-/// The reason why a scene could not be read. [`fmt::Display`] gives one line per problem, each with the name of the
+/// The reason why a scene could not be read. [`Display`](std::fmt::Display) gives one line per problem, each with the name of the
 /// file.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
@@ -204,32 +124,6 @@ pub enum LoadError {
 }
 
 impl LoadError {
-    /// An error of the operating system when opening or reading a file.
-    #[must_use]
-    pub fn from_io(path: &FilePath, name: &str, source: io::Error, registry: &Registry) -> Self {
-        let name = name.to_owned();
-        match source.kind() {
-            io::ErrorKind::NotFound => {
-                Self::NotFound { hint: broken_link(path).or_else(|| similar_file(path)), name }
-            }
-            io::ErrorKind::PermissionDenied => Self::PermissionDenied { name },
-            io::ErrorKind::IsADirectory => Self::Folder { hint: scenes_within(path, registry), name },
-            _ => Self::Io { name, source },
-        }
-    }
-
-    /// The error for a file that could not be read.
-    #[must_use]
-    pub fn from_file(path: &FilePath, error: FileError, registry: &Registry) -> Self {
-        let name = path.shown().to_string();
-        match error {
-            FileError::Kind(Kind::Folder) => Self::Folder { hint: scenes_within(path, registry), name },
-            FileError::Kind(kind) => Self::NoFile { name, kind },
-            FileError::TooLarge(most) => Self::TooLarge { name, most },
-            error => Self::from_io(path, &name, error.into(), registry),
-        }
-    }
-
     /// The problems as data: those of an invalid scene, or otherwise the error itself as a single problem.
     #[must_use]
     pub fn problems(&self) -> Vec<Problem> {
@@ -250,6 +144,17 @@ impl LoadError {
         };
         vec![Problem { place, ..Problem::about(Path::root(), what) }]
     }
+}
+
+/// The error for a file whose extension belongs to no format.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(".{extension} is not the extension of a scene; scenes are {known}")]
+#[non_exhaustive]
+pub struct UnknownExtension {
+    /// The extension, without the dot.
+    pub extension: String,
+    /// The extensions of scenes, with the names of their formats.
+    pub known: String,
 }
 
 /// The kind of file with this limit.
@@ -274,45 +179,4 @@ fn declined(missing: &[Missing]) -> String {
         "{} {verb} missing; --use-defaults accepts the defaults, --no-defaults rejects them",
         crate::text::listed(&parts, "and")
     )
-}
-
-/// "; it is a link to room.json, which does not exist" if the path is such a link.
-fn broken_link(path: &FilePath) -> Option<String> {
-    if !std::fs::symlink_metadata(path).ok()?.is_symlink() {
-        return None;
-    }
-    Some(format!("; it is a link to {}, which does not exist", follow(path).ok()?.shown()))
-}
-
-/// ". Did you mean scenes/room.json?" if there is a file with a similar name.
-fn similar_file(path: &FilePath) -> Option<String> {
-    let wanted = path.file_name()?.to_str()?.to_lowercase();
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(FilePath::new("."));
-    // A folder can be huge; a hint is not worth more than a glance at it.
-    let nearest = std::fs::read_dir(folder)
-        .ok()?
-        .take(1000)
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        // A suggestion equal to the given name helps nobody.
-        .filter(|name| path.file_name().is_none_or(|given| given != name.as_str()))
-        .map(|name| (strsim::jaro_winkler(&wanted, &name.to_lowercase()), name))
-        .filter(|(likeness, _)| *likeness > 0.85)
-        .max_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(format!(". Did you mean {}?", path.with_file_name(nearest.1).shown()))
-}
-
-/// "; it holds a.json, b.json".
-fn scenes_within(path: &FilePath, registry: &Registry) -> Option<String> {
-    let mut names: Vec<_> = std::fs::read_dir(path)
-        .ok()?
-        .take(1000)
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|name| formats::is_scene_file(FilePath::new(name), registry))
-        // Most pictures hold no scene.
-        .filter(|name| !formats::is_picture(FilePath::new(name)))
-        .collect();
-    names.sort();
-    let more = if names.len() > 5 { " and more" } else { "" };
-    names.truncate(5);
-    (!names.is_empty()).then(|| format!("; this one holds {}{more}", names.join(", ")))
 }

@@ -1,14 +1,18 @@
 //! The declaration of a field of a scene, in the words in which models declare their parameters. Keys, reading, rules,
 //! writing, the schema, the limits of widgets and the names of steps follow from it.
 
+pub use super::ids::{Ids, Listed};
 use super::{
-    check::{self, Rule},
-    limits::{Limits, number},
+    clause::{Rule, direction},
+    ids::one_of,
 };
 use crate::{
-    parameter::{ABOVE_ZERO, Parameter, Value},
+    parameter::{
+        ABOVE_ZERO, Value,
+        kind::colour,
+        limits::{Limits, number},
+    },
     registry::Registry,
-    text,
 };
 
 /// A declared field.
@@ -85,19 +89,6 @@ pub enum Absent {
     Asked,
     /// An error: "the observer needs one".
     Error(&'static str),
-}
-
-/// The registered things to which an id may refer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ids {
-    /// Reflection models.
-    ReflectionModel,
-    /// Shading models.
-    ShadingModel,
-    /// Light types.
-    LightType,
-    /// Object types.
-    ObjectType,
 }
 
 impl Field {
@@ -198,11 +189,7 @@ impl Field {
         let any = Limits::between(f64::NEG_INFINITY, f64::INFINITY);
         match self.kind {
             Kind::Number { min, max, slider } => {
-                let limits = if min == ABOVE_ZERO {
-                    Limits::above_zero(max.into())
-                } else {
-                    Limits::between(min.into(), max.into())
-                };
+                let limits = Limits::of(min, max);
                 match slider {
                     Some([from, to]) => limits.slider(from.into(), to.into()),
                     None => limits,
@@ -215,7 +202,7 @@ impl Field {
     }
 
     /// Checks a value by itself. Whether a position is in the room, and parameters are known, is decided by
-    /// [`check`](mod@check).
+    /// [`check`](mod@super::check).
     ///
     /// # Errors
     /// Returns the broken rule as a clause.
@@ -223,7 +210,7 @@ impl Field {
         match (self.kind, value) {
             (Kind::Number { .. }, Value::Number(v)) => self.check_number(*v),
             (Kind::Count(min), Value::Integer(n)) if *n < i64::from(min) => Err(self.rule(registry)),
-            (Kind::Direction, Value::Triple(v)) => check::direction((*v).into()),
+            (Kind::Direction, Value::Triple(v)) => direction((*v).into()),
             (Kind::Rotation, Value::Triple(v)) if v.iter().any(|v| !v.is_finite()) => {
                 Err("a rotation must be three finite numbers of degrees".to_owned())
             }
@@ -290,92 +277,10 @@ impl Field {
             Kind::Position | Kind::Direction | Kind::Rotation => {
                 format!("{subject} must be three numbers: [x, y, z]")
             }
-            Kind::Colour => {
-                format!("{subject} must be three whole numbers from 0 to 255: [red, green, blue]")
-            }
+            Kind::Colour => format!("{subject} must be {}", colour::RULE),
             Kind::Id(ids) => ids.check(registry, "").err().unwrap_or_default(),
             Kind::Choice(_) => self.check_text("").err().unwrap_or_default(),
             Kind::Material | Kind::Parameters | Kind::Part | Kind::Parts => String::new(),
         }
     }
-}
-
-/// Something registered.
-#[derive(Clone, Copy, Debug)]
-pub struct Listed {
-    /// Its id.
-    pub id: &'static str,
-    /// Its name for people.
-    pub name: &'static str,
-    /// One sentence about it.
-    pub summary: &'static str,
-    /// The parameters that it declares.
-    pub parameters: &'static [Parameter],
-}
-
-impl Ids {
-    /// The name of what the ids refer to.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ReflectionModel => "reflection model",
-            Self::ShadingModel => "shading model",
-            Self::LightType => "light type",
-            Self::ObjectType => "object type",
-        }
-    }
-
-    /// Everything registered.
-    #[must_use]
-    pub fn all(self, registry: &Registry) -> Box<dyn Iterator<Item = Listed> + '_> {
-        macro_rules! all {
-            ($list:ident) => {
-                Box::new(registry.$list().iter().map(|entry| Listed {
-                    id: entry.declaration.id,
-                    name: entry.declaration.name,
-                    summary: entry.declaration.summary,
-                    parameters: entry.parameters,
-                }))
-            };
-        }
-        match self {
-            Self::ReflectionModel => all!(models),
-            Self::ShadingModel => all!(shading_models),
-            Self::LightType => all!(lights),
-            Self::ObjectType => all!(shapes),
-        }
-    }
-
-    /// What an id refers to.
-    #[must_use]
-    pub fn find(self, registry: &Registry, id: &str) -> Option<Listed> {
-        self.all(registry).find(|listed| listed.id == id)
-    }
-
-    /// Checks that an id is registered.
-    ///
-    /// # Errors
-    /// Returns the rule, with the nearest id, or the reason why a custom model is missing.
-    pub fn check(self, registry: &Registry, id: &str) -> Rule {
-        if self.find(registry, id).is_some() {
-            return Ok(());
-        }
-        let known = self.all(registry).map(|listed| (listed.id, listed.name));
-        let rule = one_of(&format!("the {}", self.name()), id, known);
-        match self {
-            Self::ReflectionModel => rule.map_err(|rule| check::missing_model(registry, id, rule)),
-            _ => rule,
-        }
-    }
-}
-
-/// One of several ids: the rule lists them and names the nearest.
-fn one_of<'a>(what: &str, id: &str, known: impl Iterator<Item = (&'a str, &'a str)>) -> Rule {
-    let known: Vec<_> = known.collect();
-    if known.iter().any(|(known, _)| *known == id) {
-        return Ok(());
-    }
-    let names = known.iter().map(|(k, name)| (*name, *k));
-    let candidates = known.iter().map(|(k, _)| (*k, *k)).chain(names);
-    Err(text::one_of(what, known.iter().map(|(k, _)| *k)) + &text::did_you_mean(id, candidates))
 }

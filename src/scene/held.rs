@@ -2,41 +2,12 @@
 
 use glam::Vec3;
 
-use super::{
-    Comparison, Display, Light, Object, Observer, SceneSize, Variant, part::Fields, variant::LETTERS,
-};
+pub use super::part::Held;
+use super::views::LETTERS;
 use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::{Value, Values},
 };
-
-/// The type of a field.
-pub trait Held {
-    /// The value; `None` if there is none. Texts and ids are choices.
-    fn value(&self) -> Option<Value> {
-        None
-    }
-
-    /// Sets the value; `None` removes it. False if it has another type.
-    fn put(&mut self, _: Option<Value>) -> bool {
-        false
-    }
-
-    /// The values of parameters, if the field holds those.
-    fn values(&self) -> Option<&Values> {
-        None
-    }
-
-    /// The same to be changed.
-    fn values_mut(&mut self) -> Option<&mut Values> {
-        None
-    }
-
-    /// The parts, if the field holds those.
-    fn parts(&self) -> Vec<&dyn Fields> {
-        Vec::new()
-    }
-}
 
 /// Types of fields, and the values that they hold.
 macro_rules! held {
@@ -102,25 +73,6 @@ impl Held for Values {
         Some(self)
     }
 }
-
-/// Other parts, and lists of them.
-macro_rules! parts {
-    ($($Part:ty),+) => {
-        $(impl Held for $Part {
-            fn parts(&self) -> Vec<&dyn Fields> {
-                vec![self]
-            }
-        }
-
-        impl Held for Vec<$Part> {
-            fn parts(&self) -> Vec<&dyn Fields> {
-                self.iter().map(|part| part as &dyn Fields).collect()
-            }
-        })+
-    };
-}
-
-parts!(SceneSize, Observer, Display, Light, Object, Variant, Comparison);
 
 /// A choice that has a word in scene files.
 pub trait Word: Copy + 'static {

@@ -3,7 +3,6 @@
 
 use std::{
     collections::BTreeSet,
-    fmt,
     hash::{DefaultHasher, Hash as _, Hasher as _},
     io::Read,
     path::Path as FilePath,
@@ -11,63 +10,23 @@ use std::{
 
 use super::{
     Scene,
-    error::{LoadError, Path, Place, Problem},
+    error::LoadError,
     formats::{self, Source},
 };
 use crate::files::Shown as _;
 use crate::{
     files::{self, FileError},
+    parameter::Outside,
     registry::Registry,
 };
 
-pub use super::syntax::{MAX_DEPTH, MAX_VALUES};
+pub use super::{
+    reading::{Defaults, MAX_FILE_BYTES, MAX_PICTURE_BYTES, Missing, Reading},
+    syntax::{MAX_DEPTH, MAX_VALUES},
+};
 
-/// Larger files are refused before they are read. Reading takes time proportional to the file, whatever is in it, and at
-/// most two seconds per mebibyte, as for all readers: `tests/suite/hostile/text.rs`. The largest legal scene, with every parameter of 10 000 objects
-/// given, is less than a tenth of this.
-pub const MAX_FILE_BYTES: u64 = 64 << 20;
-/// The maximum size of a picture file: that of the largest picture, uncompressed.
-pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
 /// The name of standard input in messages.
 pub const STDIN: &str = "standard input";
-
-/// The treatment of a missing scene size, reflection model or shading model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Defaults {
-    /// The caller decides: [`Loaded::missing`] lists them, and the scene already has the defaults.
-    #[default]
-    Ask,
-    /// Defaults are used without asking. [`Loaded::missing`] still lists the parts.
-    Use,
-    /// Missing parts are an error, which names the flags that accept the defaults.
-    Refuse,
-}
-
-/// A missing part with a default.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Missing {
-    /// The path in the scene: `scene_size`, `scene_size.depth`, `reflection_model`, `shading_model`.
-    pub path: Path,
-    /// The default in readable form: `lambert`, `10 × 10 × 10 m`.
-    pub default: String,
-    /// The position of the enclosing object, which lacks the field.
-    pub place: Option<Place>,
-}
-
-impl fmt::Display for Missing {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} (default: {})", self.path, self.default)
-    }
-}
-
-impl Missing {
-    /// The missing part as a problem.
-    #[must_use]
-    pub fn problem(&self) -> Problem {
-        let predicate = format!("is missing; --use-defaults accepts the default, {}", self.default);
-        Problem { place: self.place, ..Problem::about(self.path.clone(), predicate) }
-    }
-}
 
 /// The state of a file, to detect changes by others: its length and a hash of its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -101,9 +60,13 @@ pub struct Loaded {
 ///
 /// # Errors
 /// Returns a [`LoadError`]; its text names the file as `path` does.
-pub fn file(path: &FilePath, registry: &Registry, defaults: Defaults) -> Result<Loaded, LoadError> {
+pub fn file<'r>(
+    path: &FilePath,
+    registry: &Registry,
+    how: impl Into<Reading<'r>>,
+) -> Result<Loaded, LoadError> {
     let folder = path.parent().unwrap_or(FilePath::new(""));
-    in_folder(&bytes(path, registry)?, (&path.shown().to_string(), folder), registry, defaults)
+    in_folder(&bytes(path, registry)?, (&path.shown().to_string(), folder), registry, how)
 }
 
 /// The result of reading a file. A picture may be larger than other files: the scene is a small part of it.
@@ -139,20 +102,20 @@ pub fn bytes(path: &FilePath, registry: &Registry) -> Result<Vec<u8>, LoadError>
 ///
 /// # Errors
 /// Returns a [`LoadError`] with `name` as the name of the file.
-pub fn reader(
+pub fn reader<'r>(
     from: impl Read,
     name: &str,
     registry: &Registry,
-    defaults: Defaults,
+    how: impl Into<Reading<'r>>,
 ) -> Result<Loaded, LoadError> {
-    from_bytes(&all_of(from, name)?, name, registry, defaults)
+    from_bytes(&all_of(from, name)?, name, registry, how)
 }
 
 /// The ids of the reflection models that a scene names, known or not, even in an invalid scene; empty if the
 /// content does not follow the syntax of its format.
 #[must_use]
 pub fn models_named(bytes: &[u8], name: &str, registry: &Registry) -> BTreeSet<String> {
-    let source = Source::new(bytes, (name, FilePath::new("")));
+    let source = Source::new(bytes, (name, FilePath::new("")), Outside::NONE);
     let parsed = formats::of_source(&source, registry).ok().map(|format| format.read(&source, registry));
     let Some(Ok(parsed)) = parsed else { return BTreeSet::new() };
     parsed.scene.models().into_iter().map(str::to_owned).collect()
@@ -178,27 +141,28 @@ pub fn all_of(from: impl Read, name: &str) -> Result<Vec<u8>, LoadError> {
 ///
 /// # Errors
 /// Returns a [`LoadError`] if the scene cannot be read.
-pub fn from_bytes(
+pub fn from_bytes<'r>(
     bytes: &[u8],
     name: &str,
     registry: &Registry,
-    defaults: Defaults,
+    how: impl Into<Reading<'r>>,
 ) -> Result<Loaded, LoadError> {
     let folder = FilePath::new(name).parent().unwrap_or(FilePath::new(""));
-    in_folder(bytes, (name, folder), registry, defaults)
+    in_folder(bytes, (name, folder), registry, how)
 }
 
 /// Like [`from_bytes`], with the folder of the files named in the scene.
 ///
 /// # Errors
 /// Returns a [`LoadError`] if the scene cannot be read.
-pub fn in_folder(
+pub fn in_folder<'r>(
     bytes: &[u8],
     (name, folder): (&str, &FilePath),
     registry: &Registry,
-    defaults: Defaults,
+    how: impl Into<Reading<'r>>,
 ) -> Result<Loaded, LoadError> {
-    let source = Source::new(bytes, (name, folder));
+    let Reading { defaults, outside } = how.into();
+    let source = Source::new(bytes, (name, folder), outside);
     let format = formats::of_source(&source, registry)
         .map_err(|unknown| LoadError::UnknownExtension { name: name.to_owned(), unknown })?;
     let (scene, missing) = formats::checked(format.read(&source, registry)?, name, registry, defaults)?;
@@ -212,11 +176,11 @@ pub fn in_folder(
 ///
 /// # Errors
 /// Returns a [`LoadError`] if the scene cannot be read.
-pub fn from_text(
+pub fn from_text<'r>(
     text: &str,
     name: &str,
     registry: &Registry,
-    defaults: Defaults,
+    how: impl Into<Reading<'r>>,
 ) -> Result<Loaded, LoadError> {
-    from_bytes(text.as_bytes(), name, registry, defaults)
+    from_bytes(text.as_bytes(), name, registry, how)
 }

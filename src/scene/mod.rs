@@ -13,6 +13,7 @@ use crate::{
 
 mod beyond_room;
 pub mod check;
+mod clause;
 pub mod comparison;
 mod display;
 pub(crate) mod encoding;
@@ -21,6 +22,7 @@ pub mod examples;
 pub mod field;
 pub mod formats;
 pub mod held;
+mod ids;
 mod kept;
 mod layout;
 mod light;
@@ -29,14 +31,19 @@ pub mod load;
 mod object;
 pub mod observer;
 pub mod part;
+mod problem;
+mod range;
 mod read;
+mod reading;
 pub mod rotation;
 pub mod save;
 pub mod schema;
 mod serialise;
 mod size;
 pub(crate) mod syntax;
+mod unreadable;
 pub mod variant;
+mod views;
 mod write;
 
 pub use comparison::Comparison;

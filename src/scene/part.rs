@@ -4,11 +4,10 @@ use super::{
     Scene,
     error::Path,
     field::{Field, Ids, Kind},
-    held::Held,
-    variant::LETTERS,
+    views::LETTERS,
 };
 use crate::{
-    parameter::{Parameter, Value},
+    parameter::{Parameter, Value, Values},
     registry::Registry,
 };
 
@@ -105,6 +104,34 @@ impl Key {
 impl From<Field> for Key {
     fn from(field: Field) -> Self {
         Self::Own(field.key)
+    }
+}
+
+/// The type of a field.
+pub trait Held {
+    /// The value; `None` if there is none. Texts and ids are choices.
+    fn value(&self) -> Option<Value> {
+        None
+    }
+
+    /// Sets the value; `None` removes it. False if it has another type.
+    fn put(&mut self, _: Option<Value>) -> bool {
+        false
+    }
+
+    /// The values of parameters, if the field holds those.
+    fn values(&self) -> Option<&Values> {
+        None
+    }
+
+    /// The same to be changed.
+    fn values_mut(&mut self) -> Option<&mut Values> {
+        None
+    }
+
+    /// The parts, if the field holds those.
+    fn parts(&self) -> Vec<&dyn Fields> {
+        Vec::new()
     }
 }
 
@@ -237,9 +264,21 @@ macro_rules! part {
 
             fn each_mut(
                 &mut self,
-                visit: &mut dyn FnMut(&'static $crate::scene::Field, &mut dyn $crate::scene::held::Held),
+                visit: &mut dyn FnMut(&'static $crate::scene::Field, &mut dyn $crate::scene::part::Held),
             ) {
                 $(visit(&Self::$field, &mut self.$field);)+
+            }
+        }
+
+        impl $crate::scene::part::Held for $Part {
+            fn parts(&self) -> Vec<&dyn $crate::scene::part::Fields> {
+                vec![self]
+            }
+        }
+
+        impl $crate::scene::part::Held for Vec<$Part> {
+            fn parts(&self) -> Vec<&dyn $crate::scene::part::Fields> {
+                self.iter().map(|part| part as &dyn $crate::scene::part::Fields).collect()
             }
         }
 

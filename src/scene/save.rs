@@ -6,19 +6,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use serde::Serialize;
-
+pub use super::write::to_json;
 use super::{
     Scene, check,
     error::{Path as ScenePath, Problem},
     formats::{self, Target, UnknownExtension},
-    layout::{ShortNumbers, pretty},
     load::{self, Defaults, MAX_FILE_BYTES, Stamp},
-    write::Written,
 };
 use crate::files::{Shown as _, words};
 use crate::{
     files::{self, Draft, FileError, Kind},
+    parameter::Outside,
     registry::Registry,
 };
 
@@ -135,21 +133,6 @@ fn lines(problems: &[Problem]) -> String {
     problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
-/// The text of a scene file: the sections in the order of the CA, short values on one line, numbers as short
-/// as possible without loss. `schema` is the value of `$schema`, if any.
-///
-/// Only valid scenes can be read back; [`write()`] checks, this function does not.
-#[must_use]
-pub fn to_json(scene: &Scene, schema: Option<&str>, registry: &Registry) -> String {
-    let mut compact = Vec::new();
-    let mut serializer = serde_json::Serializer::with_formatter(&mut compact, ShortNumbers);
-    // Writing to memory, with text as keys, cannot fail.
-    let materials: Vec<_> = registry.material_parameters().collect();
-    let _ = Written { part: scene, schema, materials: &materials, registry }.serialize(&mut serializer);
-    let compact = String::from_utf8_lossy(&compact);
-    pretty(&compact).unwrap_or_else(|| compact.into_owned())
-}
-
 /// Writes a scene, completely or not at all, as [`files::write`](fn@files::write) does, in the
 /// [format](super::formats) of the file's extension. Returns the stamp to expect next time.
 ///
@@ -208,7 +191,9 @@ fn comes_back(
     registry: &Registry,
 ) -> Result<(), String> {
     let name = path.shown().to_string();
-    let back = load::in_folder(bytes, (&name, folder), registry, Defaults::Refuse)
+    let mut outside = Outside::default();
+    outside.allow(scene.files());
+    let back = load::in_folder(bytes, (&name, folder), registry, Defaults::Refuse.allowing(&outside))
         .map_err(|error| format!("what was written could not be read again: {error}"))?;
     if back.scene == *scene {
         return Ok(());

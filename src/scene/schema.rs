@@ -9,7 +9,10 @@ use super::{
 };
 use crate::{
     light::MAX_LIGHTS,
-    parameter::{ABOVE_ZERO, Parameter, ParameterKind, Value, json as value},
+    parameter::{
+        Parameter, Value, json as value,
+        kind::{Kind as _, choice, colour::Colour, number::Number},
+    },
     reflection::ModelEntry,
     registry::Registry,
     shading::ShadingEntry,
@@ -76,15 +79,7 @@ fn part<P: Structure>(help: &str, registry: &Registry) -> Json {
 fn field(field: &Field, default: Option<Value>, registry: &Registry) -> Json {
     let vector = |one: Json| json!({ "type": "array", "items": one, "minItems": 3, "maxItems": 3 });
     let mut schema = match field.kind {
-        Kind::Number { min, max, .. } => {
-            let least = if min == ABOVE_ZERO { "exclusiveMinimum" } else { "minimum" };
-            let mut schema =
-                json!({ "type": "number", least: if min == ABOVE_ZERO { 0.into() } else { whole(min) } });
-            if max.is_finite() {
-                schema["maximum"] = whole(max);
-            }
-            schema
-        }
+        Kind::Number { min, max, .. } => Number { min, max, default: min }.schema(),
         Kind::Count(min) => json!({ "type": "integer", "minimum": min }),
         Kind::Flag(_) => json!({ "type": "boolean" }),
         Kind::Text(_) => json!({ "type": "string" }),
@@ -92,9 +87,11 @@ fn field(field: &Field, default: Option<Value>, registry: &Registry) -> Json {
             vector(json!({ "type": "number", "exclusiveMinimum": 0, "maximum": number(MAX_DIMENSION) }))
         }
         Kind::Direction | Kind::Rotation => vector(json!({ "type": "number" })),
-        Kind::Colour => vector(json!({ "type": "integer", "minimum": 0, "maximum": 255 })),
-        Kind::Id(ids) => choice(ids.all(registry).map(|listed| [listed.id, listed.name, listed.summary])),
-        Kind::Choice(words) => choice(words().into_iter()),
+        Kind::Colour => Colour { default: [0; 3] }.schema(),
+        Kind::Id(ids) => {
+            choice::one_of(ids.all(registry).map(|listed| [listed.id, listed.name, listed.summary]))
+        }
+        Kind::Choice(words) => choice::one_of(words().into_iter()),
         Kind::Parts => json!({ "type": "array" }),
         Kind::Material | Kind::Parameters | Kind::Part => json!({ "type": "object" }),
     };
@@ -106,30 +103,10 @@ fn field(field: &Field, default: Option<Value>, registry: &Registry) -> Json {
     schema
 }
 
-/// The end of a range, which may be large.
-fn whole(v: f32) -> Json {
-    if v.fract() == 0.0 { (v as i64).into() } else { number(v) }
-}
-
 /// The schema as shipped and printed, with a final line break.
 #[must_use]
 pub fn text(registry: &Registry) -> String {
     format!("{:#}\n", schema(registry))
-}
-
-/// One of several ids; editors show the names and summaries next to them.
-fn choice<'a>(choices: impl Iterator<Item = [&'a str; 3]>) -> Json {
-    let (ids, descriptions): (Vec<_>, Vec<_>) = choices
-        .map(|[id, name, summary]| match summary {
-            "" => (id, name.to_owned()),
-            summary => (id, format!("{name}: {summary}")),
-        })
-        .unzip();
-    let mut schema = json!({ "type": "string", "enum": ids });
-    if descriptions.iter().any(|words| !words.is_empty()) {
-        schema["enumDescriptions"] = descriptions.into();
-    }
-    schema
 }
 
 /// The lights: one variant per type, distinguished by `type`.
@@ -329,34 +306,7 @@ fn unit(unit: &str) -> &str {
 /// A declared parameter.
 fn parameter(p: &Parameter) -> Json {
     let unit = if p.unit.is_empty() { String::new() } else { format!(", {}", p.unit) };
-    let mut field = match &p.kind {
-        ParameterKind::Number { min, max, .. } if *min == ABOVE_ZERO => {
-            json!({ "type": "number", "exclusiveMinimum": 0, "maximum": number(*max) })
-        }
-        ParameterKind::Number { min, max, .. } => {
-            json!({ "type": "number", "minimum": number(*min), "maximum": number(*max) })
-        }
-        ParameterKind::Integer { min, max, .. } => {
-            let mut field = json!({ "type": "integer", "minimum": min });
-            if let Some(max) = max {
-                field["maximum"] = (*max).into();
-            }
-            field
-        }
-        ParameterKind::Colour { .. } => json!({
-            "type": "array",
-            "items": { "type": "integer", "minimum": 0, "maximum": 255 },
-            "minItems": 3,
-            "maxItems": 3,
-        }),
-        ParameterKind::Triple { min, max, .. } => {
-            let one = json!({ "type": "number", "minimum": number(*min), "maximum": number(*max) });
-            json!({ "oneOf": [one, { "type": "array", "items": one, "minItems": 3, "maxItems": 3 }] })
-        }
-        ParameterKind::Choice { .. } if p.is_flag() => json!({ "type": "boolean" }),
-        ParameterKind::Choice { options, .. } => choice(options.iter().map(|(id, name)| [*id, *name, ""])),
-        ParameterKind::File { .. } => json!({ "type": "string" }),
-    };
+    let mut field = p.kind.schema();
     field["title"] = format!("{} ({}{unit})", p.label, p.symbol).into();
     field["description"] = p.help.into();
     field["default"] = value(&p.default_value());

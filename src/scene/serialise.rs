@@ -6,7 +6,7 @@
 //! registry. A whole scene is checked when it is read; a single [part](Light) only for keys and types, since
 //! a scene decides whether a position is in its room.
 
-use std::{fmt::Display as Shown, path::Path as FilePath, sync::LazyLock};
+use std::{fmt::Display as Shown, sync::LazyLock};
 
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
@@ -22,7 +22,7 @@ use super::{
     write::Written,
 };
 use crate::{
-    parameter::{Parameter, ParameterKind, Value},
+    parameter::{Parameter, Value},
     registry::Registry,
     text::listed,
 };
@@ -111,9 +111,7 @@ impl<'de> DeserializeSeed<'de> for &Parameter {
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
         use serde_json::Value as Json;
         let json = Json::deserialize(deserializer)?;
-        let is_flag = self.is_flag();
-        let is_text =
-            !is_flag && matches!(self.kind, ParameterKind::Choice { .. } | ParameterKind::File { .. });
+        let (is_flag, is_text) = (self.is_flag(), self.kind.is_text());
         let written = match &json {
             Json::String(text) if is_text => Some(text.clone()),
             Json::Bool(_) if is_flag => Some(json.to_string()),
@@ -123,7 +121,7 @@ impl<'de> DeserializeSeed<'de> for &Parameter {
         };
         let found = |rule: &dyn Shown| D::Error::custom(format!("{} {rule}", self.name));
         match written {
-            Some(text) => self.parse_in(&text, FilePath::new("")).map_err(|error| found(&error)),
+            Some(text) => self.parse(&text).map_err(|error| found(&error)),
             None => Err(found(&format!("is {json}, but {}", self.clause()))),
         }
     }

@@ -3,6 +3,7 @@
 //! The scene itself is view A; its variants are the views B, C and D. A variant inherits everything and overrides what
 //! it gives.
 
+pub use super::views::{LETTERS, MAX_VARIANTS};
 use super::{
     Comparison, Display, Field, Object, Scene,
     display::EXPOSURE,
@@ -15,12 +16,6 @@ use crate::{
     parameter::Values,
     registry::Registry,
 };
-
-/// Maximum number of variants of a scene: with the scene itself, four views.
-pub const MAX_VARIANTS: usize = 3;
-
-/// The letters of the views: A is the scene, the others are its variants.
-pub const LETTERS: [&str; MAX_VARIANTS + 1] = ["A", "B", "C", "D"];
 
 part! {
     /// The scene with some things changed. What is absent is inherited.
@@ -196,6 +191,18 @@ impl Scene {
                 == (other.scene_size, other.observer, other.display)
     }
 
+    /// The sentences for a valid scene, about views that override a model.
+    #[must_use]
+    pub fn beyond_the_range_of_views(&self, registry: &Registry) -> Vec<String> {
+        let view = |view: usize| {
+            let said = self
+                .overrides(view)
+                .map(|variant| variant.laid_over(self, registry).bring_into_range(registry));
+            said.unwrap_or_default().into_iter().map(move |said| format!("view {}: {said}", LETTERS[view]))
+        };
+        (1..=self.variants.len()).flat_map(view).collect()
+    }
+
     /// The name of a view: that of its variant, of the scene, or its letter.
     #[must_use]
     pub fn view_name(&self, view: usize) -> &str {
@@ -207,7 +214,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{parameter::Value, scene::check};
+    use crate::{custom, parameter::Value, scene::check};
 
     fn scene(variants: Vec<Variant>) -> Scene {
         Scene { variants, ..Scene::default() }
@@ -258,5 +265,29 @@ mod tests {
         let expected =
             "variants[0].based_on is \"b\", but a variant must not be based on itself: a → b → c → a";
         assert!(found.iter().any(|f| f == expected), "{found:?}");
+    }
+
+    #[test]
+    fn a_view_takes_the_nearest_value_and_says_so() {
+        let mut registry = Registry::builtin();
+        for (id, most) in [("first", 90), ("second", 1)] {
+            let text = format!(
+                "/* lcm {{ \"parameters\": [{{ \"name\": \"tilt\", \"max\": {most} }}] }} */\nfn response(l: vec3<f32>, v: \
+                 vec3<f32>, frame: Frame, m: Parameters) -> Terms {{\n    return Terms(vec3(0.0), vec3(m.tilt), \
+                 vec3(0.0));\n}}\n"
+            );
+            let model = custom::read(format!("models/{id}.wgsl").as_ref(), &text, &registry).expect("valid");
+            registry.put_custom_model(model);
+        }
+        let mut scene = Scene { reflection_model: "first".to_owned(), ..Scene::default() };
+        scene.objects[0].material.set("tilt", Value::Number(80.0));
+        scene.variants = vec![Variant { reflection_model: Some("second".to_owned()), ..Variant::default() }];
+        assert_eq!(scene.clone().bring_into_range(&registry), Vec::<String>::new());
+        let expected = "objects[0].material.tilt is 80, but for second it must be between 0 and 1: 1 is used";
+        assert_eq!(scene.beyond_the_range_of_views(&registry), [format!("view B: {expected}")]);
+        let (seen, _) = scene.seen(1, &registry).expect("there is a view B");
+        assert_eq!(seen.objects[0].material.0["tilt"], Value::Number(1.0), "the nearest, not the default");
+        scene.reflection_model = "second".to_owned();
+        assert_eq!(scene.bring_into_range(&registry), [expected]);
     }
 }

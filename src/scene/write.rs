@@ -3,14 +3,30 @@
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use super::{
+    Scene,
     field::{Field, Kind},
-    held::Held,
-    part::{Fields, Key},
+    layout::{ShortNumbers, pretty},
+    part::{Fields, Held, Key},
 };
 use crate::{
     parameter::{Parameter, Value, Values},
     registry::Registry,
 };
+
+/// The text of a scene file: the sections in the order of the CA, short values on one line, numbers as short
+/// as possible without loss. `schema` is the value of `$schema`, if any.
+///
+/// Only valid scenes can be read back; [`save::write`](super::save::write()) checks, this function does not.
+#[must_use]
+pub fn to_json(scene: &Scene, schema: Option<&str>, registry: &Registry) -> String {
+    let mut compact = Vec::new();
+    let mut serializer = serde_json::Serializer::with_formatter(&mut compact, ShortNumbers);
+    // Writing to memory, with text as keys, cannot fail.
+    let materials: Vec<_> = registry.material_parameters().collect();
+    let _ = Written { part: scene, schema, materials: &materials, registry }.serialize(&mut serializer);
+    let compact = String::from_utf8_lossy(&compact);
+    pretty(&compact).unwrap_or_else(|| compact.into_owned())
+}
 
 /// A part as written: fields equal to the default are left out, unless they are always written. Parameters are in the
 /// order of their declarations.

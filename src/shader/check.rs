@@ -77,12 +77,12 @@ mod tests {
     use super::*;
     use crate::{
         light::Twin,
-        parameter::{layout, stride},
+        parameter::{self, stride},
         registry::{
             Registry,
             compose::{compose, compose_evaluation},
         },
-        render::illumination::{ILLUMINATION_LAYOUT, LIGHT_LAYOUT},
+        render::illumination::layout,
         shader::compose::{LIGHTS, OPTICS, Sources},
     };
 
@@ -90,8 +90,10 @@ mod tests {
     fn every_model_is_valid_and_its_parameters_lie_where_rust_puts_them() {
         for model in Registry::builtin().models() {
             let module = validate(&compose_evaluation(&Sources::default(), model)).expect("valid WGSL");
-            let rust: Vec<_> =
-                layout(model.parameters).into_iter().map(|(n, _, at)| (n.to_owned(), at)).collect();
+            let rust: Vec<_> = parameter::layout(model.parameters)
+                .into_iter()
+                .map(|(n, _, at)| (n.to_owned(), at))
+                .collect();
             assert_eq!(struct_layout(&module, "Parameters"), Some(rust), "{}", model.declaration.id);
             let size = module.types.iter().find_map(|(_, t)| match t.inner {
                 naga::TypeInner::Struct { span, .. } if t.name.as_deref() == Some("Parameters") => {
@@ -109,12 +111,12 @@ mod tests {
         let owned = |layout: &[(&str, usize)]| {
             layout.iter().map(|(n, at)| ((*n).to_owned(), *at)).collect::<Vec<_>>()
         };
-        assert_eq!(struct_layout(&module, "Light"), Some(owned(&LIGHT_LAYOUT)));
-        assert_eq!(struct_layout(&module, "Illumination"), Some(owned(&ILLUMINATION_LAYOUT)));
+        assert_eq!(struct_layout(&module, "Light"), Some(owned(&layout::LIGHT)));
+        assert_eq!(struct_layout(&module, "Illumination"), Some(owned(&layout::ILLUMINATION)));
         // The wrong twin: without the padding required by vec3, the layouts differ.
         let packed = wgsl::parse_str("struct Light { position: vec3<f32>, light_type: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, first_word: u32 }")
             .expect("valid WGSL");
-        assert_ne!(struct_layout(&packed, "Light"), Some(owned(&LIGHT_LAYOUT)));
+        assert_ne!(struct_layout(&packed, "Light"), Some(owned(&layout::LIGHT)));
     }
 
     #[test]

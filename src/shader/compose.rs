@@ -238,17 +238,12 @@ impl<'a> Composer<'a> {
             return;
         }
         let built_in = (path == PANORAMA.path).then_some(PANORAMA.text);
+        let most = super::limits::LIMITS.bytes;
         match self.sources.get(&path).or(built_in) {
-            Some(text) if self.composed.text.len() + text.len() > super::limits::LIMITS.bytes => self
-                .complain(
-                    from,
-                    at,
-                    line,
-                    &format!(
-                        "with this file the shader exceeds the limit of {} bytes",
-                        super::limits::LIMITS.bytes
-                    ),
-                ),
+            Some(text) if self.composed.text.len() + text.len() > most => {
+                let what = format!("with this file the shader exceeds the limit of {most} bytes");
+                self.complain(from, at, line, &what);
+            }
             Some(text) => {
                 self.check_end(&path, text);
                 self.file(&path, text);

@@ -22,7 +22,7 @@ pub(crate) fn block_comment(text: &str, start: usize) -> Option<usize> {
 }
 
 /// The text with spaces instead of comments.
-fn without_comments(text: &str) -> String {
+pub(super) fn without_comments(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut at = 0;
     while let Some(slash) = text[at..].find('/').map(|i| at + i) {

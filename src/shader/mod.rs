@@ -1,5 +1,6 @@
 //! Shader sources: text in, text out; composing, checking, interpreting.
 
+mod blocks;
 pub mod check;
 pub mod compose;
 pub(crate) mod definitions;

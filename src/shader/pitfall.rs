@@ -10,6 +10,8 @@ use naga::{
     UnaryOperator,
 };
 
+use super::blocks::{Expr, blocks};
+
 /// The first such error in a module: its position, and the message.
 #[must_use]
 pub fn find(module: &Module) -> Option<(Span, String)> {
@@ -59,12 +61,12 @@ impl Search<'_> {
     }
 
     /// True if an expression is zero, or a vector with a zero component, for all parameters.
-    fn is_zero(&self, handle: Handle<Expression>) -> bool {
+    fn is_zero(&self, handle: Expr) -> bool {
         is_zero(&self.function.expressions, handle, self.module)
     }
 
     /// The value of a constant condition.
-    fn always(&self, condition: Handle<Expression>) -> Option<bool> {
+    fn always(&self, condition: Expr) -> Option<bool> {
         let (mut at, mut negated) = (condition, false);
         while let Expression::Unary { op: UnaryOperator::LogicalNot, expr } = self.function.expressions[at] {
             (at, negated) = (expr, !negated);
@@ -83,39 +85,37 @@ impl Search<'_> {
 
     /// The first endless loop.
     fn endless_loop(&self, block: &Block) -> Option<(Span, String)> {
-        block.span_iter().find_map(|(statement, span)| match statement {
-            Statement::Block(inner) => self.endless_loop(inner),
-            Statement::If { accept, reject, .. } => {
-                self.endless_loop(accept).or_else(|| self.endless_loop(reject))
+        block.span_iter().find_map(|(statement, span)| {
+            let wrong = match statement {
+                Statement::Loop { body, continuing, break_if } => self.endless(body, continuing, *break_if),
+                _ => None,
+            };
+            let wrong = wrong.map(|what| (*span, what.to_owned()));
+            wrong.or_else(|| blocks(statement).find_map(|inner| self.endless_loop(inner)))
+        })
+    }
+
+    /// What is wrong with a loop, if it has no end.
+    fn endless(&self, body: &Block, continuing: &Block, break_if: Option<Expr>) -> Option<&'static str> {
+        let written = self.written(&[body, continuing]);
+        let mut exits = Exits::default();
+        let start = Path { changing: false, conditional: false, breaks: true };
+        self.exits(body, start, &written, &mut exits);
+        match break_if.map(|c| (c, self.always(c))) {
+            None | Some((_, Some(false))) => {}
+            Some((_, Some(true))) => exits = Exits { some: true, changing: true },
+            Some((condition, None)) => {
+                exits.some = true;
+                exits.changing |= self.may_change(condition, &written);
             }
-            Statement::Switch { cases, .. } => cases.iter().find_map(|c| self.endless_loop(&c.body)),
-            Statement::Loop { body, continuing, break_if } => {
-                let written = self.written(&[body, continuing]);
-                let mut exits = Exits::default();
-                let start = Path { changing: false, conditional: false, breaks: true };
-                self.exits(body, start, &written, &mut exits);
-                match break_if.map(|c| (c, self.always(c))) {
-                    None | Some((_, Some(false))) => {}
-                    Some((_, Some(true))) => exits = Exits { some: true, changing: true },
-                    Some((condition, None)) => {
-                        exits.some = true;
-                        exits.changing |= self.may_change(condition, &written);
-                    }
-                }
-                if !exits.some {
-                    return Some((*span, "this loop has no end: nothing in it leaves it".to_owned()));
-                }
-                if !exits.changing {
-                    return Some((
-                        *span,
-                        "this loop ends in its first iteration or never: nothing in its condition changes"
-                            .to_owned(),
-                    ));
-                }
-                self.endless_loop(body).or_else(|| self.endless_loop(continuing))
+        }
+        match exits {
+            Exits { some: false, .. } => Some("this loop has no end: nothing in it leaves it"),
+            Exits { changing: false, .. } => {
+                Some("this loop ends in its first iteration or never: nothing in its condition changes")
             }
             _ => None,
-        })
+        }
     }
 
     /// Collects the exits of a loop from a block in it.
@@ -167,7 +167,7 @@ impl Search<'_> {
     /// True if an expression may have another value in the next iteration of a loop that writes to these
     /// variables. Values used twice are examined once: otherwise a chain of sums of a value with itself would
     /// double the work each time.
-    fn may_change(&self, handle: Handle<Expression>, written: &Written) -> bool {
+    fn may_change(&self, handle: Expr, written: &Written) -> bool {
         if let Some(known) = written.known.borrow().get(&handle) {
             return *known;
         }
@@ -176,8 +176,8 @@ impl Search<'_> {
         may
     }
 
-    fn may_change_anew(&self, handle: Handle<Expression>, written: &Written) -> bool {
-        let change = |h: &Handle<Expression>| self.may_change(*h, written);
+    fn may_change_anew(&self, handle: Expr, written: &Written) -> bool {
+        let change = |h: &Expr| self.may_change(*h, written);
         match &self.function.expressions[handle] {
             Expression::Literal(_)
             | Expression::Constant(_)
@@ -226,26 +226,19 @@ impl Search<'_> {
 
     fn collect_written(&self, block: &Block, written: &mut Written) {
         for statement in block {
+            blocks(statement).for_each(|inner| self.collect_written(inner, written));
             match statement {
-                Statement::Block(inner) => self.collect_written(inner, written),
-                Statement::If { accept, reject, .. } => {
-                    self.collect_written(accept, written);
-                    self.collect_written(reject, written);
-                }
-                Statement::Switch { cases, .. } => {
-                    cases.iter().for_each(|case| self.collect_written(&case.body, written));
-                }
-                Statement::Loop { body, continuing, .. } => {
-                    self.collect_written(body, written);
-                    self.collect_written(continuing, written);
-                }
                 Statement::Store { pointer, .. } => self.note(*pointer, written),
                 Statement::Call { arguments, .. } => {
                     arguments.iter().for_each(|argument| self.note(*argument, written));
                     // A function may write to any module variable.
                     written.globals.extend(self.module.global_variables.iter().map(|(h, _)| h));
                 }
-                Statement::Emit(_)
+                Statement::Block(_)
+                | Statement::If { .. }
+                | Statement::Switch { .. }
+                | Statement::Loop { .. }
+                | Statement::Emit(_)
                 | Statement::Break
                 | Statement::Continue
                 | Statement::Return { .. }
@@ -256,7 +249,7 @@ impl Search<'_> {
     }
 
     /// Records the variable that a pointer points into; other values are ignored.
-    fn note(&self, pointer: Handle<Expression>, written: &mut Written) {
+    fn note(&self, pointer: Expr, written: &mut Written) {
         match &self.function.expressions[pointer] {
             Expression::LocalVariable(variable) => {
                 written.locals.insert(*variable);
@@ -279,10 +272,10 @@ struct Written {
     /// True if there are statements that are not examined: they may write anywhere.
     anything: bool,
     /// The findings on values, see [`Search::may_change`].
-    known: RefCell<HashMap<Handle<Expression>, bool>>,
+    known: RefCell<HashMap<Expr, bool>>,
 }
 
-fn is_zero(expressions: &naga::Arena<Expression>, handle: Handle<Expression>, module: &Module) -> bool {
+fn is_zero(expressions: &naga::Arena<Expression>, handle: Expr, module: &Module) -> bool {
     match &expressions[handle] {
         Expression::Literal(literal) => matches!(
             literal,

@@ -1,5 +1,7 @@
 //! Removes the parts of texts that cost the composer time: comments, indentation, and lines.
 
+use super::definitions::without_comments;
+
 /// An equivalent text without comments and indentation, and with few lines, each of which costs the composer
 /// time. Positions in it differ from those in the original.
 #[must_use]
@@ -7,7 +9,7 @@ pub fn slim(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     // An import in braces may continue on the next lines.
     let mut importing = false;
-    for line in without_comments(text).lines().map(str::trim_end).filter(|line| !line.is_empty()) {
+    for line in without_comments(text).lines().map(str::trim).filter(|line| !line.is_empty()) {
         let directive = line.starts_with('#');
         if (directive || importing) && !out.is_empty() && !out.ends_with('\n') {
             out.push('\n');
@@ -22,44 +24,6 @@ pub fn slim(text: &str) -> String {
     out
 }
 
-/// A text without comments and indentation; lines keep their positions.
-fn without_comments(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    // The number of open `/*`: they nest.
-    let mut depth = 0_usize;
-    for line in text.lines() {
-        let line = line.trim();
-        let bytes = line.as_bytes();
-        // The first byte not yet written, and the one being examined.
-        let (mut from, mut at) = (0, 0);
-        while at < bytes.len() {
-            match (depth, bytes[at], bytes.get(at + 1)) {
-                (0, b'/', Some(b'/')) => break,
-                (_, b'/', Some(b'*')) => {
-                    if depth == 0 {
-                        out.push_str(&line[from..at]);
-                        // The texts on both sides stay separate.
-                        out.push(' ');
-                    }
-                    depth += 1;
-                    at += 2;
-                }
-                (1.., b'*', Some(b'/')) => {
-                    depth -= 1;
-                    at += 2;
-                    from = at;
-                }
-                _ => at += 1,
-            }
-        }
-        if depth == 0 {
-            out.push_str(&line[from..at]);
-        }
-        out.push('\n');
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,23 +31,12 @@ mod tests {
     use crate::shader::compose::Sources;
 
     #[test]
-    fn comments_go_and_lines_stay() {
-        for (text, expected) in [
-            ("a // b\n  c", "a \nc\n"),
-            ("a /* b\nc */ d", "a  \n d\n"),
-            ("a/*/**/*/b", "a b\n"),
-            ("a // /* b\nc", "a \nc\n"),
-            ("a /* // */ b", "a   b\n"),
-            ("/* never closed\nx", " \n\n"),
-        ] {
-            assert_eq!(without_comments(text), expected, "{text}");
-        }
-    }
-
-    #[test]
     fn a_slim_text_means_the_same_and_has_few_lines() {
         for (text, expected) in [
             ("a\n  b // c\n\nd", "a b d "),
+            ("a /* b\nc */ d", "a d "),
+            ("a // /* b\nc", "a c "),
+            ("/* never closed\nx", ""),
             ("a\n#ifdef X\nb\nc\n#endif\nd", "a \n#ifdef X\nb c \n#endif\nd "),
             ("#import a::{\n  b,\n  c,\n}\nd\ne", "#import a::{\nb,\nc,\n} d e "),
             ("@group(#{G}) x\ny", "@group(#{G}) x y "),

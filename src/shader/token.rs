@@ -4,8 +4,6 @@
 //! Comments are skipped as naga and the preprocessor skip them, and characters on which the two disagree are
 //! refused, so nothing visible to them is hidden here.
 
-use std::ops::ControlFlow;
-
 /// A token of the text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token<'a> {
@@ -52,6 +50,7 @@ pub(super) struct Tokens<'a> {
     pub open_comment: Option<usize>,
 }
 
+#[derive(Default)]
 struct Scanner<'a> {
     text: &'a str,
     at: usize,
@@ -70,18 +69,12 @@ struct Scanner<'a> {
 pub(super) fn tokens(text: &str, most: usize) -> Result<Tokens<'_>, Finding> {
     let mut scanner = Scanner {
         text,
-        at: 0,
         tokens: Vec::with_capacity((text.len() / 4).min(most + 1)),
-        pending: Vec::new(),
-        brackets: 0,
         line_begins: true,
-        directive: false,
-        open_comment: None,
+        ..Scanner::default()
     };
     while scanner.at < text.len() && scanner.tokens.len() <= most {
-        if let ControlFlow::Break(finding) = scanner.step() {
-            return Err(finding);
-        }
+        scanner.step()?;
     }
     Ok(Tokens { list: scanner.tokens, open_comment: scanner.open_comment })
 }
@@ -92,46 +85,40 @@ impl<'a> Scanner<'a> {
     }
 
     /// Reads one token, comment or stretch of white space.
-    fn step(&mut self) -> ControlFlow<Finding> {
-        let start = self.at;
+    fn step(&mut self) -> Result<(), Finding> {
         match (self.byte(0), self.byte(1)) {
             (b'\n', _) => {
                 self.at += 1;
-                self.line_begins = true;
-                self.directive = false;
-                return ControlFlow::Continue(());
+                self.begin_line();
             }
-            (b' ' | b'\t' | b'\r' | 0x0b | 0x0c, _) => {
-                self.at += 1;
-                return ControlFlow::Continue(());
-            }
-            (b'/', b'/') => return self.line_comment(),
-            (b'/', b'*') => {
-                self.block_comment();
-                return ControlFlow::Continue(());
-            }
-            (b'"', _) => return self.quotation(),
-            (b'#', _) if !self.directive => {
-                self.hash();
-                return ControlFlow::Continue(());
-            }
-            _ => {}
+            (b' ' | b'\t' | b'\r' | 0x0b | 0x0c, _) => self.at += 1,
+            (b'/', b'/') => self.line_comment()?,
+            (b'/', b'*') => self.block_comment(),
+            (b'"', _) => self.quotation()?,
+            (b'#', _) if !self.directive => self.hash(),
+            _ => self.token()?,
         }
+        Ok(())
+    }
+
+    fn begin_line(&mut self) {
+        (self.line_begins, self.directive) = (true, false);
+    }
+
+    fn token(&mut self) -> Result<(), Finding> {
+        let start = self.at;
         self.line_begins = false;
-        let Some(kind) = self.advance() else {
-            let what =
-                "this invisible character separates lines or words; use a space or an ordinary line end";
-            return ControlFlow::Break((start, what.to_owned()));
-        };
-        if self.directive {
-            return ControlFlow::Continue(());
+        let what = "this invisible character separates lines or words; use a space or an ordinary line end";
+        let kind = self.advance().ok_or_else(|| (start, what.to_owned()))?;
+        let length = self.at - start;
+        if !self.directive && matches!(kind, Kind::Word | Kind::Number) && length > LONGEST_WORD {
+            let what = format!("this word has {length} bytes; at most {LONGEST_WORD} are allowed");
+            return Err((start, what));
         }
-        if matches!(kind, Kind::Word | Kind::Number) && self.at - start > LONGEST_WORD {
-            let what = format!("this word has {} bytes; at most {LONGEST_WORD} are allowed", self.at - start);
-            return ControlFlow::Break((start, what));
+        if !self.directive {
+            self.push(kind, start);
         }
-        self.push(kind, start);
-        ControlFlow::Continue(())
+        Ok(())
     }
 
     fn push(&mut self, kind: Kind, start: usize) {
@@ -238,16 +225,16 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    fn line_comment(&mut self) -> ControlFlow<Finding> {
+    fn line_comment(&mut self) -> Result<(), Finding> {
         let rest = &self.text[self.at..];
         let line = &rest[..rest.find('\n').unwrap_or(rest.len())];
         let seen = line.trim_end_matches('\r');
         if let Some(at) = seen.find(|c| matches!(c, '\u{b}' | '\u{c}' | '\r') || separates(c) && !joins(c)) {
             let what = "this character ends the comment in WGSL although the line continues; use an ordinary line end";
-            return ControlFlow::Break((self.at + at, what.to_owned()));
+            return Err((self.at + at, what.to_owned()));
         }
         self.at += line.len();
-        ControlFlow::Continue(())
+        Ok(())
     }
 
     /// Skips a comment. Comments nest; one that is not closed hides the rest.
@@ -267,8 +254,7 @@ impl<'a> Scanner<'a> {
                 Some(b"*/") => (depth, self.at) = (depth - 1, self.at + 2),
                 Some(pair) => {
                     if pair[0] == b'\n' {
-                        self.line_begins = true;
-                        self.directive = false;
+                        self.begin_line();
                     }
                     self.at += 1;
                 }
@@ -277,23 +263,20 @@ impl<'a> Scanner<'a> {
     }
 
     /// Reads a quotation, in which the preprocessor ignores comments.
-    fn quotation(&mut self) -> ControlFlow<Finding> {
+    fn quotation(&mut self) -> Result<(), Finding> {
         let rest = &self.text[self.at + 1..];
         let line = &rest[..rest.find('\n').unwrap_or(rest.len())];
-        match line.find('"') {
+        let what = match line.find('"') {
             Some(end) if self.directive => {
                 self.at += end + 2;
-                ControlFlow::Continue(())
+                return Ok(());
             }
-            _ if self.directive => {
-                ControlFlow::Break((self.at, "this quotation mark is not closed in its line".to_owned()))
-            }
-            _ => ControlFlow::Break((
-                self.at,
+            _ if self.directive => "this quotation mark is not closed in its line",
+            _ => {
                 "WGSL has no quotation marks; a choice is a number from 0, and a file is included by a line `#import \"file.wgsl\"`"
-                    .to_owned(),
-            )),
-        }
+            }
+        };
+        Err((self.at, what.to_owned()))
     }
 
     /// Reads a preprocessor directive, or the name of a value that it inserts.

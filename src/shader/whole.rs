@@ -5,32 +5,10 @@ use super::{
     check::{ShaderProblem, validate},
     compose::Composed,
 };
+use crate::text::template::chosen;
 
-/// The wrapper's imports, and their replacements.
-const IMPORTS: &[(&str, &str)] = &[
-    (
-        "bevy_pbr::mesh_functions",
-        "fn mesh_functions__get_tag(i: u32) -> u32 { return i; }
-fn mesh_functions__get_world_from_local(i: u32) -> mat4x4<f32> { return mat4x4<f32>(); }
-",
-    ),
-    (
-        "bevy_pbr::mesh_view_bindings::view",
-        "struct BevyView {
-    world_position: vec3<f32>,
-    view_from_clip: mat4x4<f32>,
-    world_from_view: mat4x4<f32>,
-    clip_from_view: mat4x4<f32>,
-}
-var<private> view: BevyView;
-",
-    ),
-    (
-        "bevy_pbr::view_transformations::position_world_to_clip",
-        "fn position_world_to_clip(p: vec3<f32>) -> vec4<f32> { return vec4(p, 1.0); }
-",
-    ),
-];
+/// The replacements of the wrapper's imports.
+const STAND_INS: &str = include_str!("stand_ins.wgsl");
 
 /// Checks a source for drawing; `faces` as for shading models that calculate per polygon. A source that uses
 /// more of Bevy than the shipped wrapper cannot be judged here and passes.
@@ -63,7 +41,8 @@ pub(super) fn standing_alone(text: &str, faces: bool) -> Option<String> {
                 out.push_str(line);
             }
         } else if let Some(module) = directive.strip_prefix("#import ") {
-            stand_ins.push_str(IMPORTS.iter().find(|(name, _)| *name == module.trim())?.1);
+            let stand_in = chosen(STAND_INS, |name| name == module.trim());
+            stand_ins.push_str(Some(&stand_in).filter(|found| !found.is_empty())?);
         } else if let Some(name) = directive.strip_prefix("#ifdef ") {
             conditions.push(faces && name.trim() == "FACES");
         } else if let Some(name) = directive.strip_prefix("#ifndef ") {

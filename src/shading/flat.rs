@@ -12,16 +12,9 @@ parameters! {
 }
 
 impl ShadingModel for Flat {
-    const DECLARATION: Declaration = Declaration {
-        id: "flat",
-        name: "Flat",
-        author: "J. Bouknight 1970",
-        source: "J. Bouknight (1970), A Procedure for Generation of Three-dimensional Half-toned Computer Graphics Presentations, Communications of the ACM 13(9)",
-        summary: "One colour per polygon, calculated at its centre with its own normal.",
-        stage: Stage::Polygon,
-        key: 'F',
-        wgsl: wgsl!("shading/flat.wgsl"),
-    };
+    const DECLARATION: Declaration = Declaration::new("flat", "Flat", Stage::Polygon, 'F', wgsl!("shading/flat.wgsl"))
+        .published("J. Bouknight 1970", "J. Bouknight (1970), A Procedure for Generation of Three-dimensional Half-toned Computer Graphics Presentations, Communications of the ACM 13(9)")
+        .summary("One colour per polygon, calculated at its centre with its own normal.");
 
     fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
         Varying {

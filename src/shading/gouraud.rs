@@ -13,16 +13,9 @@ parameters! {
 }
 
 impl ShadingModel for Gouraud {
-    const DECLARATION: Declaration = Declaration {
-        id: "gouraud",
-        name: "Gouraud",
-        author: "H. Gouraud 1971",
-        source: "H. Gouraud (1971), Continuous Shading of Curved Surfaces, IEEE Transactions on Computers C-20(6)",
-        summary: "Colour calculated at the vertices, interpolated between them. Misses highlights that fall between vertices.",
-        stage: Stage::Vertex,
-        key: 'G',
-        wgsl: wgsl!("shading/gouraud.wgsl"),
-    };
+    const DECLARATION: Declaration = Declaration::new("gouraud", "Gouraud", Stage::Vertex, 'G', wgsl!("shading/gouraud.wgsl"))
+        .published("H. Gouraud 1971", "H. Gouraud (1971), Continuous Shading of Curved Surfaces, IEEE Transactions on Computers C-20(6)")
+        .summary("Colour calculated at the vertices, interpolated between them. Misses highlights that fall between vertices.");
 
     fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
         Varying {

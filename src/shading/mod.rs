@@ -8,6 +8,7 @@ use std::fmt;
 use glam::Vec3;
 
 use crate::{
+    declared::take_each,
     optics::colour::Encoding,
     parameter::{self, Parameter, ParameterSet, Values},
     shader::{Source, wgsl},
@@ -37,10 +38,7 @@ pub trait Take {
 
 /// Registers the built-in shading models, in the order of all lists.
 pub fn register_builtin(to: &mut impl Take) {
-    to.take::<Flat>();
-    to.take::<Gouraud>();
-    to.take::<PhongShading>();
-    to.take::<Derivative>();
+    take_each!(to: Flat Gouraud PhongShading Derivative);
 }
 
 /// The stage that evaluates the reflection model.

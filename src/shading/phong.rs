@@ -13,16 +13,9 @@ parameters! {
 }
 
 impl ShadingModel for PhongShading {
-    const DECLARATION: Declaration = Declaration {
-        id: "phong",
-        name: "Phong",
-        author: "B. T. Phong 1975",
-        source: "B. T. Phong (1975), Illumination for Computer Generated Pictures, Communications of the ACM 18(6), 311–317",
-        summary: "Normals interpolated between the vertices and renormalised; colour calculated at every pixel.",
-        stage: Stage::Pixel,
-        key: 'P',
-        wgsl: wgsl!("shading/phong.wgsl"),
-    };
+    const DECLARATION: Declaration = Declaration::new("phong", "Phong", Stage::Pixel, 'P', wgsl!("shading/phong.wgsl"))
+        .published("B. T. Phong 1975", "B. T. Phong (1975), Illumination for Computer Generated Pictures, Communications of the ACM 18(6), 311–317")
+        .summary("Normals interpolated between the vertices and renormalised; colour calculated at every pixel.");
 
     fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
         Varying {

@@ -15,15 +15,9 @@ parameters! {
 }
 
 impl ObjectType for Cube {
-    const DECLARATION: Declaration = Declaration {
-        id: "cube",
-        name: "Cube",
-        summary: "Plane faces and sharp edges: shows what averaged vertex normals do to an edge.",
-        glyph: "■",
-        tessellation_help: "Squares along each edge.",
-        tessellation: 1..=64,
-        default_tessellation: 16,
-    };
+    const DECLARATION: Declaration = Declaration::new("cube", "Cube")
+        .summary("Plane faces and sharp edges: shows what averaged vertex normals do to an edge.")
+        .tessellation(1..=64, 16, "Squares along each edge.");
 
     fn mesh(&self, tessellation: u32) -> PolygonMesh {
         let n = tessellation.max(1);

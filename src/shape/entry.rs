@@ -11,7 +11,7 @@ use glam::Vec3;
 use super::{Declaration, ObjectType, PolygonMesh};
 use crate::{
     optics::colour::Encoding,
-    parameter::{Parameter, ParameterKind, TypeComponent, Value, Values, words},
+    parameter::{Parameter, TypeComponent, Value, Values, words},
 };
 
 /// A tessellation fine enough to determine the bounds of a shape.
@@ -112,7 +112,7 @@ impl ShapeEntry {
     /// The bits of the parameters as passed to the type; for files, the version of their numbers.
     fn words(&self, parameters: &Values) -> Vec<u32> {
         let mut words = words(self.parameters, parameters, Encoding::Srgb);
-        for p in self.parameters.iter().filter(|p| matches!(p.kind, ParameterKind::File { .. })) {
+        for p in self.parameters.iter().filter(|p| p.kind.format().is_some()) {
             if let Value::File(file) = parameters.get(p) {
                 words.extend([file.version() as u32, (file.version() >> 32) as u32]);
             }

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 
 use bevy::{ecs::component::Component, reflect::Reflectable};
 
-use crate::parameter::ParameterSet;
+use crate::{declared::take_each, parameter::ParameterSet};
 
 mod entry;
 pub mod mesh;
@@ -36,12 +36,7 @@ pub trait Take {
 
 /// Registers the built-in object types, in the order of all lists.
 pub fn register_builtin(to: &mut impl Take) {
-    to.take::<Sphere>();
-    to.take::<Cube>();
-    to.take::<Torus>();
-    to.take::<Superellipsoid>();
-    to.take::<Teapot>();
-    to.take::<MeshFile>();
+    take_each!(to: Sphere Cube Torus Superellipsoid Teapot MeshFile);
 }
 
 /// The name and the legal tessellations of an object type.

@@ -14,15 +14,10 @@ parameters! {
 }
 
 impl ObjectType for Sphere {
-    const DECLARATION: Declaration = Declaration {
-        id: "sphere",
-        name: "Sphere",
-        summary: "Has every normal once: shows a whole reflection model at a glance.",
-        glyph: "●",
-        tessellation_help: "Bands from pole to pole; twice as many segments go around.",
-        tessellation: 2..=256,
-        default_tessellation: 32,
-    };
+    const DECLARATION: Declaration = Declaration::new("sphere", "Sphere")
+        .summary("Has every normal once: shows a whole reflection model at a glance.")
+        .glyph("●")
+        .tessellation(2..=256, 32, "Bands from pole to pole; twice as many segments go around.");
 
     fn mesh(&self, tessellation: u32) -> PolygonMesh {
         let bands = tessellation.max(2);

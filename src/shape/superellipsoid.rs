@@ -3,21 +3,13 @@ use std::f32::consts::{PI, TAU};
 use glam::{Vec2, Vec2Swizzles as _};
 
 use super::{Declaration, ObjectType, PolygonMesh};
-use crate::{
-    parameter::{Parameter, ParameterKind},
-    parameters,
-};
+use crate::{parameter::Parameter, parameters};
 
 /// The exponent of the outline seen from the side.
-const VERTICAL: Parameter = Parameter {
-    name: "vertical_exponent",
-    symbol: "ε_1",
-    label: "vertical exponent",
-    unit: "",
-    help: "The outline seen from the side: nearly a square at 0.1, a circle at 1, a diamond at 2, a star beyond.",
-    kind: ParameterKind::Number { min: 0.1, max: 3.0, default: 0.5 },
-    used_when: None,
-};
+const VERTICAL: Parameter = Parameter::number("vertical_exponent", 0.1..=3.0, 0.5)
+    .symbol("ε_1")
+    .label("vertical exponent")
+    .help("The outline seen from the side: nearly a square at 0.1, a circle at 1, a diamond at 2, a star beyond.");
 
 /// The exponent of the outline seen from above.
 const HORIZONTAL: Parameter = Parameter {
@@ -54,15 +46,10 @@ fn on_superellipse(direction: Vec2, exponent: f32) -> Vec2 {
 }
 
 impl ObjectType for Superellipsoid {
-    const DECLARATION: Declaration = Declaration {
-        id: "superellipsoid",
-        name: "Superellipsoid",
-        summary: "Everything between box, sphere and star: highlights shrink where it is bent and spread where it is flat.",
-        glyph: "◆",
-        tessellation_help: "Bands from pole to pole; twice as many segments go around. Multiples of 4 meet the corners.",
-        tessellation: 2..=256,
-        default_tessellation: 32,
-    };
+    const DECLARATION: Declaration = Declaration::new("superellipsoid", "Superellipsoid")
+        .summary("Everything between box, sphere and star: highlights shrink where it is bent and spread where it is flat.")
+        .glyph("◆")
+        .tessellation(2..=256, 32, "Bands from pole to pole; twice as many segments go around. Multiples of 4 meet the corners.");
 
     fn mesh(&self, tessellation: u32) -> PolygonMesh {
         let bands = tessellation.max(2);

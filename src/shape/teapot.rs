@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3};
 
 use super::{Declaration, ObjectType, PolygonMesh};
-use crate::parameters;
+use crate::{parameters, text::template::chosen};
 
 parameters! {
     /// **Teapot**: the teapot of M. Newell (1975), *The Utilization of Procedure Models in Digital Image Synthesis*,
@@ -17,79 +17,26 @@ parameters! {
     pub struct Teapot {}
 }
 
-/// One row of four control points of a quarter turn, in the pot's own units (z up): with radius r,
-/// handle length q and height h they are (r, 0, h), (r, −q, h), (q, −r, h), (0, −r, h).
-struct Ring {
-    radius: f32,
-    handle: f32,
-    height: f32,
+/// Control rows of a part: lid from the knob down; rim, the body (two) and the bottom; handle from its upper end; spout from
+/// the body to the lip, which turns inward. Every third is shared by two patches.
+///
+/// A row of lid and body has four control points of a quarter turn, in the pot's own units (z up): with radius r,
+/// handle length q and height h they are (r, 0, h), (r, −q, h), (q, −r, h), (0, −r, h). One of handle and spout has those of
+/// a half loop with the plane of symmetry: from the inner one (x, height) to the outer one, over two points moved sideways by
+/// a width.
+fn control_rows<const N: usize>(part: &str) -> Vec<[f32; N]> {
+    let text = chosen(include_str!("teapot.txt"), |name| name == part);
+    let row = |line: &str| {
+        let mut numbers = line.split(' ').filter_map(|number| number.parse().ok());
+        std::array::from_fn(|_| numbers.next().unwrap_or_default())
+    };
+    text.lines().map(row).collect()
 }
 
-const fn ring(radius: f32, handle: f32, height: f32) -> Ring {
-    Ring { radius, handle, height }
+/// The weighted sum of control rows.
+fn blended<const N: usize>(rows: &[[f32; N]], weights: [f32; 4]) -> [f32; N] {
+    std::array::from_fn(|i| rows.iter().zip(weights).map(|(row, weight)| weight * row[i]).sum())
 }
-
-/// One row of control points of handle or spout, a half loop with the plane of symmetry: from `inner`
-/// (x, height), over two points moved sideways by `width`, to `outer` (x, height).
-struct Loop {
-    inner: Vec2,
-    outer: Vec2,
-    width: f32,
-}
-
-const fn half_loop(inner: (f32, f32), outer: (f32, f32), width: f32) -> Loop {
-    Loop { inner: Vec2::new(inner.0, inner.1), outer: Vec2::new(outer.0, outer.1), width }
-}
-
-/// Control rows of the lid from the knob down. Every third is shared by two patches, here and below.
-const LID: [Ring; 7] = [
-    ring(0.0, 0.0, 3.15),
-    ring(0.8, 0.45, 3.15),
-    ring(0.0, 0.0, 2.85),
-    ring(0.2, 0.112, 2.7),
-    ring(0.4, 0.224, 2.55),
-    ring(1.3, 0.728, 2.55),
-    ring(1.3, 0.728, 2.4),
-];
-
-/// Control rows of the rim, the body (two) and the bottom.
-const BODY: [Ring; 13] = [
-    ring(1.4, 0.784, 2.4),
-    ring(1.3375, 0.749, 2.53125),
-    ring(1.4375, 0.805, 2.53125),
-    ring(1.5, 0.84, 2.4),
-    ring(1.75, 0.98, 1.875),
-    ring(2.0, 1.12, 1.35),
-    ring(2.0, 1.12, 0.9),
-    ring(2.0, 1.12, 0.45),
-    ring(1.5, 0.84, 0.225),
-    ring(1.5, 0.84, 0.15),
-    ring(1.5, 0.84, 0.075),
-    ring(1.425, 0.798, 0.0),
-    ring(0.0, 0.0, 0.0),
-];
-
-/// Control rows of the handle from its upper end.
-const HANDLE: [Loop; 7] = [
-    half_loop((-1.6, 2.025), (-1.5, 2.25), 0.3),
-    half_loop((-2.3, 2.025), (-2.5, 2.25), 0.3),
-    half_loop((-2.7, 2.025), (-3.0, 2.25), 0.3),
-    half_loop((-2.7, 1.8), (-3.0, 1.8), 0.3),
-    half_loop((-2.7, 1.575), (-3.0, 1.35), 0.3),
-    half_loop((-2.5, 1.125), (-2.65, 0.9375), 0.3),
-    half_loop((-2.0, 0.9), (-1.9, 0.6), 0.3),
-];
-
-/// Control rows of the spout from the body to the lip, which turns inward.
-const SPOUT: [Loop; 7] = [
-    half_loop((1.7, 1.425), (1.7, 0.6), 0.66),
-    half_loop((2.6, 1.425), (3.1, 0.825), 0.66),
-    half_loop((2.3, 2.1), (2.4, 2.025), 0.25),
-    half_loop((2.7, 2.4), (3.3, 2.4), 0.25),
-    half_loop((2.8, 2.475), (3.525, 2.49375), 0.25),
-    half_loop((2.9, 2.475), (3.45, 2.5125), 0.15),
-    half_loop((2.8, 2.4), (3.2, 2.4), 0.15),
-];
 
 /// Bernstein's cubic polynomials: the weights of the four control points at `t`.
 fn bernstein(t: f32) -> [f32; 4] {
@@ -111,10 +58,9 @@ fn along<R, B>(rows: &[R], steps: usize, blend: impl Fn(&[R], [f32; 4]) -> B) ->
 }
 
 /// The rows of vertices of a part that goes around the y axis in four quarter turns.
-fn turned(rings: &[Ring], steps: usize) -> Vec<Vec<Vec3>> {
-    along(rings, steps, |rings, w| {
-        let sum = |value: fn(&Ring) -> f32| rings.iter().zip(w).map(|(r, w)| w * value(r)).sum::<f32>();
-        let (radius, handle, height) = (sum(|r| r.radius), sum(|r| r.handle), sum(|r| r.height));
+fn turned(part: &str, steps: usize) -> Vec<Vec<Vec3>> {
+    along(&control_rows(part), steps, |rings, w| {
+        let [radius, handle, height] = blended(rings, w);
         if radius == 0.0 {
             return vec![Vec3::Y * height];
         }
@@ -135,11 +81,10 @@ fn turned(rings: &[Ring], steps: usize) -> Vec<Vec<Vec3>> {
 }
 
 /// The rows of vertices of handle or spout: two halves, mirrored in the plane z = 0.
-fn mirrored(loops: &[Loop], steps: usize) -> Vec<Vec<Vec3>> {
-    along(loops, steps, |loops, w| {
-        let inner: Vec2 = loops.iter().zip(w).map(|(l, w)| w * l.inner).sum();
-        let outer: Vec2 = loops.iter().zip(w).map(|(l, w)| w * l.outer).sum();
-        let width: f32 = loops.iter().zip(w).map(|(l, w)| w * l.width).sum();
+fn mirrored(part: &str, steps: usize) -> Vec<Vec<Vec3>> {
+    along(&control_rows(part), steps, |loops, w| {
+        let [inner_x, inner_y, outer_x, outer_y, width] = blended(loops, w);
+        let [inner, outer] = [Vec2::new(inner_x, inner_y), Vec2::new(outer_x, outer_y)];
         let at = |j: usize, side: f32| {
             let [a, b, c, d] = bernstein(j as f32 / steps as f32);
             let p = (a + b) * inner + (c + d) * outer;
@@ -153,23 +98,18 @@ fn mirrored(loops: &[Loop], steps: usize) -> Vec<Vec<Vec3>> {
 }
 
 impl ObjectType for Teapot {
-    const DECLARATION: Declaration = Declaration {
-        id: "teapot",
-        name: "Teapot",
-        summary: "Newell's teapot of 1975, the test object of computer graphics: round, thin and hollow parts at once.",
-        glyph: "☕",
-        tessellation_help: "Polygons along each side of each of the 32 Bézier patches.",
-        tessellation: 2..=32,
-        default_tessellation: 10,
-    };
+    const DECLARATION: Declaration = Declaration::new("teapot", "Teapot")
+        .summary("Newell's teapot of 1975, the test object of computer graphics: round, thin and hollow parts at once.")
+        .glyph("☕")
+        .tessellation(2..=32, 10, "Polygons along each side of each of the 32 Bézier patches.");
 
     fn mesh(&self, tessellation: u32) -> PolygonMesh {
         let steps = tessellation.max(2) as usize;
         let mut mesh = PolygonMesh::default();
-        mesh.append_loops(&turned(&BODY, steps), false);
-        mesh.append_loops(&turned(&LID, steps), false);
-        mesh.append_loops(&mirrored(&HANDLE, steps), false);
-        mesh.append_loops(&mirrored(&SPOUT, steps), false);
+        mesh.append_loops(&turned("body", steps), false);
+        mesh.append_loops(&turned("lid", steps), false);
+        mesh.append_loops(&mirrored("handle", steps), false);
+        mesh.append_loops(&mirrored("spout", steps), false);
         mesh.normalise();
         mesh
     }
@@ -230,7 +170,7 @@ mod tests {
     #[test]
     fn the_mouth_of_the_spout_is_at_newells_points() {
         // In the pot's units: the last control row of the spout is on the surface.
-        let rows = mirrored(&SPOUT, 4);
+        let rows = mirrored("spout", 4);
         let mouth = rows.last().expect("has rows");
         assert!((mouth[0] - Vec3::new(2.8, 2.4, 0.0)).length() < 1e-6);
         assert!((mouth[4] - Vec3::new(3.2, 2.4, 0.0)).length() < 1e-6);

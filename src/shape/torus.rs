@@ -3,21 +3,13 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 
 use super::{Declaration, ObjectType, PolygonMesh};
-use crate::{
-    parameter::{Parameter, ParameterKind},
-    parameters,
-};
+use crate::{parameter::Parameter, parameters};
 
 /// The thickness of the tube. At 0.25 the hole would close.
-const TUBE_RADIUS: Parameter = Parameter {
-    name: "tube_radius",
-    symbol: "r",
-    label: "tube radius",
-    unit: "",
-    help: "Radius of the tube as a fraction of the size: 0.02 is a thin ring, and at 0.24 the hole nearly closes.",
-    kind: ParameterKind::Number { min: 0.02, max: 0.24, default: 0.15 },
-    used_when: None,
-};
+const TUBE_RADIUS: Parameter = Parameter::number("tube_radius", 0.02..=0.24, 0.15)
+    .symbol("r")
+    .label("tube radius")
+    .help("Radius of the tube as a fraction of the size: 0.02 is a thin ring, and at 0.24 the hole nearly closes.");
 
 parameters! {
     /// **Torus**, standing upright: the ring lies in the xy plane with its axis along z, so the default observer looks
@@ -36,15 +28,10 @@ impl Torus {
 }
 
 impl ObjectType for Torus {
-    const DECLARATION: Declaration = Declaration {
-        id: "torus",
-        name: "Torus",
-        summary: "Curves outward on its outside and both ways on its inside: highlights stretch differently.",
-        glyph: "◎",
-        tessellation_help: "Segments around the tube; twice as many go around the ring.",
-        tessellation: 3..=128,
-        default_tessellation: 32,
-    };
+    const DECLARATION: Declaration = Declaration::new("torus", "Torus")
+        .summary("Curves outward on its outside and both ways on its inside: highlights stretch differently.")
+        .glyph("◎")
+        .tessellation(3..=128, 32, "Segments around the tube; twice as many go around the ring.");
 
     fn mesh(&self, tessellation: u32) -> PolygonMesh {
         let (ring_radius, tube_radius) = (self.ring_radius(), self.tube_radius);

@@ -4,16 +4,16 @@ use glam::Vec3;
 use maud::html;
 
 use super::{
-    Chapter, Lab, StudyError, Table, albedo_at, alpha, choice, fixed, image, number, pictures, svg, words,
+    Chapter, Lab, StudyError, Table, albedo_at, alpha, at, fixed, grid, image, pictures, plot, series,
+    text::values,
 };
 use crate::{
-    curves::draw::{Axis, Line, Mark, Plot, Series},
+    curves::draw::{Axis, Line, Mark},
     optics::{
         TermSelection,
         colour::luminance,
         fresnel::{conductor, normal_reflectance, schlick},
     },
-    parameter::Value,
     reference::Picture,
     reflection::{Measured, preset},
 };
@@ -49,13 +49,6 @@ struct Pictured {
 const BLINN_PHONG: Pictured = Pictured { id: "blinn_phong", name: "Blinn–Phong", variety: "" };
 const MICROFACET: Pictured =
     Pictured { id: "microfacet", name: "Microfacet", variety: " (GGX, exact Fresnel equations)" };
-
-/// A number for smooth glass, and for the lobe of each model.
-struct Growth {
-    smooth: f64,
-    microfacet: f64,
-    blinn_phong: f64,
-}
 
 /// The brightness of the highlights with the lamp in front alone, and with those behind alone.
 struct Peaks {
@@ -146,66 +139,31 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
         })
         .collect();
     let schlick_worst = materials.iter().map(|(m, ..)| worst(m).1.abs()).fold(0.0, f64::max);
-    let mut series = Vec::new();
+    let mut lines = Vec::new();
     for (m, name, colour) in &materials {
         let Some(colour) = *colour else { continue };
         let curve = |f: &dyn Fn(f64) -> f64| (0..=90).map(|a| (f64::from(a), f(f64::from(a)))).collect();
-        series.push(Series {
-            name: (*name).to_owned(),
-            points: curve(&|a| exact(m, a)),
-            colour,
-            line: Line::Solid,
-            mark: Mark::None,
-        });
-        series.push(Series {
-            name: "… after Schlick".to_owned(),
-            points: curve(&|a| approximate(m, a)),
-            colour,
-            line: Line::Dashed,
-            mark: Mark::None,
-        });
+        lines.push(series(*name, curve(&|a| exact(m, a)), (colour, Line::Solid, Mark::None)));
+        let approximate = curve(&|a| approximate(m, a));
+        lines.push(series("… after Schlick", approximate, (colour, Line::Dashed, Mark::None)));
     }
-    series.push(Series {
-        name: "Blinn–Phong, kₛ = 0.04".to_owned(),
-        points: vec![(0.0, 0.04), (90.0, 0.04)],
-        colour: 6,
-        line: Line::Dotted,
-        mark: Mark::None,
-    });
-    let reflectance = Plot {
-        title: "Fresnel reflectance against the angle of incidence".to_owned(),
-        x: Axis::new("angle of incidence (°)", 0.0, 90.0, 10),
-        y: Axis::new("reflectance at 532 nm", 0.0, 1.0, 6),
-        series,
-        size: (720, 380),
-        legend: true,
-        ..Plot::default()
-    };
-    let reflectance = lab.figure(
-        &svg(&reflectance),
-        &html! {
-            "Reflectance of smooth boundaries for unpolarised light at 532 nm, from measured optical constants. Solid: the exact "
-            "equations. Dashed: Schlick’s approximation from the same F₀. Dotted: a constant specular coefficient for glass."
-        },
+    let constant = vec![(0.0, 0.04), (90.0, 0.04)];
+    lines.push(series("Blinn–Phong, kₛ = 0.04", constant, (6, Line::Dotted, Mark::None)));
+    let reflectance = plot(
+        "Fresnel reflectance against the angle of incidence",
+        Axis::new("angle of incidence (°)", 0.0, 90.0, 10),
+        Axis::new("reflectance at 532 nm", 0.0, 1.0, 6),
+        380,
+        lines,
     );
-    let table = lab.table(
-        &html! {
-            "Exact Fresnel reflectance at 532 nm by angle of incidence, and where Schlick’s approximation is furthest from it "
-            "(approximation minus exact value). Refractive index n, extinction coefficient k."
-        },
-        &["Material", "n", "k", "0°", "45°", "60°", "75°", "85°", "Schlick’s largest error"],
-        &rows,
-    );
+    let head = ["Material", "n", "k", "0°", "45°", "60°", "75°", "85°", "Schlick’s largest error"];
+    let table = grid(&head, &rows);
 
     // The curves of the models' lobes.
-    let mut settings =
-        vec![choice("fresnel", "dielectric"), choice("diffuse", "none"), ("ior", Value::Triple([1.5; 3]))];
-    settings.extend(alpha(ALPHA));
-    let glass = lab.surface("microfacet", &settings)?;
-    let plastic = lab.surface(
-        "blinn_phong",
-        &[("alpha", Value::Integer(EXPONENT)), number("k_s", K_S), ("base_colour", Value::Colour([0; 3]))],
-    )?;
+    let glass = format!("fresnel=dielectric diffuse=none ior=1.5 {}", alpha(ALPHA));
+    let glass = lab.surface("microfacet", &glass)?;
+    let plastic = format!("alpha={EXPONENT} k_s={K_S} base_colour=0,0,0");
+    let plastic = lab.surface("blinn_phong", &plastic)?;
     let step = if lab.settings.quick { 15.0 } else { 5.0 };
     let mut angles: Vec<f64> = (0..=(85.0 / step) as u32).map(|i| f64::from(i) * step).collect();
     angles.extend((!lab.settings.quick).then_some(88.0));
@@ -221,52 +179,19 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     for i in 0..angles.len() {
         lobes.row(&[], &[angles[i], ideal[i].1, glass_lobe[i].1, plastic_lobe[i].1]);
     }
-    let at = |curve: &[(f64, f64)], angle: f64| {
-        curve.iter().find(|p| (p.0 - angle).abs() < 0.1).map_or(f64::NAN, |p| p.1)
-    };
-    let all_at = |angle: f64| Growth {
-        smooth: at(&ideal, angle),
-        microfacet: at(&glass_lobe, angle),
-        blinn_phong: at(&plastic_lobe, angle),
-    };
-    let (growth, grazing) = (all_at(75.0), all_at(85.0));
-    let relative = Plot {
-        title: "Reflection of the specular lobe relative to normal incidence".to_owned(),
-        x: Axis::new("angle of view (°)", 0.0, 90.0, 10),
-        y: Axis::log("reflection relative to 0°", 0.01, 30.0),
-        series: vec![
-            Series {
-                name: "smooth glass, exact".to_owned(),
-                points: ideal,
-                colour: 6,
-                line: Line::Dotted,
-                mark: Mark::None,
-            },
-            Series {
-                name: format!("microfacet, α = {ALPHA}"),
-                points: glass_lobe,
-                colour: 0,
-                line: Line::Solid,
-                mark: Mark::Disc,
-            },
-            Series {
-                name: format!("Blinn–Phong, n = {EXPONENT}"),
-                points: plastic_lobe,
-                colour: 1,
-                line: Line::Dashed,
-                mark: Mark::Triangle,
-            },
+    let all_at = |angle: f64| [&ideal, &glass_lobe, &plastic_lobe].map(|curve| at(curve, angle));
+    let [growth_smooth, growth_microfacet, growth_blinn_phong] = all_at(75.0);
+    let [grazing_smooth, grazing_microfacet, _] = all_at(85.0);
+    let relative = plot(
+        "Reflection of the specular lobe relative to normal incidence",
+        Axis::new("angle of view (°)", 0.0, 90.0, 10),
+        Axis::log("reflection relative to 0°", 0.01, 30.0),
+        360,
+        vec![
+            series("smooth glass, exact", ideal, (6, Line::Dotted, Mark::None)),
+            series(format!("microfacet, α = {ALPHA}"), glass_lobe, (0, Line::Solid, Mark::Disc)),
+            series(format!("Blinn–Phong, n = {EXPONENT}"), plastic_lobe, (1, Line::Dashed, Mark::Triangle)),
         ],
-        size: (720, 360),
-        legend: true,
-        ..Plot::default()
-    };
-    let relative = lab.figure(
-        &svg(&relative),
-        &html! {
-            "Fraction of uniform light that the specular lobe reflects (its directional albedo, without the diffuse part), relative to the view "
-            "along the normal. Glass, n = 1.5. Each curve is relative to its own value at 0° and therefore starts at 1, whatever " (words("k_s")) " is. Logarithmic axis."
-        },
     );
 
     // Pictures.
@@ -297,91 +222,23 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     for (model, peaks) in &both {
         from_pictures.row(&[model.id], &[peaks.front, peaks.behind]);
     }
-    let shown = lab.figure(
-        &html! { div .stack { (blinn_phong_picture) (microfacet_picture) } },
-        &html! {
-            "Objects of black glass (n = 1.5, α = " (ALPHA) ") with one lamp in front and three of the same intensity behind them. Blinn–Phong’s height and width are set so that "
-            "the highlight of the front lamp is the same. Scene " code { "fresnel_effect.json" } "."
-        },
-    );
-    let picture_table = lab.table(
-        &html! { "Mean of the brightest 1\u{a0}% of the pixels covered by objects in the pictures above (luminance, linear, 1 is display white), with the lamp in front alone and the lamps behind alone." },
-        &["Model", "lamp in front", "lamps behind", "behind / front"],
-        &both.map(|(model, peaks)| {
-            vec![
-                model.name.to_owned(),
-                fixed(peaks.front, 3),
-                fixed(peaks.behind, 3),
-                fixed(peaks.ratio(), 1),
-            ]
-        }),
-    );
-
+    let peaks = both.map(|(model, peaks)| {
+        let numbers = [fixed(peaks.front, 3), fixed(peaks.behind, 3), fixed(peaks.ratio(), 1)];
+        [model.name.to_owned()].into_iter().chain(numbers).collect::<Vec<_>>()
+    });
+    let peaks = grid(&["Model", "lamp in front", "lamps behind", "behind / front"], &peaks);
     let dip = preset::by_id(ALUMINIUM).and_then(dip);
-    let physical = growth.microfacet > 2.0 && (growth.microfacet / growth.smooth).ln().abs() < 0.5;
-    let classical = growth.blinn_phong > 2.0;
-    let confirmed = physical && !classical;
-    let finding = format!(
-        "From the normal to 75° the reflection of smooth glass changes by a factor of {:.1}, that of the microfacet lobe by {:.1}, and that of Blinn–Phong’s lobe by {:.2}.",
-        growth.smooth, growth.microfacet, growth.blinn_phong
-    );
-    let body = html! {
-        h3 { "Question" }
-        p { "A surface reflects more light the more obliquely it is seen, and almost everything at a grazing view. Which models show this?" }
-        h3 { "Method" }
-        p {
-            "The reflectance of a smooth boundary to a medium of index n + ik follows from the Fresnel equations. The program has them exactly ("
-            code { "optics::fresnel::dielectric" } ", " code { "conductor" } ") and in Schlick’s approximation,"
-        }
-        p .equation {
-            span { "F(θ) ≈ F₀ + (1 − F₀)(1 − cos θ)⁵," }
-            span { "F₀ = ((n − 1)² + k²) / ((n + 1)² + k²)." }
-        }
-        p {
-            "Blinn–Phong has a specular coefficient " (words("k_s")) " in the place of F, equal at all angles. The optical constants are measurements "
-            "collected by refractiveindex.info. To compare whole models and not only this factor, the directional albedo of the specular lobe is integrated "
-            "numerically for glass: a GGX microfacet lobe of α = " (ALPHA) " with the exact equations, against a Blinn–Phong lobe of the same width and height at "
-            "normal incidence (n = " (EXPONENT) ", " (words("k_s")) " = F₀/(4α²) = " (K_S) ")."
-        }
-        h3 { "Results" }
-        (reflectance)
-        (table)
-        (relative)
-        (shown)
-        (picture_table)
-        h3 { "Conclusion" }
-        div .conclusion {
-            p {
-                @if physical {
-                    "The microfacet model follows the Fresnel equations: at 75° its lobe reflects " (fixed(growth.microfacet, 1)) " times as much as at normal incidence, smooth glass "
-                    (fixed(growth.smooth, 1)) " times; at 85° " (fixed(grazing.microfacet, 1)) " and " (fixed(grazing.smooth, 1)) " times."
-                    @if grazing.microfacet < grazing.smooth { " It stays below at the very edge because at a grazing view a rough surface shows mostly facets that are tilted towards the viewer." }
-                } @else {
-                    "The microfacet model does not follow the Fresnel equations here: its lobe grows by " (fixed(growth.microfacet, 1)) ", smooth glass by " (fixed(growth.smooth, 1)) "."
-                }
-            }
-            p {
-                @if classical {
-                    "Blinn–Phong’s lobe grows as well, by " (fixed(growth.blinn_phong, 2)) "."
-                } @else {
-                    "Blinn–Phong shows the opposite of the Fresnel effect. Its lobe reflects " (fixed(growth.blinn_phong, 2)) " times as much at 75°, since its height is fixed while the solid angle of light that it gathers shrinks with the cosine of the view. "
-                    "In the brightest 1\u{a0}% of the pictures the lamps behind the objects are " (fixed(microfacet.ratio(), 1)) " times as bright as the lamp in front under the microfacet model and "
-                    (fixed(blinn_phong.ratio(), 1)) " times under Blinn–Phong. No single " (words("k_s")) " serves both."
-                }
-            }
-            p {
-                "Schlick’s approximation is off by at most " (fixed(schlick_worst, 3)) " for these materials. "
-                @if let Some((angle, least)) = dip {
-                    "It cannot follow a reflectance that falls before it rises, as that of aluminium does, which is least at " (fixed(angle, 0)) "° (" (fixed(least, 3)) ")."
-                }
-            }
-        }
+    let physical = growth_microfacet > 2.0 && (growth_microfacet / growth_smooth).ln().abs() < 0.5;
+    let classical = growth_blinn_phong > 2.0;
+    let (dip_angle, least) = dip.unwrap_or_default();
+    let values = values! {
+        alpha: ALPHA, exponent: EXPONENT as f64, k_s: K_S,
+        reflectance, materials: table, relative, pictures: html! { (blinn_phong_picture) (microfacet_picture) }, peaks,
+        physical, classical, growth_smooth, growth_microfacet, growth_blinn_phong, grazing_smooth, grazing_microfacet,
+        below: grazing_microfacet < grazing_smooth,
+        ratio_microfacet: microfacet.ratio(), ratio_blinn_phong: blinn_phong.ratio(),
+        schlick_worst, has_dip: dip.is_some(), dip_angle, dip: least,
     };
-    Ok(Chapter {
-        title: "Fresnel effect",
-        body,
-        finding,
-        shown: confirmed,
-        tables: vec![raw, lobes, from_pictures],
-    })
+    let tables = vec![raw, lobes, from_pictures];
+    lab.chapter(include_str!("fresnel.html"), &values, physical && !classical, tables)
 }

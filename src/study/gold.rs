@@ -4,9 +4,10 @@ use glam::Vec3;
 use maud::html;
 
 use super::{
-    Chapter, Lab, StudyError, Table, fixed, image,
+    Chapter, Lab, StudyError, Table, fixed, grid, image,
     lobe::{Contestant, paint_samples},
-    percent, pictures, words,
+    percent, pictures, share,
+    text::values,
 };
 use crate::{
     curves::data::PAINTS,
@@ -140,15 +141,14 @@ fn case(scene: &Scene, i: usize) -> Scene {
 pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let shipped = lab.scene(SCENE)?;
     let size = lab.size(480, 320);
-    let mut cases: Vec<(&str, &str, Scene)> = vec![
+    let light =
+        Light { light_type: "ambient".to_owned(), position: None, intensity: 1.0, ..Light::default() };
+    let cases = [
         ("A", "white lamp in front", case(&shipped, 0)),
         ("B", "bulb of 2700 K in front, half as strong", case(&shipped, 1)),
         ("C", "cool light from behind", case(&shipped, 2)),
+        ("D", "uniform light", Scene { lights: vec![light], ..case(&shipped, 0) }),
     ];
-    let mut sky = case(&shipped, 0);
-    sky.lights =
-        vec![Light { light_type: "ambient".to_owned(), position: None, intensity: 1.0, ..Light::default() }];
-    cases.push(("D", "uniform light", sky));
 
     let wanted: Vec<Picture> =
         cases.iter().map(|(_, _, scene)| lab.render(scene, "microfacet", TermSelection::All, size)).collect();
@@ -189,73 +189,41 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             raw.row(&[&format!("{id} {name}")], &[distances[i].0, distances[i].1, again[i]]);
         }
     }
-    let mut figure = Vec::new();
+    let mut shown = Vec::new();
     for (i, (id, name, scene)) in cases.iter().enumerate() {
         let pair = [(&wanted[i], "microfacet, measured gold"), (&kept[i], "Blinn–Phong, tuned under A")];
         for (picture, model) in pair {
             let alt = format!("Gold teapot, {name}, {model}");
-            figure.push((
-                image(&picture.to_rgb8(&scene.display), size, &alt)?,
-                format!("{id}, {name}: {model}"),
-            ));
+            let picture = image(&picture.to_rgb8(&scene.display), size, &alt)?;
+            shown.push((picture, format!("{id}, {name}: {model}")));
         }
     }
-    let figure: Vec<_> = figure.iter().map(|(m, w)| (m.clone(), w.as_str())).collect();
-    let figure = lab.figure(
-        &html! { div .pairs { @for pair in figure.chunks(2) { (pictures(pair)) } } },
-        &html! {
-            "Gold under four lights. Left: GGX microfacets (α = 0.5) with the measured n and k of gold, the same parameters everywhere. Right: Blinn–Phong with the parameters that come closest under light A. Scene "
-            code { "gold_three_lights.json" } " has A, B and C. Under D, " (words("k_a")) " is undetermined; 0 is shown."
-        },
-    );
-    let table = lab.table(
-        &html! {
-            "Difference of the Blinn–Phong picture from the physically based one: root mean square difference in linear light as a share of the picture’s own root mean square (mean of three channels), and mean brightness. "
-            "“Retuned” is the same after fitting Blinn–Phong under that light itself. Light D reaches Blinn–Phong through " (words("k_a")) " alone, which a fit under a lamp leaves undetermined: "
-            "the brightness is given for " (words("k_a")) " = 0 and 1. Nothing is tuned under D (–): only the product of " (words("k_a")) " and the diffuse colour answers there, and it can be given any colour."
-        },
-        &["Light", "RMS, tuned under A", "brightness", "RMS, retuned"],
-        &cases
-            .iter()
-            .enumerate()
-            .map(|(i, (id, name, _))| {
-                if i == 3 {
-                    let range = format!("{} to {}", percent(distances[i].1 - 1.0), percent(open.1 - 1.0));
-                    return vec![format!("{id}, {name}"), "undetermined".to_owned(), range, "–".to_owned()];
-                }
-                vec![
-                    format!("{id}, {name}"),
-                    format!("{}\u{a0}%", fixed(100.0 * distances[i].0, 1)),
-                    percent(distances[i].1 - 1.0),
-                    again.get(i).map_or_else(|| "–".to_owned(), |x| format!("{}\u{a0}%", fixed(100.0 * x, 1))),
-                ]
-            })
-            .collect::<Vec<_>>(),
-    );
+    let shown = html! { @for pair in shown.chunks(2) { (pictures(pair)) } };
+    let mut rows = Vec::new();
+    for (i, (id, name, _)) in cases.iter().enumerate() {
+        let ((rms, brightness), none) = (distances[i], "–".to_owned());
+        let brightness = percent(brightness - 1.0);
+        let numbers = match again.get(i) {
+            Some(again) => [share(rms, 1), brightness, share(*again, 1)],
+            None => ["undetermined".to_owned(), format!("{brightness} to {}", percent(open.1 - 1.0)), none],
+        };
+        rows.push([format!("{id}, {name}")].into_iter().chain(numbers).collect());
+    }
+    let differences = grid(&["Light", "RMS, tuned under A", "brightness", "RMS, retuned"], &rows);
     let colour = |c: Vec3| format!("{:.2} {:.2} {:.2}", c.x, c.y, c.z);
     let mut parameters = Table::new("gold_parameters", "tuned_under,d_r,d_g,d_b,s_r,s_g,s_b,exponent");
-    for ((id, ..), b) in cases.iter().zip(&tuned) {
-        let numbers: Vec<f64> = b
-            .diffuse
-            .to_array()
-            .into_iter()
-            .chain(b.specular.to_array())
-            .map(f64::from)
-            .chain([b.exponent as f64])
-            .collect();
-        parameters.row(&[id], &numbers);
+    let mut rows = Vec::new();
+    for ((id, name, _), b) in cases.iter().zip(&tuned) {
+        let colours = b.diffuse.to_array().into_iter().chain(b.specular.to_array()).map(f64::from);
+        parameters.row(&[id], &colours.chain([b.exponent as f64]).collect::<Vec<_>>());
+        rows.push(vec![
+            format!("{id}, {name}"),
+            colour(b.diffuse),
+            colour(b.specular),
+            b.exponent.to_string(),
+        ]);
     }
-    let parameter_table = lab.table(
-        &html! { "The parameters of Blinn–Phong closest to the same gold under each light: linear diffuse and specular colour (red, green, blue) and exponent. One material should have one row." },
-        &["Tuned under", "diffuse colour", "specular colour", "n"],
-        &cases
-            .iter()
-            .zip(&tuned)
-            .map(|((id, name, _), b)| {
-                vec![format!("{id}, {name}"), colour(b.diffuse), colour(b.specular), b.exponent.to_string()]
-            })
-            .collect::<Vec<_>>(),
-    );
+    let parameter_table = grid(&["Tuned under", "diffuse colour", "specular colour", "n"], &rows);
 
     // The same question for measured paints, where no model is the reference.
     let mut transfer = Table::new("gold_paints", "paint,model,error_fitted_below_30,error_at_60_and_70");
@@ -275,13 +243,8 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
             moved.push((contestant.name, there));
         }
     }
-    let transfer_table = lab.table(
-        &html! {
-            "Three measured paints: each model is fitted to light from within 30° of the normal and then, unchanged, compared with the measurement for light from 60° and 70°. Log error (0.1 is about 10\u{a0}%)."
-        },
-        &["Paint, model", "fitted, θ ≤ 30°", "predicted, θ = 60°, 70°"],
-        &rows,
-    );
+    let transferred = grid(&["Paint, model", "fitted, θ ≤ 30°", "predicted, θ = 60°, 70°"], &rows);
+
     let of = |model: &str| -> Vec<f64> { moved.iter().filter(|m| m.0 == model).map(|m| m.1).collect() };
     let (blinn, ggx) = (of("Blinn–Phong"), of("GGX"));
     let wins = blinn.iter().zip(&ggx).filter(|(b, g)| g < b).count();
@@ -289,68 +252,18 @@ pub(super) fn chapter(lab: &mut Lab) -> Result<Chapter, StudyError> {
     let bounds = tuned[2].bounds();
     let control = (distances[1].0 - distances[0].0).abs() < 0.01;
     let rises = distances[2].0 / distances[0].0;
-    let confirmed = control && rises > 1.5 && wins * 2 > blinn.len();
-    let finding = format!(
-        "Blinn–Phong tuned to gold under one lamp is {:.1}\u{a0}% off there and {:.1}\u{a0}% under a light from behind; light from 60° and more on measured paints is predicted better by GGX for {wins} of {}.",
-        100.0 * distances[0].0,
-        100.0 * distances[2].0,
-        blinn.len()
-    );
-    let body = html! {
-        h3 { "Question" }
-        p { "The same material should need the same parameters under every light. For which models is that so?" }
-        h3 { "Method" }
-        p {
-            "A teapot of gold is rendered with GGX microfacets, α = 0.5, and the exact Fresnel equations for the optical constants that Johnson and Christy (1972) measured at 630, 532 and 465 nm. "
-            "Only the roughness is set by eye. Blinn–Phong is then tuned to that picture under light A, as an artist would do, but by least squares: the diffuse and the "
-            "specular colour, each from 0 to 1 per channel, and the exponent that minimise the mean square difference in linear light. The ambient coefficient " (words("k_a")) " has no part in this picture and stays 0. With these parameters it is rendered under three other lights and compared again."
-        }
-        p {
-            "Both models are linear in the light. A change of intensity or colour alone must therefore leave the relative difference unchanged; light B is this control. Light C changes the direction, light D the extent of the light."
-        }
-        p {
-            "Because the physically based picture is the reference here, the comparison cannot tell whether it is right. The last table therefore uses measured paints: parameters fitted to light near the normal have to predict light from the side."
-        }
-        h3 { "Results" }
-        (figure)
-        (table)
-        (parameter_table)
-        (transfer_table)
-        h3 { "Conclusion" }
-        div .conclusion {
-            p {
-                @if control {
-                    "The control holds: under B the difference is " (fixed(100.0 * distances[1].0, 1)) "\u{a0}%, as under A (" (fixed(100.0 * distances[0].0, 1)) "\u{a0}%). Blinn–Phong’s parameters do not depend on intensity and colour of the light. "
-                } @else {
-                    "The control fails: under B the difference is " (fixed(100.0 * distances[1].0, 1)) "\u{a0}% instead of " (fixed(100.0 * distances[0].0, 1)) "\u{a0}%, which is not expected of linear models. "
-                }
-                @if rises > 1.5 {
-                    "They do depend on its direction. Under C the difference is " (fixed(100.0 * distances[2].0, 1)) "\u{a0}%, " (fixed(rises, 1)) " times as large, and the picture has " (fixed(100.0 * distances[2].1, 0)) "\u{a0}% of the brightness. "
-                    "Retuning under C leaves " (fixed(100.0 * again[2], 1)) "\u{a0}%, at the price of other parameters for the same gold (the diffuse colour " (colour(tuned[0].diffuse)) " becomes " (colour(tuned[2].diffuse)) ")."
-                    @if !bounds.is_empty() { " Some of these are at the bound of the fit, 1: " (bounds.join(", ")) "." }
-                } @else {
-                    "Under C the difference is " (fixed(100.0 * distances[2].0, 0)) "\u{a0}%, only " (fixed(rises, 1)) " times as large."
-                }
-            }
-            p {
-                "Uniform light (D) reaches Blinn–Phong through the coefficient " (words("k_a")) " alone, about which a picture under a lamp says nothing. Its answer is undetermined: with the diffuse colour found under A, "
-                (words("k_a")) " from 0 to 1 gives " (fixed(100.0 * distances[3].1, 0)) "\u{a0}% to " (fixed(100.0 * open.1, 0)) "\u{a0}% of the brightness of gold, which answers by its albedo. "
-                @if open.1 < 1.0 - 0.01 { "No legal " (words("k_a")) " reaches it." } @else { "The right " (words("k_a")) " has to be known from elsewhere." }
-            }
-            p {
-                "On measured paints, GGX predicts the light from the side better than Blinn–Phong for " (wins) " of " (blinn.len()) " paints "
-                @if let (Some(b), Some(g)) = (blinn.first(), ggx.first()) { "(Krylon blue: log error " (fixed(*g, 2)) " against " (fixed(*b, 2)) ")" }
-                @if wins * 2 > blinn.len() { ". The parameters of the physically based model carry over to a light that they were not fitted to." } @else { ". The paints do not support the claim." }
-            }
-        }
+    let carries = wins * 2 > blinn.len();
+    let values = values! {
+        pictures: shown, differences, parameters: parameter_table, transfer: transferred,
+        control, off_a: distances[0].0, off_b: distances[1].0, off_c: distances[2].0,
+        rises: rises > 1.5, rise: rises, brightness_c: distances[2].1, again_c: again[2],
+        diffuse_a: colour(tuned[0].diffuse), diffuse_c: colour(tuned[2].diffuse),
+        bound: !bounds.is_empty(), bounds: bounds.join(", "),
+        brightness_d: distances[3].1, brightness_open: open.1, too_dark: open.1 < 1.0 - 0.01,
+        wins, paints: blinn.len(), carries, blinn: blinn[0], ggx: ggx[0],
     };
-    Ok(Chapter {
-        title: "Material parameters that stay valid when the light changes",
-        body,
-        finding,
-        shown: confirmed,
-        tables: vec![raw, parameters, transfer],
-    })
+    let confirmed = control && rises > 1.5 && carries;
+    lab.chapter(include_str!("gold.html"), &values, confirmed, vec![raw, parameters, transfer])
 }
 
 #[cfg(test)]

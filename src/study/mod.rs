@@ -13,12 +13,12 @@ use maud::{Markup, PreEscaped, html};
 use thiserror::Error;
 
 use crate::{
-    curves::draw::Plot,
+    curves::draw::{Axis, Line, Mark, Plot, Series},
     files::{self, Before, FolderDraft},
     optics::{Frame, TermSelection, albedo, colour::Encoding, geometry::direction},
-    parameter::{Value, Values},
+    parameter::Values,
     reference::{self, Picture},
-    reflection::Surface,
+    reflection::{ModelEntry, Surface},
     registry::Registry,
     render::capture::png,
     scene::{
@@ -35,9 +35,10 @@ mod gold;
 mod layers;
 mod lobe;
 mod report;
+mod text;
 
 /// The number of steps reported by [`run`].
-pub const STEPS: u64 = 7;
+pub const STEPS: u64 = CHAPTERS.len() as u64 + 1;
 
 /// File name of the report in its folder.
 pub const PAGE: &str = "index.html";
@@ -112,7 +113,7 @@ struct Chapter {
     title: &'static str,
     body: Markup,
     /// One sentence for the summary.
-    finding: String,
+    finding: Markup,
     /// True if the numbers confirm the phenomenon.
     shown: bool,
     tables: Vec<Table>,
@@ -161,39 +162,40 @@ struct Lab<'a> {
     tables: u32,
 }
 
-/// A setting of a model.
-type Setting = (&'static str, Value);
-
-/// A setting that is a choice.
-fn choice(name: &'static str, value: &'static str) -> Setting {
-    (name, Value::Choice(value.into()))
+/// A model, and values of its parameters as on the command line: `fresnel=none alpha_x=0.8`. Of two values of one
+/// parameter the later one counts.
+fn set<'r>(registry: &'r Registry, id: &str, settings: &str) -> Result<(&'r ModelEntry, Values), StudyError> {
+    let model = registry.model(id).ok_or_else(|| StudyError::NoModel(id.to_owned()))?;
+    let mut values = Values::default();
+    for setting in settings.split_whitespace() {
+        let (name, value) = setting.split_once('=').unwrap_or((setting, ""));
+        let parsed = model.parameter(name).and_then(|p| Some((p.name, p.parse(value).ok()?)));
+        let Some((name, value)) = parsed else {
+            let [model, name, value] = [id, name, value].map(str::to_owned);
+            return Err(StudyError::NoSetting { model, name, value });
+        };
+        values.set(name, value);
+    }
+    Ok((model, values))
 }
 
-/// A setting that is a number.
-fn number(name: &'static str, value: f64) -> Setting {
-    (name, Value::Number(value as f32))
+/// The rows of a table, with | between their cells; what is missing at the end of a row is empty.
+fn cells<const N: usize>(table: &'static str) -> impl Iterator<Item = [&'static str; N]> {
+    table.lines().map(|line| {
+        let mut row = line.split('|').map(str::trim);
+        std::array::from_fn(|_| row.next().unwrap_or_default())
+    })
 }
 
 /// The settings of both roughnesses of the microfacet models.
-fn alpha(value: f64) -> [Setting; 2] {
-    [number("alpha_x", value), number("alpha_y", value)]
+fn alpha(value: f64) -> String {
+    format!("alpha_x={value} alpha_y={value}")
 }
 
 impl Lab<'_> {
-    /// A model with settings, which it must have and allow.
-    fn surface(&self, id: &str, settings: &[Setting]) -> Result<Arc<dyn Surface>, StudyError> {
-        let model = self.registry.model(id).ok_or_else(|| StudyError::NoModel(id.to_owned()))?;
-        let mut values = Values::default();
-        for (name, value) in settings {
-            if !model.parameter(name).is_some_and(|p| p.allows(value)) {
-                return Err(StudyError::NoSetting {
-                    model: id.to_owned(),
-                    name: (*name).to_owned(),
-                    value: value.to_string(),
-                });
-            }
-            values.set(*name, value.clone());
-        }
+    /// A model with [settings](set), which it must have and allow.
+    fn surface(&self, id: &str, settings: &str) -> Result<Arc<dyn Surface>, StudyError> {
+        let (model, values) = set(self.registry, id, settings)?;
         Ok(model.instantiate(&values, Encoding::Srgb))
     }
 
@@ -225,28 +227,6 @@ impl Lab<'_> {
         let settings = reference::Settings { width, height, samples: 4, terms };
         reference::render(&scene, self.registry, &settings)
     }
-
-    /// A numbered figure.
-    fn figure(&mut self, content: &Markup, caption: &Markup) -> Markup {
-        self.figures += 1;
-        html! {
-            figure {
-                (content)
-                figcaption { b { "Figure " (self.figures) ". " } (caption) }
-            }
-        }
-    }
-
-    /// A numbered table: the first column is words, the rest numbers.
-    fn table(&mut self, caption: &Markup, head: &[&str], rows: &[Vec<String>]) -> Markup {
-        self.tables += 1;
-        html! {
-            figure .table {
-                figcaption { b { "Table " (self.tables) ". " } (caption) }
-                (grid(head, rows))
-            }
-        }
-    }
 }
 
 /// Text with subscripts: in `k_d` the d is a subscript.
@@ -261,7 +241,7 @@ fn words(text: &str) -> Markup {
     }
 }
 
-/// A table without a number.
+/// A table: the first column is words, the rest numbers.
 fn grid(head: &[&str], rows: &[Vec<String>]) -> Markup {
     html! {
         div .scroll {
@@ -294,22 +274,55 @@ fn image(rgb8: &[u8], (width, height): (u32, u32), alt: &str) -> Result<Markup, 
 }
 
 /// Pictures side by side, at most three in a row, each with a short caption.
-fn pictures(all: &[(Markup, &str)]) -> Markup {
+fn pictures(all: &[(Markup, impl AsRef<str>)]) -> Markup {
     row(all.len().min(3), all)
 }
 
 /// Pictures side by side, with this many in a row.
-fn row(columns: usize, all: &[(Markup, &str)]) -> Markup {
+fn row(columns: usize, all: &[(Markup, impl AsRef<str>)]) -> Markup {
     html! {
         div .pictures style=(format!("--columns:{columns}")) {
-            @for (picture, words) in all { div { (picture) p { (words) } } }
+            @for (picture, words) in all { div { (picture) p { (words.as_ref()) } } }
         }
     }
 }
 
-/// A plot for the page.
+/// Contents below each other, each under its name.
+fn stack(all: &[(impl AsRef<str>, Markup)]) -> Markup {
+    html! { @for (name, content) in all { div { p .over { (name.as_ref()) } (content) } } }
+}
+
+/// Names below the objects of a picture.
+fn labels(names: &[&str]) -> Markup {
+    html! { div .labels style=(format!("--columns:{}", names.len())) { @for name in names { span { (name) } } } }
+}
+
+/// A series of a plot, with its colour, line and mark.
+fn series(
+    name: impl Into<String>,
+    points: Vec<(f64, f64)>,
+    (colour, line, mark): (usize, Line, Mark),
+) -> Series {
+    Series { name: name.into(), points, colour, line, mark }
+}
+
+/// A plot for the page, this high, with a legend.
+fn plot(title: &str, x: Axis, y: Axis, height: u32, series: Vec<Series>) -> Markup {
+    svg(&Plot { title: title.to_owned(), x, y, series, size: (720, height), ..Plot::default() })
+}
+
 fn svg(plot: &Plot) -> Markup {
     PreEscaped(plot.page_svg())
+}
+
+/// The value of a curve at one of its angles.
+fn at(curve: &[(f64, f64)], angle: f64) -> f64 {
+    curve.iter().find(|p| (p.0 - angle).abs() < 0.1).map_or(f64::NAN, |p| p.1)
+}
+
+/// The smallest and the largest value of a curve.
+fn ends(curve: &[(f64, f64)]) -> (f64, f64) {
+    curve.iter().fold((f64::INFINITY, 0.0), |(least, most), p| (p.1.min(least), p.1.max(most)))
 }
 
 /// The directional albedo of a surface by term, for a viewer at an angle from the normal: diffuse and
@@ -334,11 +347,28 @@ fn fixed(x: f64, digits: usize) -> String {
     format!("{x:.digits$}").replace('-', "−")
 }
 
+/// A fraction in per cent.
+fn share(x: f64, digits: usize) -> String {
+    format!("{}\u{a0}%", fixed(100.0 * x, digits))
+}
+
 /// A difference in per cent with its sign.
 fn percent(x: f64) -> String {
     let p = 100.0 * x;
     if p.abs() < 0.05 { "±0.0\u{a0}%".to_owned() } else { format!("{p:+.1}\u{a0}%").replace('-', "−") }
 }
+
+/// The chapters: the id in the page, the name of the step, and the calculation. The first [`PHENOMENA`] are about
+/// phenomena.
+const CHAPTERS: [(&str, &str, fn(&mut Lab) -> Result<Chapter, StudyError>); 6] = [
+    ("phenomenon-1", "Fresnel effect", fresnel::chapter),
+    ("phenomenon-2", "conservation of energy", furnace::chapter),
+    ("phenomenon-3", "gold under other lights", gold::chapter),
+    ("phenomenon-4", "shape of the specular lobe", lobe::chapter),
+    ("layers", "layers of OpenPBR", layers::chapter),
+    ("extent", "light with extent", extent::chapter),
+];
+const PHENOMENA: usize = 4;
 
 /// Runs the study. `tell` is called [`STEPS`] times with the name of the next step.
 ///
@@ -346,22 +376,12 @@ fn percent(x: f64) -> String {
 /// Returns an error if a model, a scene or data of the program does not match the study's expectations.
 pub fn run(registry: &Registry, settings: Settings, tell: &dyn Fn(&str)) -> Result<Study, StudyError> {
     let mut lab = Lab { registry, settings, figures: 0, tables: 0 };
-    tell("Fresnel effect");
-    let fresnel = fresnel::chapter(&mut lab)?;
-    tell("conservation of energy");
-    let furnace = furnace::chapter(&mut lab)?;
-    tell("gold under other lights");
-    let gold = gold::chapter(&mut lab)?;
-    tell("shape of the specular lobe");
-    let lobe = lobe::chapter(&mut lab)?;
-    tell("layers of OpenPBR");
-    let layers = layers::chapter(&mut lab)?;
-    tell("light with extent");
-    let extent = extent::chapter(&mut lab)?;
+    let mut chapters = Vec::new();
+    for (id, step, chapter) in CHAPTERS {
+        tell(step);
+        chapters.push((id, chapter(&mut lab)?));
+    }
     tell("writing the report");
-    let phenomena = [fresnel, furnace, gold, lobe];
-    let beyond = [("layers", layers), ("extent", extent)];
-    let html = report::page(&phenomena, &beyond, settings);
-    let beyond = beyond.into_iter().map(|(_, chapter)| chapter);
-    Ok(Study { html, tables: phenomena.into_iter().chain(beyond).flat_map(|c| c.tables).collect() })
+    let html = report::page(&mut lab, &chapters)?;
+    Ok(Study { html, tables: chapters.into_iter().flat_map(|(_, chapter)| chapter.tables).collect() })
 }

@@ -4,8 +4,10 @@ use glam::{Vec2, Vec3};
 
 use super::{
     Outcome,
-    lamp::{arguments, place, sample, words},
-    sample::{any_direction, random},
+    lamp::{arguments, sample, words},
+    noticed,
+    sample::{any_direction, place, random},
+    words::{run, vectors},
 };
 use crate::{
     light::{
@@ -58,17 +60,14 @@ pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
         let emitter = (light.instantiate)(&values, Encoding::Srgb);
         let own = emitter.sample(&record, p, u);
         let (parameters, files) = words(light, &values);
-        let run = |program: &Program, last: &[f32], results: &mut [u32]| {
+        let with = |last: &[f32]| {
             let mut all = arguments(&record, &parameters, p);
             all.extend(last.iter().map(|n| n.to_bits()));
-            program.run_with(&files, &all, results).map_err(|e| e.to_string())
+            all
         };
-        let number = |words: &[u32], at: usize| f32::from_bits(words[at]);
-        let vector = |words: &[u32], at: usize| Vec3::from_array([0, 1, 2].map(|k| number(words, at + k)));
-        let mut results = [0; 7];
-        run(&sampled, &u.to_array(), &mut results)?;
-        let other =
-            Sample { l: vector(&results, 0), radiance: vector(&results, 3), pdf: number(&results, 6) };
+        let results: [u32; 7] = run(&sampled, &files, &with(&u.to_array()))?;
+        let [l, radiance] = vectors(&results);
+        let other = Sample { l, radiance, pdf: f32::from_bits(results[6]) };
         for (language, Sample { l, radiance, pdf }) in [("Rust", own), ("WGSL", other)] {
             if !(l.is_finite() && radiance.is_finite() && pdf.is_finite()) {
                 return case(format!(
@@ -93,9 +92,9 @@ pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
         // Another direction too, which mostly misses the light.
         let l = if i % 2 == 0 { own.l } else { any_direction(&mut seed) };
         let here = emitter.seen(&record, p, l);
-        let mut results = [0; 5];
-        run(&seen, &l.to_array(), &mut results)?;
-        let there = (vector(&results, 0), number(&results, 3));
+        let results: [u32; 5] = run(&seen, &files, &with(&l.to_array()))?;
+        let [radiance] = vectors(&results);
+        let there = (radiance, f32::from_bits(results[3]));
         let agrees = near3(here.radiance, there.0) && near(here.pdf, there.1);
         at_edges += u32::from(!(same && fits && agrees));
         if at_edges as f32 > AT_EDGES * TRIES as f32 {
@@ -111,10 +110,7 @@ pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
         }
         shines += u32::from(own.pdf > 0.0 && own.radiance != Vec3::ZERO);
     }
-    match shines {
-        0 => Err("it gives no light anywhere, so a wrong twin would not be noticed".to_owned()),
-        _ => Ok(()),
-    }
+    noticed(shines > 0, "it gives no light anywhere, so a wrong twin")
 }
 
 #[cfg(test)]

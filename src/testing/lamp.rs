@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::sample::{any_direction, random, random_value};
+use super::sample::{any_direction, place, random, values_of};
 use crate::{
     light::{LightEntry, LightRecord},
     optics::colour::Encoding,
@@ -11,10 +11,7 @@ use crate::{
 
 /// A light of a type somewhere in the default room, with parameters as a scene may have them.
 pub(super) fn sample(light: &LightEntry, seed: &mut u64) -> (Values, LightRecord) {
-    let mut values = Values::default();
-    for p in light.parameters {
-        values.set(p.name, random_value(p, seed));
-    }
+    let values = values_of(light.parameters, seed);
     let position = place(seed);
     let direction = any_direction(seed);
     let d = light.declaration;
@@ -26,11 +23,6 @@ pub(super) fn sample(light: &LightEntry, seed: &mut u64) -> (Values, LightRecord
         intensity: 0.1 + 100.0 * random(seed),
     };
     (values, record)
-}
-
-/// A point in the default room.
-pub(super) fn place(seed: &mut u64) -> Vec3 {
-    Vec3::from_array([0; 3].map(|_| 10.0 * random(seed)))
 }
 
 /// The parameters of a light as its function in WGSL takes them, and the numbers of its files.

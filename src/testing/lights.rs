@@ -6,8 +6,10 @@ use glam::Vec3;
 
 use super::{
     Outcome, extended,
-    lamp::{arguments, place, sample, words},
-    sample::random,
+    lamp::{arguments, sample, words},
+    noticed,
+    sample::{place, random},
+    words::{run, vectors},
 };
 use crate::{
     light::{Incident, LightEntry, LightRecord},
@@ -60,11 +62,9 @@ pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
         let (values, record) = sample(light, &mut seed);
         let p = place(&mut seed);
         let (own, files) = words(light, &values);
-        let mut results = [0; 7];
-        program.run_with(&files, &arguments(&record, &own, p), &mut results).map_err(|e| e.to_string())?;
-        let [x, y, z, red, green, blue, everywhere] = results;
-        let vector = |words: [u32; 3]| Vec3::from_array(words.map(f32::from_bits));
-        let wgsl = (vector([x, y, z]), vector([red, green, blue]));
+        let results: [u32; 7] = run(&program, &files, &arguments(&record, &own, p))?;
+        let ([direction, intensity], everywhere) = (vectors(&results), results[6]);
+        let wgsl = (direction, intensity);
         let (l, rust, uniform) = flat((light.instantiate)(&values, Encoding::Srgb).incident(&record, p));
         for (language, value, direction) in [("Rust", rust, l), ("WGSL", wgsl.1, wgsl.0)] {
             if !(value.is_finite() && direction.is_finite()) {
@@ -89,10 +89,7 @@ pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
         }
         sensitive |= error(1.0005 * rust) > TOLERANCE;
     }
-    match sensitive {
-        true => Ok(()),
-        false => Err("it gives no light anywhere, so a wrong twin would not be noticed".to_owned()),
-    }
+    noticed(sensitive, "it gives no light anywhere, so a wrong twin")
 }
 
 /// Checks that light is finite and not negative, comes from a direction of unit length, is proportional to

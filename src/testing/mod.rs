@@ -26,6 +26,7 @@ pub mod meshes;
 pub mod parity;
 mod sample;
 pub mod shadings;
+mod words;
 
 pub use sample::{direction, random, random_values};
 
@@ -46,6 +47,11 @@ fn assert(id: &str, outcome: Outcome) {
     if let Err(what) = outcome {
         panic!("{id}: {what}");
     }
+}
+
+/// Fails if nothing would have noticed something slightly wrong.
+fn noticed(sensitive: bool, why: &str) -> Outcome {
+    if sensitive { Ok(()) } else { Err(format!("{why} would not be noticed")) }
 }
 
 /// The outcome of a registration, of something new or as a replacement of something built in.

@@ -4,12 +4,13 @@ use glam::Vec3;
 use naga::Module;
 
 use super::{
-    Outcome,
+    Outcome, noticed,
     sample::{direction, random, random_values},
+    words::{bits, run, vectors, words},
 };
 use crate::{
     optics::{Frame, Terms, colour::Encoding},
-    parameter::{self, ParameterKind, Value, Values},
+    parameter::{self, Values},
     reflection::{Ambient, ModelEntry},
     registry::check,
     render::capture::evaluate::evaluate,
@@ -43,19 +44,6 @@ fn program(module: &Module, function: &str) -> Result<Program, String> {
     Program::with_table(module, function, "parameter_table").map_err(|e| format!("{function}: {e}"))
 }
 
-/// Bytes as words.
-pub(super) fn words(bytes: &[u8]) -> Vec<u32> {
-    bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
-}
-
-fn put(to: &mut Vec<u32>, v: Vec3) {
-    to.extend(v.to_array().map(f32::to_bits));
-}
-
-fn put_frame(to: &mut Vec<u32>, frame: &Frame) {
-    [frame.n, frame.t, frame.b].into_iter().for_each(|v| put(to, v));
-}
-
 /// The parameters of a model in the layout of its WGSL, where a struct has at least one field.
 fn parameter_words(model: &ModelEntry, values: &Values) -> Vec<u32> {
     match model.parameters {
@@ -78,23 +66,16 @@ impl<'a> Twin<'a> {
     }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Result<Terms, String> {
-        let mut arguments = Vec::new();
-        put(&mut arguments, l);
-        put(&mut arguments, v);
-        put_frame(&mut arguments, frame);
-        arguments.extend(&self.parameters);
-        let mut results = [0; 9];
+        let directions = [l, v, frame.n, frame.t, frame.b];
+        let arguments: Vec<_> = bits(&directions).chain(self.parameters.iter().copied()).collect();
         let (takes, gives) = (self.program.argument_words(), self.program.result_words());
-        if (takes, gives) != (arguments.len(), results.len()) {
+        if (takes, gives) != (arguments.len(), 9) {
+            let all = arguments.len();
             return Err(format!(
-                "response takes {takes} numbers and gives {gives}, but must take {} and give {}",
-                arguments.len(),
-                results.len()
+                "response takes {takes} numbers and gives {gives}, but must take {all} and give 9"
             ));
         }
-        self.program.run_with(&self.row, &arguments, &mut results).map_err(|e| e.to_string())?;
-        let at = |i: usize| Vec3::from_array([0, 1, 2].map(|k| f32::from_bits(results[i + k])));
-        Ok(Terms { ambient: at(0), diffuse: at(3), specular: at(6) })
+        Ok(vectors::<3>(&run::<9>(self.program, &self.row, &arguments)?).into())
     }
 }
 
@@ -102,17 +83,11 @@ impl<'a> Twin<'a> {
 /// any display.
 #[must_use]
 pub fn difference(a: Terms, b: Terms) -> f32 {
-    [(a.ambient, b.ambient), (a.diffuse, b.diffuse), (a.specular, b.specular)]
-        .map(|(a, b)| (a - b).abs() / b.abs().max(Vec3::splat(1e-2)))
-        .into_iter()
+    let errors =
+        a.each().into_iter().zip(b.each()).map(|(a, b)| (a - b).abs() / b.abs().max(Vec3::splat(1e-2)));
+    errors
         .flat_map(|error| error.to_array())
         .fold(0.0, |worst, error| if error.is_nan() { f32::INFINITY } else { worst.max(error) })
-}
-
-/// A response multiplied by a factor.
-fn scaled(terms: Terms, factor: f32) -> Terms {
-    let Terms { ambient, diffuse, specular } = terms;
-    Terms { ambient: factor * ambient, diffuse: factor * diffuse, specular: factor * specular }
 }
 
 /// A comparison, which records whether a slightly wrong twin would have been detected.
@@ -132,15 +107,13 @@ impl Comparison {
             return Err(format!("{}: WGSL gives {wgsl:?}, Rust {rust:?}: {error:.1e} apart", case()));
         }
         // 0.05 % more where the tolerance is 1e-4.
-        self.sensitive |= difference(wgsl, scaled(rust, 1.0 + 5.0 * self.tolerance)) > self.tolerance;
+        let wrong = rust.each().map(|term| (1.0 + 5.0 * self.tolerance) * term);
+        self.sensitive |= difference(wgsl, wrong.into()) > self.tolerance;
         Ok(())
     }
 
     fn done(&self) -> Outcome {
-        match self.sensitive {
-            true => Ok(()),
-            false => Err("all responses are black, so a wrong one would not be noticed".to_owned()),
-        }
+        noticed(self.sensitive, "all responses are black, so a wrong one")
     }
 }
 
@@ -205,23 +178,17 @@ pub fn under_uniform_light(model: &ModelEntry, sources: &Sources) -> Outcome {
         let row = words(&model.row(&values, Encoding::Srgb, true));
         for _ in 0..50 {
             let v = direction(&mut seed);
-            let mut arguments = Vec::new();
-            put(&mut arguments, v);
-            put_frame(&mut arguments, &Frame::LOCAL);
-            arguments.extend(parameter_words(model, &values));
-            let run = |row: &[u32]| {
-                let mut results = [0; 3];
-                let ran = program.run_with(row, &arguments, &mut results);
-                ran.map(|()| Vec3::from_array(results.map(f32::from_bits))).map_err(|e| e.to_string())
-            };
-            let wgsl = run(&row)?;
+            let directions = [v, Frame::LOCAL.n, Frame::LOCAL.t, Frame::LOCAL.b];
+            let arguments: Vec<_> = bits(&directions).chain(parameter_words(model, &values)).collect();
+            let run = |row: &[u32]| Ok::<_, String>(vectors(&run::<3>(&program, row, &arguments)?));
+            let [wgsl] = run(&row)?;
             let rust = surface.ambient_response(v, &Frame::LOCAL).max(Vec3::ZERO);
             let close = (wgsl - rust).abs().max_element() <= TOLERANCE;
             if !(close && wgsl.is_finite()) {
                 return Err(format!("{values:?} v {v}: in uniform light WGSL gives {wgsl}, Rust {rust}"));
             }
             let by_curve = model.declaration.ambient == Ambient::Albedo && rust.max_element() > 1e-2;
-            if by_curve && run(&vec![0; row.len()])? == wgsl {
+            if by_curve && run(&vec![0; row.len()])? == [wgsl] {
                 return Err("the curve in the row is not read".to_owned());
             }
         }
@@ -236,7 +203,7 @@ pub fn under_uniform_light(model: &ModelEntry, sources: &Sources) -> Outcome {
 pub fn on_gpu(model: &ModelEntry, sources: &Sources) -> Outcome {
     let mut seed = 7;
     // Every choice should occur.
-    let choices = model.parameters.iter().filter(|p| matches!(p.kind, ParameterKind::Choice { .. })).count();
+    let choices = model.parameters.iter().filter(|p| !p.kind.options().is_empty()).count();
     let mut comparison = Comparison::new(TOLERANCE);
     for _ in 0..8 * (1 + choices) {
         let values = random_values(model, &mut seed);
@@ -271,19 +238,12 @@ pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources, seed: &mut u64)
         let mut values = Values::default();
         for p in model.parameters {
             let high = if set < 2 { set == 1 } else { random(seed) < 0.5 };
-            let value = match p.kind {
-                ParameterKind::Number { min, max, .. } => Value::Number(if high { max } else { min }),
-                ParameterKind::Integer { min, max, slider_max, .. } => {
-                    Value::Integer(if high { max.unwrap_or(slider_max) } else { min })
-                }
-                ParameterKind::Colour { .. } => Value::Colour([if high { 255 } else { 0 }; 3]),
-                ParameterKind::Triple { min, max, .. } => Value::Triple([if high { max } else { min }; 3]),
-                ParameterKind::Choice { options, .. } => {
-                    let i = (random(seed) * options.len() as f32) as usize;
-                    Value::Choice(options[i].0.into())
-                }
-                ParameterKind::File { .. } => p.default_value(),
+            let ends = p.kind.ends();
+            let i = match p.kind.limits() {
+                Some(_) => usize::from(high),
+                None => (random(seed) * ends.len() as f32) as usize,
             };
+            let value = ends.into_iter().nth(i).unwrap_or_else(|| p.default_value());
             values.set(p.name, value);
         }
         let answers = evaluate(sources, model, &values, Encoding::Srgb, &pairs).map_err(|e| e.to_string())?;
@@ -291,9 +251,7 @@ pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources, seed: &mut u64)
         for ((l, v), gpu) in pairs.iter().zip(answers) {
             let cpu = surface.response(*l, *v, &Frame::LOCAL);
             let case = || format!("{values:?} l {l} v {v}: GPU {gpu:?}, CPU {cpu:?}");
-            for (g, c) in
-                [(gpu.ambient, cpu.ambient), (gpu.diffuse, cpu.diffuse), (gpu.specular, cpu.specular)]
-            {
+            for (g, c) in gpu.each().into_iter().zip(cpu.each()) {
                 let legal = !model.declaration.laws.non_negative || g.min_element() >= -1e-6;
                 if !(g.is_finite() && c.is_finite() && legal) {
                     return Err(case());
@@ -310,8 +268,5 @@ pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources, seed: &mut u64)
             }
         }
     }
-    match sensitive {
-        true => Ok(()),
-        false => Err("all responses are black, so a wrong one would not be noticed".to_owned()),
-    }
+    noticed(sensitive, "all responses are black, so a wrong one")
 }

@@ -28,31 +28,29 @@ pub(super) fn any_direction(seed: &mut u64) -> Vec3 {
 }
 
 /// A legal value.
-pub(super) fn random_value(p: &Parameter, seed: &mut u64) -> Value {
+fn random_value(p: &Parameter, seed: &mut u64) -> Value {
     let r = random(seed);
     match p.kind {
-        ParameterKind::Number { min, max, .. } => Value::Number(min + r * (max - min)),
-        ParameterKind::Integer { min, max, slider_max, .. } => {
-            Value::Integer(min + (r * (max.unwrap_or(slider_max) - min) as f32) as i64)
+        ParameterKind::Colour(_) => {
+            p.kind.of_numbers([r, random(seed), random(seed)].map(|v| (255.0 * v).into()))
         }
-        ParameterKind::Colour { .. } => {
-            Value::Colour([(255.0 * r) as u8, (255.0 * random(seed)) as u8, (255.0 * random(seed)) as u8])
-        }
-        ParameterKind::Triple { min, max, .. } => {
-            Value::Triple([0; 3].map(|_| min + random(seed) * (max - min)))
-        }
-        ParameterKind::Choice { options, .. } => {
-            Value::Choice(options[(r * options.len() as f32) as usize].0.into())
-        }
-        ParameterKind::File { .. } => p.default_value(),
+        _ => p.kind.random(1.0, r, &mut || random(seed)),
     }
 }
 
 /// Legal values of all parameters of a model.
 pub fn random_values(model: &ModelEntry, seed: &mut u64) -> Values {
+    values_of(model.parameters, seed)
+}
+
+/// Legal values of parameters.
+pub(super) fn values_of(parameters: &[Parameter], seed: &mut u64) -> Values {
     let mut values = Values::default();
-    for p in model.parameters {
-        values.set(p.name, random_value(p, seed));
-    }
+    parameters.iter().for_each(|p| values.set(p.name, random_value(p, seed)));
     values
+}
+
+/// A point in the default room.
+pub(super) fn place(seed: &mut u64) -> Vec3 {
+    Vec3::from_array([0; 3].map(|_| 10.0 * random(seed)))
 }

@@ -5,13 +5,13 @@ use std::cell::Cell;
 use glam::{Vec3, Vec3Swizzles as _};
 
 use super::{
-    Outcome,
-    parity::{self, TOLERANCE},
-    sample::{any_direction, random, random_value},
+    Outcome, noticed,
+    parity::TOLERANCE,
+    sample::{any_direction, place, random, values_of},
+    words::{bits, run, words},
 };
 use crate::{
     optics::{Frame, colour::Encoding},
-    parameter::Values,
     registry::compose::compose_shading,
     shader::{check::validate, compose::Sources, interpret::Program},
     shading::{Corner, Lighting, Shading, ShadingEntry, Stage, Varying},
@@ -40,10 +40,6 @@ impl Lighting for StandIn {
     }
 }
 
-fn place(seed: &mut u64) -> Vec3 {
-    Vec3::from_array([0; 3].map(|_| 10.0 * random(seed)))
-}
-
 /// A tangent as after interpolation and scaling: of any length, sometimes zero.
 fn tangent(seed: &mut u64) -> Vec3 {
     if random(seed) < 0.05 { Vec3::ZERO } else { 2.0 * random(seed) * any_direction(seed) }
@@ -70,14 +66,6 @@ fn varying(seed: &mut u64) -> Varying {
     }
 }
 
-fn values(shading: &ShadingEntry, seed: &mut u64) -> Values {
-    let mut values = Values::default();
-    for p in shading.parameters {
-        values.set(p.name, random_value(p, seed));
-    }
-    values
-}
-
 /// Checks that the light is evaluated only at the declared stage and that, for [`Stage::Polygon`], the
 /// corners of a polygon have equal values except for their positions.
 ///
@@ -87,7 +75,7 @@ pub fn stage(shading: &ShadingEntry) -> Outcome {
     let mut seed = 41;
     let declared = shading.declaration.stage;
     for _ in 0..100 {
-        let own = (shading.instantiate)(&values(shading, &mut seed), Encoding::Srgb);
+        let own = (shading.instantiate)(&values_of(shading.parameters, &mut seed), Encoding::Srgb);
         let [at_corner, at_pixel] = [StandIn::default(), StandIn::default()];
         let first = corner(&mut seed);
         let passed = own.vertex(&at_corner, &first);
@@ -129,10 +117,8 @@ struct Twin {
 
 impl Twin {
     fn run<const N: usize>(&self, row: &[u32], arguments: &[Vec3]) -> Result<[f32; N], String> {
-        let words: Vec<u32> = arguments.iter().flat_map(|v| v.to_array()).map(f32::to_bits).collect();
-        let mut results = [0; N];
-        self.program.run_with(row, &words, &mut results).map_err(|e| format!("{}: {e}", self.name))?;
-        Ok(results.map(f32::from_bits))
+        let results = run(&self.program, row, &bits(arguments).collect::<Vec<_>>());
+        Ok(results.map_err(|e| format!("{}: {e}", self.name))?.map(f32::from_bits))
     }
 }
 
@@ -153,18 +139,15 @@ pub fn parity(shading: &ShadingEntry, sources: &Sources) -> Outcome {
     let mut seed = 42;
     let mut sensitive = false;
     for _ in 0..SAMPLES {
-        let values = values(shading, &mut seed);
-        let row = parity::words(&shading.row(&values, Encoding::Srgb));
+        let values = values_of(shading.parameters, &mut seed);
+        let row = words(&shading.row(&values, Encoding::Srgb));
         let own = (shading.instantiate)(&values, Encoding::Srgb);
         let (at, between) = (corner(&mut seed), varying(&mut seed));
         at_corner(&*own, &vertex, &row, &at).map_err(|what| format!("{values:?} {at:?}: {what}"))?;
         let lit = in_pixel((&*own, &pixel), &row, &between, &mut seed);
         sensitive |= lit.map_err(|what| format!("{values:?} {between:?}: {what}"))?;
     }
-    match sensitive {
-        true => Ok(()),
-        false => Err("all pixels are black, so a wrong twin would not be noticed".to_owned()),
-    }
+    noticed(sensitive, "all pixels are black, so a wrong twin")
 }
 
 fn compared(what: &str, wgsl: Vec3, rust: Vec3) -> Outcome {

@@ -17,6 +17,8 @@
 //! whose left factor is zero is zero, and its right factor is not evaluated; nor is the branch of a condition
 //! that does not apply.
 
+use std::cmp::Ordering;
+
 use super::mathematics::{Atom, MAX_DEPTH, beyond_limits, parse as atoms, write};
 
 /// Letters of directions, whose scalar products are written `N·L`.
@@ -116,97 +118,48 @@ pub trait Scope {
     fn call(&mut self, name: &str, arguments: &[String]) -> Result<Value, String>;
 }
 
-/// Built-in functions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Function {
-    Max,
-    Min,
-    Exp,
-    Ln,
-    Root,
-    Sin,
-    Cos,
-    Tan,
-    Arccos,
-    Arcsin,
-    Arctan,
-    Clamp,
-    Mean,
-    Abs,
-    Floor,
-    Ceil,
-    Fract,
-}
+/// The names of the built-in functions.
+const FUNCTIONS: [&str; 17] = [
+    "max", "min", "exp", "ln", "√", "sin", "cos", "tan", "arccos", "arcsin", "arctan", "clamp", "mean",
+    "abs", "floor", "ceil", "fract",
+];
 
 /// True for the name of a built-in function.
 #[must_use]
 pub fn is_function(word: &str) -> bool {
-    Function::named(word).is_some()
+    FUNCTIONS.contains(&word)
 }
 
-impl Function {
-    fn named(word: &str) -> Option<Self> {
-        Some(match word {
-            "max" => Self::Max,
-            "min" => Self::Min,
-            "exp" => Self::Exp,
-            "ln" => Self::Ln,
-            "√" => Self::Root,
-            "sin" => Self::Sin,
-            "cos" => Self::Cos,
-            "tan" => Self::Tan,
-            "arccos" => Self::Arccos,
-            "arcsin" => Self::Arcsin,
-            "arctan" => Self::Arctan,
-            "clamp" => Self::Clamp,
-            "mean" => Self::Mean,
-            "abs" => Self::Abs,
-            "floor" => Self::Floor,
-            "ceil" => Self::Ceil,
-            "fract" => Self::Fract,
-            _ => return None,
-        })
-    }
-
-    /// The minimum and maximum number of arguments.
-    fn arity(self) -> (usize, usize) {
-        match self {
-            Self::Max | Self::Min => (2, 8),
-            Self::Clamp => (3, 3),
-            _ => (1, 1),
+/// The value of a built-in function.
+fn apply(function: &str, x: &[Value]) -> Result<Value, String> {
+    let first = x.first().copied().ok_or("a function without an argument")?;
+    let fold = |f: fn(f64, f64) -> f64| -> Result<Value, String> {
+        x[1..].iter().try_fold(first, |a, b| Ok(a.zip(*b, a.common(*b)?, f)))
+    };
+    Ok(match function {
+        "max" => fold(f64::max)?,
+        "min" => fold(f64::min)?,
+        "clamp" => apply("min", &[apply("max", &[first, x[1]])?, x[2]])?,
+        "√" if first.degrees % 2 == 0 => first.map(first.degrees / 2, f64::sqrt),
+        "√" => return Err("the root of an angle".to_owned()),
+        "sin" => first.radians()?.map(0, f64::sin),
+        "cos" => first.radians()?.map(0, f64::cos),
+        "tan" => first.radians()?.map(0, f64::tan),
+        // Equations have angles in degrees.
+        "arccos" => first.plain(function)?.map(1, |c| c.clamp(-1.0, 1.0).acos().to_degrees()),
+        "arcsin" => first.plain(function)?.map(1, |s| s.clamp(-1.0, 1.0).asin().to_degrees()),
+        "arctan" => first.plain(function)?.map(1, |t| t.atan().to_degrees()),
+        "abs" => first.map(first.degrees, f64::abs),
+        "mean" => {
+            let mean = first.rgb.iter().sum::<f64>() / 3.0;
+            Value { rgb: [mean; 3], is_colour: false, ..first }
         }
-    }
-
-    fn of(self, x: &[Value]) -> Result<Value, String> {
-        let first = x.first().copied().ok_or("a function without an argument")?;
-        let fold = |f: fn(f64, f64) -> f64| -> Result<Value, String> {
-            x[1..].iter().try_fold(first, |a, b| Ok(a.zip(*b, a.common(*b)?, f)))
-        };
-        Ok(match self {
-            Self::Max => fold(f64::max)?,
-            Self::Min => fold(f64::min)?,
-            Self::Clamp => Self::Min.of(&[Self::Max.of(&[first, x[1]])?, x[2]])?,
-            Self::Exp => first.plain("exp")?.map(0, f64::exp),
-            Self::Ln => first.plain("ln")?.map(0, f64::ln),
-            Self::Root if first.degrees % 2 == 0 => first.map(first.degrees / 2, f64::sqrt),
-            Self::Root => return Err("the root of an angle".to_owned()),
-            Self::Sin => first.radians()?.map(0, f64::sin),
-            Self::Cos => first.radians()?.map(0, f64::cos),
-            Self::Tan => first.radians()?.map(0, f64::tan),
-            // Equations have angles in degrees.
-            Self::Arccos => first.plain("arccos")?.map(1, |c| c.clamp(-1.0, 1.0).acos().to_degrees()),
-            Self::Arcsin => first.plain("arcsin")?.map(1, |s| s.clamp(-1.0, 1.0).asin().to_degrees()),
-            Self::Arctan => first.plain("arctan")?.map(1, |t| t.atan().to_degrees()),
-            Self::Abs => first.map(first.degrees, f64::abs),
-            Self::Floor => first.plain("floor")?.map(0, f64::floor),
-            Self::Ceil => first.plain("ceil")?.map(0, f64::ceil),
-            Self::Fract => first.plain("fract")?.map(0, |v| v - v.floor()),
-            Self::Mean => {
-                let mean = first.rgb.iter().sum::<f64>() / 3.0;
-                Value { rgb: [mean; 3], is_colour: false, ..first }
-            }
-        })
-    }
+        "exp" => first.plain(function)?.map(0, f64::exp),
+        "ln" => first.plain(function)?.map(0, f64::ln),
+        "floor" => first.plain(function)?.map(0, f64::floor),
+        "ceil" => first.plain(function)?.map(0, f64::ceil),
+        _ => first.plain(function)?.map(0, |v| v - v.floor()),
+    })
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -216,15 +169,6 @@ enum Sign {
     Multiply,
     Divide,
     Power,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Relation {
-    Less,
-    AtMost,
-    More,
-    AtLeast,
-    Equal,
 }
 
 /// A parsed expression.
@@ -238,10 +182,10 @@ enum Node {
     Triple(Box<[Node; 3]>),
     Negative(Box<Node>),
     Two(Sign, Box<[Node; 2]>),
-    Function(Function, Vec<Node>),
-    Absolute(Box<Node>),
+    Function(&'static str, Vec<Node>),
     Call(String, Vec<String>),
-    If(Box<(Node, Option<Node>)>, Vec<(Node, Relation, Node)>),
+    /// Both branches, and the conditions: their sides, and the orders in which these may be.
+    If(Box<(Node, Option<Node>)>, Vec<(Node, &'static [Ordering], Node)>),
 }
 
 impl Expression {
@@ -305,17 +249,14 @@ impl Node {
             }
             Self::Function(function, arguments) => {
                 let values: Vec<_> = arguments.iter().map(|x| x.value(scope)).collect::<Result<_, _>>()?;
-                function.of(&values)?
-            }
-            Self::Absolute(of) => {
-                let value = of.value(scope)?;
-                value.map(value.degrees, f64::abs)
+                apply(function, &values)?
             }
             Self::Call(name, arguments) => scope.call(name, arguments)?,
             Self::If(sides, conditions) => {
                 let mut holds = true;
-                for (a, relation, b) in conditions {
-                    holds = holds && relation.holds(a.value(scope)?, b.value(scope)?)?;
+                for (a, orders, b) in conditions {
+                    holds = holds
+                        && compare(a.value(scope)?, b.value(scope)?)?.is_some_and(|o| orders.contains(&o));
                 }
                 match &**sides {
                     (side, _) if holds => side.value(scope)?,
@@ -345,32 +286,26 @@ fn two(sign: Sign, a: Value, b: Value) -> Result<Value, String> {
     })
 }
 
-impl Relation {
-    fn of(atom: &Atom) -> Option<Self> {
-        Some(match atom.base() {
-            "<" => Self::Less,
-            "≤" => Self::AtMost,
-            ">" => Self::More,
-            "≥" => Self::AtLeast,
-            "=" => Self::Equal,
-            _ => return None,
-        })
-    }
+/// The orders of two sides for which the sign of a condition holds.
+fn orders(sign: &str) -> Option<&'static [Ordering]> {
+    let orders: &[_] = match sign {
+        "<" => &[Ordering::Less],
+        "≤" => &[Ordering::Less, Ordering::Equal],
+        ">" => &[Ordering::Greater],
+        "≥" => &[Ordering::Greater, Ordering::Equal],
+        "=" => &[Ordering::Equal],
+        _ => return None,
+    };
+    Some(orders)
+}
 
-    fn holds(self, a: Value, b: Value) -> Result<bool, String> {
-        a.common(b)?;
-        if !a.is_grey() || !b.is_grey() {
-            return Err("a condition compares colours".to_owned());
-        }
-        let (a, b) = (a.rgb[0], b.rgb[0]);
-        Ok(match self {
-            Self::Less => a < b,
-            Self::AtMost => a <= b,
-            Self::More => a > b,
-            Self::AtLeast => a >= b,
-            Self::Equal => a == b,
-        })
+/// The order of two values; `None` for what is not a number.
+fn compare(a: Value, b: Value) -> Result<Option<Ordering>, String> {
+    a.common(b)?;
+    if !a.is_grey() || !b.is_grey() {
+        return Err("a condition compares colours".to_owned());
     }
+    Ok(a.rgb[0].partial_cmp(&b.rgb[0]))
 }
 
 struct Reader<'a> {
@@ -427,12 +362,11 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn condition(&mut self) -> Result<(Node, Relation, Node), String> {
+    fn condition(&mut self) -> Result<(Node, &'static [Ordering], Node), String> {
         let a = self.sum()?;
-        self.skip_spaces();
-        let relation = self.peek().and_then(Relation::of).ok_or("a condition compares two values")?;
+        let orders = orders(self.next_base()).ok_or("a condition compares two values")?;
         self.at += 1;
-        Ok((a, relation, self.sum()?))
+        Ok((a, orders, self.sum()?))
     }
 
     fn sum(&mut self) -> Result<Node, String> {
@@ -459,24 +393,15 @@ impl<'a> Reader<'a> {
     fn product(&mut self) -> Result<Node, String> {
         let mut product = self.factor()?;
         loop {
-            let sign = match self.next_base() {
-                "×" | "·" => Sign::Multiply,
-                "/" => {
-                    self.at += 1;
-                    product = Node::Two(Sign::Divide, Box::new([product, self.divisor()?]));
-                    continue;
-                }
+            let sign = self.next_base();
+            self.at += usize::from(matches!(sign, "×" | "·" | "/"));
+            let (sign, factor) = match sign {
+                "/" => (Sign::Divide, self.divisor()?),
                 "" | "+" | "−" | "-" | ")" | "]" | "," | "|" | "if" | "else" | "and" | "<" | "≤" | ">"
-                | "≥" | "=" => {
-                    return Ok(product);
-                }
-                _ => {
-                    product = Node::Two(Sign::Multiply, Box::new([product, self.factor()?]));
-                    continue;
-                }
+                | "≥" | "=" => return Ok(product),
+                _ => (Sign::Multiply, self.factor()?),
             };
-            self.at += 1;
-            product = Node::Two(sign, Box::new([product, self.factor()?]));
+            product = Node::Two(sign, Box::new([product, factor]));
         }
     }
 
@@ -518,30 +443,25 @@ impl<'a> Reader<'a> {
             return self.symbol(atom, symbol);
         }
         let base = atom.base();
-        if let Some(function) = Function::named(base) {
-            let arguments = self.arguments_of(function)?;
+        if let Some(function) = FUNCTIONS.into_iter().find(|known| *known == base) {
+            let (arguments, bracket) = self.arguments_of(function)?;
             // A power of the function's name, as in tan² θ, applies to its value.
-            let (arguments, last) = arguments;
-            let value = Node::Function(function, arguments);
-            let value = self.raised(value, atom)?;
-            return match last {
+            let value = self.raised(Node::Function(function, arguments), atom)?;
+            return match bracket {
                 Some(bracket) => self.raised(value, bracket),
                 None => Ok(value),
             };
         }
         match base {
             "(" | "[" => {
-                let (mut parts, close) = self.list(if base == "(" { ")" } else { "]" })?;
-                let inside = match parts.len() {
-                    1 => parts.remove(0),
-                    3 => {
-                        let [b, g, r] = [parts.pop(), parts.pop(), parts.pop()];
-                        let missing = || "a colour has three parts".to_owned();
-                        let [r, g, b] =
-                            [r.ok_or_else(missing)?, g.ok_or_else(missing)?, b.ok_or_else(missing)?];
-                        Node::Triple(Box::new([r, g, b]))
+                let (parts, close) = self.list(if base == "(" { ")" } else { "]" })?;
+                let inside = match <[Node; 3]>::try_from(parts) {
+                    Ok(colour) => Node::Triple(Box::new(colour)),
+                    Err(mut parts) if parts.len() == 1 => parts.remove(0),
+                    Err(parts) => {
+                        let n = parts.len();
+                        return Err(format!("brackets hold one value or the three of a colour, not {n}"));
                     }
-                    n => return Err(format!("brackets hold one value or the three of a colour, not {n}")),
                 };
                 self.raised(inside, close)
             }
@@ -550,7 +470,7 @@ impl<'a> Reader<'a> {
                 self.skip_spaces();
                 let close = self.peek().filter(|atom| atom.base() == "|").ok_or("a bar is not closed")?;
                 self.at += 1;
-                self.raised(Node::Absolute(Box::new(inside)), close)
+                self.raised(Node::Function("abs", vec![inside]), close)
             }
             // A sign before a factor, as in 2 × (−1) without its brackets.
             "−" | "-" => Ok(Node::Negative(Box::new(self.factor()?))),
@@ -611,14 +531,18 @@ impl<'a> Reader<'a> {
     }
 
     /// The arguments of a function, and the bracket that closes them, if there are brackets.
-    fn arguments_of(&mut self, function: Function) -> Result<(Vec<Node>, Option<&'a Atom>), String> {
+    fn arguments_of(&mut self, function: &str) -> Result<(Vec<Node>, Option<&'a Atom>), String> {
         self.skip_spaces();
         if self.peek().is_none_or(|next| next.base() != "(") {
             return Ok((vec![self.factor()?], None));
         }
         self.at += 1;
         let (parts, close) = self.list(")")?;
-        let (least, most) = function.arity();
+        let (least, most) = match function {
+            "max" | "min" => (2, 8),
+            "clamp" => (3, 3),
+            _ => (1, 1),
+        };
         // The brackets of a colour are those of the argument.
         let parts = match <[Node; 3]>::try_from(parts) {
             Ok(colour) if most == 1 => vec![Node::Triple(Box::new(colour))],

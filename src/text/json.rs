@@ -237,6 +237,28 @@ pub trait Reader {
         Some(Fields { of, fields })
     }
 
+    /// A number in 32 bits; a number that is too large becomes infinite, so that its rule rejects it.
+    fn number(&mut self, value: Cursor, rule: &str) -> Option<f32> {
+        let number = value.number();
+        if number.is_none() {
+            self.wrong(value, &needs("a number", value, rule));
+        }
+        number
+    }
+
+    /// A whole number.
+    fn integer(&mut self, value: Cursor, rule: &str) -> Option<i64> {
+        let integer = value.integer();
+        if integer.is_none() {
+            let rule = match value.value {
+                Ast::NumberLit(_) => rule.to_owned(),
+                _ => needs("a whole number", value, rule),
+            };
+            self.wrong(value, &rule);
+        }
+        integer
+    }
+
     /// A text.
     fn string<'p>(&mut self, value: Cursor<'p, '_>, rule: &str) -> Option<&'p str> {
         value.text().or_else(|| {
@@ -255,6 +277,16 @@ pub trait Reader {
                 default
             }
         }
+    }
+}
+
+/// The message that a value of another type is needed.
+fn needs(what: &str, value: Cursor, rule: &str) -> String {
+    match value.text() {
+        Some(text) if text.trim().parse::<f64>().is_ok() => {
+            format!("it must be {what}, without quotes: {rule}")
+        }
+        _ => format!("it must be {what}: {rule}"),
     }
 }
 

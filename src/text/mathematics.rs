@@ -23,16 +23,15 @@ pub fn beyond_limits(equation: &str) -> Option<(usize, String)> {
             _ => {}
         }
         if open.len() > MAX_DEPTH {
+            let depth = open.len();
             return Some((
                 at,
-                format!("this is nested {} brackets deep; at most {MAX_DEPTH} are allowed", open.len()),
+                format!("this is nested {depth} brackets deep; at most {MAX_DEPTH} are allowed"),
             ));
         }
         if length > LONGEST_LINE {
-            return Some((
-                at,
-                format!("this line of the equation has more than {LONGEST_LINE} characters; break it"),
-            ));
+            let what = format!("this line of the equation has more than {LONGEST_LINE} characters; break it");
+            return Some((at, what));
         }
     }
     let mut start = 0;
@@ -79,6 +78,12 @@ pub enum Atom {
 }
 
 impl Atom {
+    /// A function name, a number, an operator or a bracket, without subscript and power.
+    #[must_use]
+    pub fn upright(base: &str) -> Self {
+        Self::Upright { base: base.to_owned(), sub: String::new(), sup: String::new() }
+    }
+
     /// The symbol as written in declarations (`k_d`), if the atom is one.
     #[must_use]
     pub fn symbol(&self) -> Option<String> {
@@ -89,42 +94,36 @@ impl Atom {
         }
     }
 
+    /// The letter, word or sign, the subscript and the power.
+    fn parts(&self) -> [&str; 3] {
+        match self {
+            Self::Symbol { base, sub, sup } | Self::Upright { base, sub, sup } => [base, sub, sup],
+            Self::Space => [""; 3],
+        }
+    }
+
     /// The letter, word or sign; empty for a space.
     #[must_use]
     pub fn base(&self) -> &str {
-        match self {
-            Self::Symbol { base, .. } | Self::Upright { base, .. } => base,
-            Self::Space => "",
-        }
+        self.parts()[0]
     }
 
     /// The subscript; often empty.
     #[must_use]
     pub fn sub(&self) -> &str {
-        match self {
-            Self::Symbol { sub, .. } | Self::Upright { sub, .. } => sub,
-            Self::Space => "",
-        }
+        self.parts()[1]
     }
 
     /// The power; often empty.
     #[must_use]
     pub fn sup(&self) -> &str {
-        match self {
-            Self::Symbol { sup, .. } | Self::Upright { sup, .. } => sup,
-            Self::Space => "",
-        }
+        self.parts()[2]
     }
 
     /// The symbol that is the power of the atom, if any: the `α` of `(N·H)^α`.
     #[must_use]
     pub fn power(&self) -> Option<String> {
-        match self {
-            Self::Symbol { sup, .. } | Self::Upright { sup, .. } if sup.chars().all(char::is_alphabetic) => {
-                Some(sup.clone()).filter(|s| s.chars().count() == 1)
-            }
-            _ => None,
-        }
+        is_variable(self.sup()).then(|| self.sup().to_owned())
     }
 }
 
@@ -259,19 +258,10 @@ pub fn is_variable(text: &str) -> bool {
 /// character.
 fn script(chars: &[char], start: usize) -> (String, usize) {
     match chars.get(start) {
-        Some('{') => {
-            let mut depth = 0;
+        Some(open @ ('{' | '(')) => {
+            let (close, mut depth) = (if *open == '{' { '}' } else { ')' }, 0);
             let closes = |c: &char| {
-                depth += i32::from(*c == '{') - i32::from(*c == '}');
-                depth == 0
-            };
-            let end = chars[start..].iter().position(closes).map_or(chars.len(), |n| start + n);
-            (chars[start + 1..end].iter().collect(), (end + 1).min(chars.len()))
-        }
-        Some('(') => {
-            let mut depth = 0;
-            let closes = |c: &char| {
-                depth += i32::from(*c == '(') - i32::from(*c == ')');
+                depth += i32::from(c == open) - i32::from(*c == close);
                 depth == 0
             };
             let end = chars[start..].iter().position(closes).map_or(chars.len(), |n| start + n);

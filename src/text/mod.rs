@@ -7,13 +7,14 @@ mod list;
 pub mod mathematics;
 pub mod path;
 pub mod place;
+pub(crate) mod template;
 mod words;
 pub mod xml;
 
 pub use list::items;
 pub use words::{
     capitalised, detailed, did_you_mean, listed, nearest, number, one_of, per_cent, plural, quoted, sentence,
-    shortened, with_article,
+    shortened, superscript, with_article,
 };
 
 /// The bytes of a UTF-8 text without the byte order mark that some programs write first.

@@ -76,6 +76,13 @@ pub fn capitalised(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// A digit or minus sign raised, as in 10⁻³; other characters stay.
+#[must_use]
+pub fn superscript(c: char) -> char {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    if "-−".contains(c) { '⁻' } else { c.to_digit(10).map_or(c, |digit| DIGITS[digit as usize]) }
+}
+
 /// The rule that a value must be one of several words.
 #[must_use]
 pub fn one_of<'a>(what: &str, words: impl Iterator<Item = &'a str>) -> String {

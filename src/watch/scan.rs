@@ -8,6 +8,8 @@ use std::{
     time::SystemTime,
 };
 
+use crate::files::Node;
+
 /// Maximum number of links followed in a chain.
 const MAX_LINKS: usize = 16;
 /// Maximum nesting of folders that is followed.
@@ -30,10 +32,7 @@ impl Print {
     }
 
     fn from_metadata(metadata: &Metadata) -> Self {
-        #[cfg(unix)]
-        let number = std::os::unix::fs::MetadataExt::ino(metadata);
-        #[cfg(not(unix))]
-        let number = 0;
+        let number = Node::of(metadata).inode;
         Self { length: metadata.len(), modified: metadata.modified().ok(), number }
     }
 }

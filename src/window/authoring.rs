@@ -21,109 +21,88 @@ use crate::{
 /// Carries out an effect that writes a file of the user's, reports the result, and requests the selection of a new
 /// model. Returns the folder to read shaders from, if it changes.
 pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Option<PathBuf> {
-    match effect {
-        Effect::NewModel { id, name } => {
-            new_file(session, registry, id, name, None, &custom::template(id, name))
-        }
-        Effect::DuplicateModel { model, id, name } => {
-            let Some(entry) = registry.model(model) else {
-                session.say(Severity::Error, format!("There is no reflection model “{model}” to copy."));
-                return None;
-            };
-            let sources = match custom::folder::sources_with(model, registry) {
-                Ok(sources) => sources,
-                Err(why) => {
-                    let copied = entry.declaration.name;
-                    session
-                        .say(Severity::Error, sentence(&format!("{copied} was not copied: {}", why.message)));
-                    return None;
-                }
-            };
-            match custom::duplicate(entry, &sources, id, name) {
-                Ok(text) => new_file(session, registry, id, name, Some(model), &text),
-                Err(why) => {
-                    session
-                        .say(Severity::Error, format!("{} was not copied: {why}.", entry.declaration.name));
-                }
-            }
-        }
-        Effect::AdoptModel(path) => adopt(session, registry, path),
+    let (said, folder) = match effect {
+        Effect::NewModel { of, id, name } => (new_model(session, registry, of, id, name), None),
+        Effect::AdoptModel(path) => (adopt(session, registry, path), None),
         Effect::ExportShaders(folder) => match assets::export(folder, registry) {
-            Ok(exported) => {
-                session.say(Severity::Info, told(&exported, folder));
-                return Some(folder.clone());
-            }
-            Err(why) => session.say(Severity::Error, format!("The shaders were not exported: {why}.")),
+            Ok(exported) => (Ok(told(&exported, folder)), Some(folder.clone())),
+            Err(why) => (Err(format!("The shaders were not exported: {why}.")), None),
         },
-        _ => {}
+        _ => return None,
+    };
+    match said {
+        Ok(text) => session.say(Severity::Info, text),
+        Err(why) => session.say(Severity::Error, why),
     }
-    None
+    folder
 }
 
 /// The folder of custom models; if there is none, the one in which they are looked for.
-fn models_folder(registry: &Registry) -> Option<PathBuf> {
-    registry.custom_folder().map(Path::to_owned).or_else(|| Folders::find(None, None).ok()?.models)
+fn models_folder(registry: &Registry) -> Result<PathBuf, String> {
+    let known = registry.custom_folder().map(Path::to_owned);
+    known.or_else(|| Folders::find(None, None).ok()?.models).ok_or_else(|| {
+        "There is no folder for custom models: name one with `lcm --models FOLDER`.".to_owned()
+    })
 }
 
-fn new_file(session: &mut Session, registry: &Registry, id: &str, name: &str, of: Option<&str>, text: &str) {
-    let Some(folder) = models_folder(registry) else {
-        let why = "There is no folder for custom models: name one with `lcm --models FOLDER`.";
-        return session.say(Severity::Error, why);
-    };
-    let path = folder.join(format!("{id}.{}", custom::EXTENSION));
-    match write_new(&path, text) {
+/// Writes the file of a model, which is selected as soon as it is read. `taken` says what to do if there is such a file.
+fn new_file(
+    session: &mut Session,
+    path: &Path,
+    text: &str,
+    taken: impl FnOnce(&mut Session) -> &'static str,
+) -> Result<(), String> {
+    match write_new(path, text) {
         Ok(()) => {
-            session.wanted_model = Some(id.to_owned());
-            session.say(
-                Severity::Info,
-                format!(
-                    "{} was written. {}, change it and save it: the picture updates.",
-                    path.shown(),
-                    keys::hint_beside(session, registry, "Open it in an editor", "edit_model")
-                ),
-            );
+            session.authoring.wanted_model = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            Ok(())
         }
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
-            // Asks again, with the typed name.
-            session.draft = Some(ModelDraft { of: of.map(str::to_owned), name: name.to_owned() });
-            session.say(
-                Severity::Error,
-                format!("{} already exists and was not changed; choose another name.", path.shown()),
-            );
+            Err(format!("{} already exists and was not changed; {}.", path.shown(), taken(session)))
         }
-        Err(e) => {
-            session.say(Severity::Error, format!("{} could not be written: {}.", path.shown(), words(&e)))
-        }
+        Err(e) => Err(format!("{} could not be written: {}.", path.shown(), words(&e))),
     }
+}
+
+/// Writes a new model, or a copy `of` a model.
+fn new_model(
+    session: &mut Session,
+    registry: &Registry,
+    of: &Option<String>,
+    id: &str,
+    name: &str,
+) -> Result<String, String> {
+    let text = match of {
+        Some(model) => copy_of(model, registry, id, name)?,
+        None => custom::template(id, name),
+    };
+    let path = models_folder(registry)?.join(format!("{id}.{}", custom::EXTENSION));
+    new_file(session, &path, &text, |session| {
+        // Asks again, with the typed name.
+        session.authoring.draft = Some(ModelDraft { of: of.clone(), name: name.to_owned() });
+        "choose another name"
+    })?;
+    let open = keys::hint_beside(session, registry, "Open it in an editor", "edit_model");
+    Ok(format!("{} was written. {open}, change it and save it: the picture updates.", path.shown()))
+}
+
+fn copy_of(model: &str, registry: &Registry, id: &str, name: &str) -> Result<String, String> {
+    let entry = registry.model(model);
+    let entry = entry.ok_or_else(|| format!("There is no reflection model “{model}” to copy."))?;
+    let copied = entry.declaration.name;
+    let sources = custom::folder::sources_with(model, registry);
+    let sources = sources.map_err(|why| sentence(&format!("{copied} was not copied: {}", why.message)))?;
+    custom::duplicate(entry, &sources, id, name).map_err(|why| format!("{copied} was not copied: {why}."))
 }
 
 /// Copies a model into the folder of custom models.
-fn adopt(session: &mut Session, registry: &Registry, from: &Path) {
-    let Some((folder, name)) = models_folder(registry).zip(from.file_name()) else {
-        let why = "There is no folder for custom models: name one with `lcm --models FOLDER`.";
-        return session.say(Severity::Error, why);
-    };
-    let path = folder.join(name);
-    let text = match custom::file::read(from, &name.to_string_lossy()) {
-        Ok(text) => text,
-        Err(problem) => {
-            let text = format!("{} was not copied: {}.", from.shown(), problem.message);
-            return session.say(Severity::Error, text);
-        }
-    };
-    match write_new(&path, &text) {
-        Ok(()) => {
-            session.wanted_model = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-            session.say(Severity::Info, format!("{} was copied to {}.", from.shown(), folder.shown()));
-        }
-        Err(e) if e.kind() == io::ErrorKind::AlreadyExists => session.say(
-            Severity::Error,
-            format!("{} already exists and was not changed; rename the other file.", path.shown()),
-        ),
-        Err(e) => {
-            session.say(Severity::Error, format!("{} could not be written: {}.", path.shown(), words(&e)))
-        }
-    }
+fn adopt(session: &mut Session, registry: &Registry, from: &Path) -> Result<String, String> {
+    let folder = models_folder(registry)?;
+    let name = from.file_name().unwrap_or_default();
+    let text = custom::file::read(from, &name.to_string_lossy());
+    let text = text.map_err(|problem| format!("{} was not copied: {}.", from.shown(), problem.message))?;
+    new_file(session, &folder.join(name), &text, |_| "rename the other file")?;
+    Ok(format!("{} was copied to {}.", from.shown(), folder.shown()))
 }
 
 /// The result of an export in words.

@@ -2,29 +2,23 @@
 
 use std::{
     sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
+        Arc, Mutex,
         atomic::{AtomicBool, Ordering},
     },
     thread,
 };
 
-use crate::{caught::catch, progress::Progress};
+use crate::{
+    caught::{catch, lock},
+    panel::state::Running,
+    progress::Progress,
+};
 
 /// A task with a label, and its result.
 #[derive(Debug)]
 pub(super) struct Background<L, T> {
     state: Arc<Mutex<State<L, T>>>,
     cancelled: Arc<AtomicBool>,
-}
-
-/// A running task.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Running<L> {
-    pub(super) label: L,
-    /// Completed fraction.
-    pub(super) done: f32,
-    /// The current step.
-    pub(super) step: String,
 }
 
 #[derive(Debug)]
@@ -41,19 +35,19 @@ impl<L, T> Default for Background<L, T> {
 
 impl<L: Clone + Send + 'static, T: Send + 'static> Background<L, T> {
     /// Starts a task and returns at once; does nothing while another task runs. Calls `wake` at each step. If the task
-    /// panics, `broken` provides the result: the window goes on.
+    /// panics, `broken` is the result: the window goes on.
     pub(super) fn begin(
         &self,
         label: L,
         wake: impl Fn() + Send + 'static,
-        broken: impl FnOnce() -> T + Send + 'static,
+        broken: T,
         work: impl FnOnce(&Progress) -> T + Send + 'static,
     ) {
         if self.running().is_some() {
             return;
         }
         self.cancelled.store(false, Ordering::Relaxed);
-        self.lock().running = Some(Running { label: label.clone(), done: 0.0, step: String::new() });
+        lock(&self.state).running = Some(Running { label: label.clone(), done: 0.0, step: String::new() });
         let (state, cancelled) = (self.state.clone(), self.cancelled.clone());
         thread::spawn(move || {
             let tell = |done: f32, step: &str| {
@@ -62,7 +56,7 @@ impl<L: Clone + Send + 'static, T: Send + 'static> Background<L, T> {
             };
             let stops = || cancelled.load(Ordering::Relaxed);
             let progress = Progress { tell: &tell, cancelled: &stops };
-            let ended = catch(|| work(&progress)).unwrap_or_else(|_| broken());
+            let ended = catch(|| work(&progress)).unwrap_or(broken);
             *lock(&state) = State { running: None, ended: Some(ended) };
             wake();
         });
@@ -75,21 +69,13 @@ impl<L: Clone + Send + 'static, T: Send + 'static> Background<L, T> {
 
     /// The running task.
     pub(super) fn running(&self) -> Option<Running<L>> {
-        self.lock().running.clone()
+        lock(&self.state).running.clone()
     }
 
     /// The result of a task that has just ended.
     pub(super) fn take(&self) -> Option<T> {
-        self.lock().ended.take()
+        lock(&self.state).ended.take()
     }
-
-    fn lock(&self) -> MutexGuard<'_, State<L, T>> {
-        lock(&self.state)
-    }
-}
-
-fn lock<T>(state: &Mutex<T>) -> MutexGuard<'_, T> {
-    state.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]
@@ -115,8 +101,8 @@ mod tests {
             }
             thread::sleep(std::time::Duration::from_millis(1));
         };
-        work.begin(1, || (), || Err("broken"), forever);
-        work.begin(2, || (), || Err("broken"), |_| Ok(2));
+        work.begin(1, || (), Err("broken"), forever);
+        work.begin(2, || (), Err("broken"), |_| Ok(2));
         while work.running().is_none_or(|running| running.step.is_empty()) {
             thread::yield_now();
         }
@@ -129,11 +115,11 @@ mod tests {
         work.begin(
             3,
             || (),
-            || Err("broken"),
+            Err("broken"),
             |progress| progress.step(0.0, "").map(|()| 3).map_err(|_| "cancelled"),
         );
         assert_eq!(ended(&work), Ok(3));
-        work.begin(4, || (), || Err("broken"), |_| panic!("as a test"));
+        work.begin(4, || (), Err("broken"), |_| panic!("as a test"));
         assert_eq!(ended(&work), Err("broken"));
     }
 }

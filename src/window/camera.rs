@@ -1,18 +1,12 @@
 //! Camera control: orbit, pan and zoom around an object, and return to the observer.
 
 use bevy::{
-    app::{App, Plugin, PostUpdate, PreUpdate},
-    ecs::{prelude::*, system::SystemParam},
-    input::{
-        ButtonInput,
-        keyboard::KeyCode,
-        mouse::{MouseButton, MouseMotion, MouseWheel},
-    },
-    transform::components::Transform,
+    ecs::system::SystemParam,
+    input::mouse::{MouseMotion, MouseWheel},
+    prelude::*,
 };
 use bevy_egui::EguiPostUpdateSet;
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraSystemSet};
-use glam::{Quat, Vec3};
 
 use super::{
     WindowView,
@@ -242,15 +236,19 @@ impl CameraControl<'_, '_> {
     }
 
     /// Turns to the selection, keeping the direction of view.
-    pub(super) fn focus(&mut self, session: &Session) {
+    pub(super) fn focus(&mut self, session: &Session, registry: &Registry) {
         let scene = &self.scene.0;
         let (target, size) = match session.selection {
             Selection::Object(i) => match scene.objects.get(i) {
                 Some(object) => (object.position, object.size),
                 None => return,
             },
-            Selection::Light(i) => match scene.lights.get(i).and_then(|l| l.position) {
-                Some(position) => (position, 0.5),
+            Selection::Light(i) => match scene.lights.get(i).and_then(|light| Some((light, light.position?)))
+            {
+                Some((light, position)) => {
+                    let span = registry.light(&light.light_type).map_or(0.0, |of| of.span(&light.parameters));
+                    (position, span.max(0.5))
+                }
                 None => return,
             },
             Selection::Observer => return self.home(),

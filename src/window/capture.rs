@@ -2,14 +2,13 @@
 
 use std::{
     path::PathBuf,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex},
     time::{Duration, Instant},
 };
 
 use bevy::{
-    app::{App, AppExit, Plugin},
     camera::RenderTarget,
-    ecs::prelude::*,
+    prelude::*,
     render::view::screenshot::{Screenshot, ScreenshotCaptured},
     window::PrimaryWindow,
     winit::WinitSettings,
@@ -18,6 +17,7 @@ use bevy::{
 use super::{ViewOptions, WindowView, watching::complain};
 use crate::files::{Shown as _, words};
 use crate::{
+    caught::lock,
     failure::Failure,
     panel::state::Session,
     registry::Registry,
@@ -54,13 +54,7 @@ impl Plugin for CapturePlugin {
     fn build(&self, app: &mut App) {
         let Some(remaining) = self.frames else { return };
         app.insert_resource(WinitSettings::continuous())
-            .insert_resource(Countdown {
-                remaining,
-                file: self.file.clone(),
-                no_scene: self.no_scene,
-                reported: None,
-                since: Instant::now(),
-            })
+            .insert_resource(Countdown { of: self.clone(), remaining, reported: None, since: Instant::now() })
             .add_systems(LabFrame, count.in_set(LabSystems::Capture));
     }
 }
@@ -70,9 +64,8 @@ pub(super) type Report = Arc<Mutex<Option<Failure>>>;
 
 #[derive(Resource)]
 pub(super) struct Countdown {
+    of: CapturePlugin,
     remaining: u32,
-    file: Option<PathBuf>,
-    no_scene: bool,
     /// Receiver of a failure; `None` to report it here.
     pub(super) reported: Option<Report>,
     since: Instant,
@@ -96,7 +89,7 @@ fn count(
     if remaining > 0 {
         return;
     }
-    if countdown.file.is_some() {
+    if countdown.of.file.is_some() {
         let mut shot = Screenshot::primary_window();
         for (target, mut drawing) in views.iter_mut().filter(|_| windows.is_empty()) {
             // An idle view would be missing from the screenshot.
@@ -115,11 +108,11 @@ fn write(
     scene: Option<(Res<Session>, Res<Registry>)>,
     mut exit: MessageWriter<AppExit>,
 ) {
-    let Some(file) = &countdown.file else { return };
+    let Some(file) = &countdown.of.file else { return };
     let written = captured.image.clone().try_into_dynamic().map_err(|e| e.to_string()).and_then(|image| {
         let image = image.to_rgb8();
         let about = match &scene {
-            Some((session, registry)) if !countdown.no_scene => {
+            Some((session, registry)) if !countdown.of.no_scene => {
                 About::scene(&session.document.named(registry), registry)
             }
             _ => About::program(),
@@ -133,7 +126,7 @@ fn write(
     let failure = Failure::Write(format!("{} could not be written: {what}", file.shown()));
     exit.write(AppExit::from_code(failure.status()));
     match &countdown.reported {
-        Some(report) => *report.lock().unwrap_or_else(PoisonError::into_inner) = Some(failure),
+        Some(report) => *lock(report) = Some(failure),
         None => complain(&failure.to_string()),
     }
 }

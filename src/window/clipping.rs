@@ -7,11 +7,10 @@
 use std::collections::HashMap;
 
 use bevy::{
-    app::{App, Plugin, PostUpdate},
-    asset::{Assets, Handle, RenderAssetUsages},
+    asset::RenderAssetUsages,
     core_pipeline::{Core3d, Core3dSystems, tonemapping::tonemapping},
-    ecs::{prelude::*, schedule::ScheduleLabel as _},
-    prelude::Shader,
+    ecs::schedule::ScheduleLabel as _,
+    prelude::*,
     render::{
         RenderApp, RenderStartup,
         camera::ExtractedCamera,

@@ -5,18 +5,15 @@
 //! not contain them.
 
 use bevy::{
-    app::{App, Plugin, PostUpdate},
-    asset::{Assets, Handle, RenderAssetUsages},
-    ecs::prelude::*,
-    image::Image,
+    asset::RenderAssetUsages,
+    prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat, TextureUsages},
     window::RequestRedraw,
 };
-use glam::UVec2;
 
 use super::{
     background::Background,
-    readback::{Reading, codes},
+    readback::{Reading, SeenViews},
     redraw::{SETTLING_FRAMES, Settling},
     views::{DifferenceMap, ShownViews},
 };
@@ -28,10 +25,10 @@ use crate::{
     },
     optics::TermSelection,
     panel::state::{LARGEST, Numbers, Session},
-    reference::{self, Picture, Settings},
+    progress::Progress,
     registry::Registry,
     render::view::ViewSystems,
-    scene::{Comparison, Observer, Scene, comparison::Compared, variant::LETTERS},
+    scene::{Comparison, comparison::Compared, variant::LETTERS},
 };
 
 /// Compares the views of a comparison.
@@ -59,7 +56,39 @@ struct Question {
     textures: [Handle<Image>; 2],
 }
 
+impl Question {
+    /// Begins to compare the views, which were read back. An obsolete result is dropped.
+    fn begin(
+        self,
+        read: Vec<Vec<u8>>,
+        work: &Background<(), Answer>,
+        session: &Session,
+        registry: &Registry,
+    ) {
+        let mut views = SeenViews::of(session, &[0, self.with], self.size, registry);
+        if self.comparison.values != Compared::Light {
+            // The cheapest term also shows the coverage.
+            views.shown.iter_mut().for_each(|(_, terms)| *terms = TermSelection::Ambient);
+        }
+        let job = move |_: &Progress| self.answer(&views, &read).unwrap_or_default();
+        work.begin((), || {}, Answer::default(), job);
+    }
+
+    /// Compares the views that were read back.
+    fn answer(&self, views: &SeenViews, read: &[Vec<u8>]) -> Option<Answer> {
+        let is_map = self.comparison.layout.is_map();
+        let [a, b] = <[Shown; 2]>::try_from(views.pictures(read, true, is_map).ok()?).ok()?;
+        let comparison = Comparison { with: self.with, ..self.comparison };
+        let pair = Pair::new(&a, &b).ok()?;
+        let largest = pair.differences(&Comparison { sign: Default::default(), ..comparison }).ok();
+        let largest = largest.and_then(|d| d.largest).map(|l| (l.difference.abs(), [l.x, l.y]));
+        let map = is_map.then(|| pair.map(&comparison).ok()).flatten();
+        Some(Answer { measured: pair.measure(), largest, map })
+    }
+}
+
 /// The result of the thread.
+#[derive(Default)]
 struct Answer {
     measured: Option<Measured>,
     largest: Option<(f32, [u32; 2])>,
@@ -72,8 +101,7 @@ struct Comparing {
     asked: Option<Question>,
     known: Option<Question>,
     read: Option<Reading>,
-    /// The result is `None` if the comparison crashed.
-    work: Background<(), Option<Answer>>,
+    work: Background<(), Answer>,
 }
 
 fn compare(
@@ -117,13 +145,11 @@ fn compare(
         && let Some(question) = comparing.asked.clone()
         && let Some(codes) = Reading::end(&mut comparing.read, &mut commands)
     {
-        let job = Job::of(question, codes, &session, &registry);
-        // An obsolete result is dropped.
-        comparing.work.begin((), || {}, || None, move |_| Some(job.run()));
+        question.begin(codes, &comparing.work, &session, &registry);
     }
     let Some(answer) = comparing.work.take() else { return };
     comparing.known = comparing.asked.take();
-    let (Some(answer), Some(known)) = (answer, &comparing.known) else { return };
+    let Some(known) = &comparing.known else { return };
     let several = session.document.variants.len() > 1;
     let size = known.size;
     let numbers = numbers(&answer, known.with, several, known.comparison.values);
@@ -168,84 +194,6 @@ fn forget(comparing: &mut ResMut<Comparing>, commands: &mut Commands) {
         reading.abandon(commands);
     }
     **comparing = Comparing::default();
-}
-
-/// Inputs of the thread.
-struct Job {
-    question: Question,
-    codes: Vec<Vec<u8>>,
-    scene: Scene,
-    /// The visible terms of view A and of the other view.
-    terms: [TermSelection; 2],
-    camera: Observer,
-    registry: Registry,
-}
-
-impl Job {
-    fn of(question: Question, codes: Vec<Vec<u8>>, session: &Session, registry: &Registry) -> Self {
-        Self {
-            terms: [0, question.with].map(|view| session.terms_of(view)),
-            question,
-            codes,
-            scene: (*session.document).clone(),
-            camera: session.facts.observer(session.document.observer),
-            registry: registry.clone(),
-        }
-    }
-
-    fn run(self) -> Answer {
-        let size = self.question.size;
-        let shown: Vec<Shown> = [0, self.question.with]
-            .into_iter()
-            .zip(self.terms)
-            .zip(&self.codes)
-            .filter_map(|((view, terms), bytes)| {
-                let codes = codes(bytes, size)?;
-                Shown::of_codes(size.x, size.y, codes).ok()?.with_light(self.light(view, terms)?).ok()
-            })
-            .collect();
-        let nothing = Answer { measured: None, largest: None, map: None };
-        let Ok([a, b]) = <[Shown; 2]>::try_from(shown) else { return nothing };
-        let is_map = self.question.comparison.layout.is_map();
-        let a = if is_map { self.outlined(a) } else { a };
-        let comparison = Comparison { with: self.question.with, ..self.question.comparison };
-        let Ok(pair) = Pair::new(&a, &b) else { return nothing };
-        let largest = pair.differences(&Comparison { sign: Default::default(), ..comparison }).ok();
-        let largest = largest.and_then(|d| d.largest).map(|l| (l.difference.abs(), [l.x, l.y]));
-        let map = is_map.then(|| pair.map(&comparison).ok()).flatten();
-        Answer { measured: pair.measure(), largest, map }
-    }
-
-    /// View A with the outlines of its objects.
-    fn outlined(&self, shown: Shown) -> Shown {
-        let Some((seen, _)) = self.scene.seen(0, &self.registry) else { return shown };
-        let observer = self.camera.fitting(self.question.size.to_array(), self.scene.view_angle());
-        shown.outlined(&Scene { observer, ..seen }, &self.registry)
-    }
-
-    /// The light of a view, as seen by the camera of the window.
-    fn light(&self, view: usize, terms: TermSelection) -> Option<Picture> {
-        let (seen, _) = self.scene.seen(view, &self.registry)?;
-        // The cheapest term also shows the coverage.
-        let terms =
-            if self.question.comparison.values == Compared::Light { terms } else { TermSelection::Ambient };
-        let size = self.question.size;
-        let camera = self.camera.fitting(size.to_array(), self.scene.view_angle());
-        Some(light(seen, camera, size, terms, &self.registry))
-    }
-}
-
-/// The light of a scene, as seen by a camera.
-pub(super) fn light(
-    seen: Scene,
-    camera: Observer,
-    size: UVec2,
-    terms: TermSelection,
-    registry: &Registry,
-) -> Picture {
-    let seen = Scene { observer: camera, ..seen };
-    let settings = Settings { width: size.x, height: size.y, samples: 1, terms };
-    reference::render(&seen, registry, &settings)
 }
 
 /// The statistics for display, over the pixels covered by objects; names the views if there are `several` beside A.

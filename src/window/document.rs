@@ -2,10 +2,7 @@
 
 use std::path::Path;
 
-use bevy::{
-    app::{App, Plugin},
-    ecs::prelude::*,
-};
+use bevy::prelude::*;
 
 use super::{
     ViewOptions,
@@ -31,7 +28,7 @@ use crate::{
         follow::follow_registry,
         progress::load_progress,
         settings::load_settings,
-        state::{Action, Effect, LabEffect, LessonCommand, Session, Severity},
+        state::{Action, Effect, LessonCommand, Session, Severity},
     },
     registry::Registry,
     render::{
@@ -65,6 +62,7 @@ impl Plugin for DocumentPlugin {
         let options = &self.options;
         let mut session = Session::new(options.scene.clone());
         session.path.clone_from(&options.file);
+        session.outside.clone_from(&options.outside);
         session.disk.use_defaults = options.use_defaults;
         session.view.examples_open = options.examples;
         if self.for_user {
@@ -92,7 +90,7 @@ impl Plugin for DocumentPlugin {
             .init_resource::<PlotFiles>()
             .insert_resource(LawChecks::by(options.trial_program.clone()))
             .init_resource::<Editors>()
-            .add_message::<LabEffect>()
+            .add_message::<Effect>()
             .add_message::<FilesChanged>()
             .configure_sets(LabFrame, steps.chain().in_set(LabSystems::Load))
             .add_systems(
@@ -153,7 +151,7 @@ impl Plugin for DocumentPlugin {
                     }
                 }
             }
-            world.write_message_batch(effects.into_iter().map(LabEffect));
+            world.write_message_batch(effects);
         });
         // Systems may spawn parts before the first frame.
         know_types(world);
@@ -185,12 +183,13 @@ pub fn open_late(
 ) -> Result<(), LoadError> {
     let world = app.world_mut();
     known.add_missing(world.get_resource_or_init::<Registry>().as_ref());
-    let loaded = load::file(file, &known, defaults)?;
+    let outside = &world.resource::<Session>().outside;
+    let loaded = load::file(file, &known, defaults.allowing(outside))?;
     if defaults == Defaults::Ask && !loaded.missing.is_empty() {
         let effects = world.resource_scope(|world, mut session: Mut<Session>| {
             open(file, &mut session, &known, &mut world.resource_mut::<DiskFiles>(), true)
         });
-        world.write_message_batch(effects.into_iter().map(LabEffect));
+        world.write_message_batch(effects);
         return Ok(());
     }
     world.resource_mut::<DiskFiles>().expect(file, Some(loaded.stamp));
@@ -210,7 +209,7 @@ fn open(
     if for_user {
         return effects::run(session, registry, Effect::OpenFile(file.to_owned()), files);
     }
-    match load::file(file, registry, Defaults::Use) {
+    match load::file(file, registry, Defaults::Use.allowing(&session.outside)) {
         Ok(loaded) => {
             files.expect(file, Some(loaded.stamp));
             session.opened(file.to_owned(), loaded.scene);

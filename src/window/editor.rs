@@ -7,15 +7,17 @@ use std::{
     ffi::OsString,
     path::{Path, PathBuf},
     process::{Command, Stdio},
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex},
     thread,
     time::{Duration, Instant},
 };
 
 use bevy::ecs::prelude::*;
 
-use crate::files;
-use crate::files::Shown as _;
+use crate::{
+    caught::lock,
+    files::{self, Shown as _},
+};
 
 /// Environment variable with the editor command, split at spaces. `{file}` and `{line}` are replaced by file and line;
 /// without `{file}`, the file is appended.
@@ -26,38 +28,10 @@ const PATIENCE: Duration = Duration::from_secs(5);
 const MAX_ENTRY_BYTES: u64 = 1 << 20;
 
 /// Editors with their own window, the best for beginners first, and their arguments.
-const KNOWN: [(&str, &str); 16] = [
-    ("code", "--goto {file}:{line}"),
-    ("codium", "--goto {file}:{line}"),
-    ("code-insiders", "--goto {file}:{line}"),
-    ("zed", "{file}:{line}"),
-    ("zeditor", "{file}:{line}"),
-    ("subl", "{file}:{line}"),
-    ("kate", "--line {line} {file}"),
-    ("gnome-text-editor", "+{line} {file}"),
-    ("gedit", "+{line} {file}"),
-    ("kwrite", "--line {line} {file}"),
-    ("xed", "+{line} {file}"),
-    ("pluma", "+{line} {file}"),
-    ("geany", "--line {line} {file}"),
-    ("mousepad", "--line={line} {file}"),
-    ("featherpad", "{file}"),
-    ("l3afpad", "{file}"),
-];
+const KNOWN: &str = include_str!("editors.txt");
 
 /// Terminals, and the arguments in front of a command.
-const TERMINALS: [(&str, &[&str]); 10] = [
-    ("x-terminal-emulator", &["-e"]),
-    ("gnome-terminal", &["--"]),
-    ("konsole", &["-e"]),
-    ("xfce4-terminal", &["-x"]),
-    ("mate-terminal", &["-x"]),
-    ("alacritty", &["-e"]),
-    ("kitty", &[]),
-    ("foot", &[]),
-    ("wezterm", &["start"]),
-    ("xterm", &["-e"]),
-];
+const TERMINALS: &str = include_str!("terminals.txt");
 
 /// Terminal editors that accept the line as `+12`.
 const TAKE_A_PLUS: [&str; 8] = ["vi", "vim", "nvim", "nano", "pico", "emacs", "joe", "micro"];
@@ -65,25 +39,25 @@ const TAKE_A_PLUS: [&str; 8] = ["vi", "vim", "nvim", "nano", "pico", "emacs", "j
 /// A command: program and arguments.
 type Called = (String, Vec<String>);
 
+/// The lines of a table: a program, and the arguments that go with it.
+fn rows(table: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    table.lines().map(|line| line.split_once(' ').unwrap_or((line, "")))
+}
+
 /// The command of a variable that opens a file at a line; `None` if the variable is unset or empty.
 #[must_use]
 pub fn editor_command(variable: Option<&str>, file: &Path, line: usize) -> Option<Called> {
     let variable = variable?;
-    let named = variable.contains("{file}");
-    let name = file.to_string_lossy();
-    // Split first: a file name may contain spaces.
-    let mut words = variable
-        .split_whitespace()
-        .map(|word| word.replace("{line}", &line.to_string()).replace("{file}", &name))
-        .collect::<Vec<_>>();
-    if words.is_empty() {
-        return None;
+    let (program, mut arguments) = called(filled(variable, file, line))?;
+    if !variable.contains("{file}") {
+        arguments.push(file.to_string_lossy().into_owned());
     }
-    if !named {
-        words.push(name.into_owned());
-    }
-    let program = words.remove(0);
-    Some((program, words))
+    Some((program, arguments))
+}
+
+/// The words of a command, of which the first is the program.
+fn called(mut words: Vec<String>) -> Option<Called> {
+    (!words.is_empty()).then(|| (words.remove(0), words))
 }
 
 /// A desktop application.
@@ -114,8 +88,7 @@ impl Application {
 
     /// The command that opens a file.
     fn opens(&self, file: &Path, line: usize) -> Option<Called> {
-        let mut words = unquoted(&self.exec);
-        let program = (!words.is_empty()).then(|| words.remove(0))?;
+        let (program, words) = called(unquoted(&self.exec))?;
         if let Some(known) = known(&program) {
             return Some((program, filled(known, file, line)));
         }
@@ -160,12 +133,13 @@ fn unquoted(exec: &str) -> Vec<String> {
 /// The arguments for a known editor, by its name or path.
 fn known(program: &str) -> Option<&'static str> {
     let name = Path::new(program).file_name()?.to_str()?;
-    KNOWN.iter().find(|(known, _)| *known == name).map(|(_, how)| *how)
+    rows(KNOWN).find(|(known, _)| *known == name).map(|(_, how)| how)
 }
 
+/// The words of a command for a file and a line. It is split first: a file name may contain spaces.
 fn filled(how: &str, file: &Path, line: usize) -> Vec<String> {
-    let filled = |word: &str| word.replace("{line}", &line.to_string());
-    how.split(' ').map(|word| filled(word).replace("{file}", &file.to_string_lossy())).collect()
+    let (name, line) = (file.to_string_lossy(), line.to_string());
+    how.split_whitespace().map(|word| word.replace("{line}", &line).replace("{file}", &name)).collect()
 }
 
 /// The available editors.
@@ -211,7 +185,7 @@ impl Surroundings {
                 default.opens(file, line).filter(|(program, _)| self.has(program))
             })
             .or_else(|| self.usual.iter().find_map(|usual| self.with_window(usual, file, line)))
-            .or_else(|| KNOWN.iter().find_map(|(name, _)| self.with_window(name, file, line)))
+            .or_else(|| rows(KNOWN).find_map(|(name, _)| self.with_window(name, file, line)))
             .or_else(|| self.usual.iter().find_map(|usual| self.in_terminal(usual, file, line)))
     }
 
@@ -233,14 +207,14 @@ impl Surroundings {
     fn in_terminal(&self, command: &str, file: &Path, line: usize) -> Option<Called> {
         let words: Vec<_> = command.split_whitespace().map(str::to_owned).collect();
         let program = words.first().filter(|program| self.has(program))?;
-        let (terminal, between) = TERMINALS.iter().find(|(terminal, _)| self.has(terminal))?;
-        let mut arguments: Vec<_> = between.iter().map(|word| (*word).to_owned()).collect();
+        let (terminal, between) = rows(TERMINALS).find(|(terminal, _)| self.has(terminal))?;
+        let mut arguments: Vec<_> = between.split_whitespace().map(str::to_owned).collect();
         let name = Path::new(program).file_name().unwrap_or_default();
         let plus = TAKE_A_PLUS.iter().any(|known| name == *known);
         arguments.extend(words.iter().cloned());
         arguments.extend(plus.then(|| format!("+{line}")));
         arguments.push(file.to_string_lossy().into_owned());
-        Some(((*terminal).to_owned(), arguments))
+        Some((terminal.to_owned(), arguments))
     }
 }
 
@@ -296,7 +270,7 @@ impl Editors {
                  variable {EDITOR_VARIABLE}, such as \"code --goto {{file}}:{{line}}\".",
                 file.shown()
             );
-            complaints.lock().unwrap_or_else(PoisonError::into_inner).push(text);
+            lock(&complaints).push(text);
             wake();
         });
     }
@@ -304,7 +278,7 @@ impl Editors {
     /// The problems since the last call.
     #[must_use]
     pub fn take(&self) -> Vec<String> {
-        std::mem::take(&mut *self.complaints.lock().unwrap_or_else(PoisonError::into_inner))
+        std::mem::take(&mut *lock(&self.complaints))
     }
 }
 

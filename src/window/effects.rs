@@ -1,10 +1,6 @@
 //! Carries out effects that need files, entities or the operating system.
 
-use bevy::{
-    app::AppExit,
-    ecs::{prelude::*, system::SystemParam},
-    winit::{EventLoopProxyWrapper, WinitUserEvent},
-};
+use bevy::{ecs::system::SystemParam, prelude::*, winit::EventLoopProxyWrapper};
 
 use super::{
     authoring, camera, editor, exports, files, laws, manual, matching, plots, recovery, shaders, watching,
@@ -12,7 +8,7 @@ use super::{
 use crate::{
     panel::{
         effects::run as run_files,
-        state::{Effect, LabEffect, Session, Severity},
+        state::{Effect, Session, Severity},
     },
     registry::Registry,
 };
@@ -20,14 +16,6 @@ use crate::{
 /// Present if nobody uses the window, so that there are no settings to keep.
 #[derive(Resource)]
 pub(super) struct Unattended;
-
-/// Wakes the idle window; if it is gone, there is nobody to notify.
-fn wake(proxy: Option<&EventLoopProxyWrapper>) -> impl Fn() + Send + 'static + use<> {
-    let proxy = proxy.map(|proxy| (**proxy).clone());
-    move || {
-        proxy.as_ref().map(|proxy| proxy.send_event(WinitUserEvent::WakeUp));
-    }
-}
 
 /// Work in the background, and the way to wake the idle window.
 #[derive(SystemParam)]
@@ -47,7 +35,7 @@ impl Work<'_> {
             session.say(Severity::Error, complaint);
         }
         if let Some((model, outcome)) = self.laws.take() {
-            session.laws_checked(&model, outcome);
+            session.authoring.laws_checked(&model, outcome);
         }
         if let Some(path) = self.exports.report(session)
             && !unattended
@@ -60,7 +48,7 @@ impl Work<'_> {
 
     /// Begins or stops what an effect asks for. Returns any other effect.
     fn begin(&self, effect: Effect, session: &mut ResMut<Session>, registry: &Registry) -> Option<Effect> {
-        let wake = wake(self.proxy.as_deref());
+        let wake = watching::wake(self.proxy.as_deref());
         match effect {
             Effect::OpenInEditor { path, line } => {
                 let variable = std::env::var(editor::EDITOR_VARIABLE).ok();
@@ -69,11 +57,11 @@ impl Work<'_> {
             Effect::Export { form, path, overwrite } => {
                 self.exports.begin(form, path, overwrite, session, registry, wake);
             }
-            Effect::CancelExport => self.exports.cancel(),
+            Effect::CancelExport => self.exports.0.cancel(),
             Effect::Match { view, what, parameters } => {
                 self.matches.begin((view, what, parameters), session, registry, wake);
             }
-            Effect::CancelMatch => self.matches.cancel(),
+            Effect::CancelMatch => self.matches.0.cancel(),
             Effect::WritePlot(path) => self.plots.begin(path, session, registry, wake),
             Effect::CheckLaws(model) => self.laws.begin(&model, registry.folders(), wake),
             other => return Some(other),
@@ -84,7 +72,7 @@ impl Work<'_> {
 
 /// Carries out the effects of the panels.
 pub(super) fn carry_out(
-    mut effects: MessageReader<LabEffect>,
+    mut effects: MessageReader<Effect>,
     mut session: ResMut<Session>,
     registry: Res<Registry>,
     mut files: ResMut<files::DiskFiles>,
@@ -97,13 +85,13 @@ pub(super) fn carry_out(
     mut commands: Commands,
 ) {
     work.report(&mut session, &registry, unattended.is_some());
-    let mut pending: Vec<_> = effects.read().map(|e| e.0.clone()).collect();
+    let mut pending: Vec<_> = effects.read().cloned().collect();
     pending.reverse();
     while let Some(effect) = pending.pop() {
         let Some(effect) = work.begin(effect, &mut session, &registry) else { continue };
         match effect {
             Effect::HomeView => camera.home(),
-            Effect::FocusSelection => camera.focus(&session),
+            Effect::FocusSelection => camera.focus(&session, &registry),
             Effect::Steer(steer) => camera.steer(steer),
             Effect::Camera(change) => camera.change(change),
             Effect::ObserverFromView => camera.place_observer(&mut session, &registry),
@@ -129,8 +117,8 @@ pub(super) fn carry_out(
             Effect::CopyText(_) | Effect::Picture { .. } => {}
             Effect::OpenManual => manual::show(&mut session),
             Effect::Reveal(folder) => exports::reveal(&folder, &mut session),
-            dialog if dialog.is_dialog() => session.wanted_dialog = Some(dialog),
-            model if model.is_authoring() => {
+            dialog @ Effect::Pick(_) => session.wanted_dialog = Some(dialog),
+            model @ (Effect::NewModel { .. } | Effect::AdoptModel(_) | Effect::ExportShaders(_)) => {
                 if let Some(folder) = authoring::write(&model, &mut session, &registry) {
                     commands.queue(move |world: &mut World| shaders::move_to(world, &folder));
                 }

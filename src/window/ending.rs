@@ -10,7 +10,7 @@ use std::{
     cell::RefCell,
     panic::{self, AssertUnwindSafe, PanicHookInfo},
     sync::{
-        Mutex, PoisonError,
+        Mutex,
         atomic::{AtomicBool, Ordering},
     },
     time::Duration,
@@ -93,7 +93,7 @@ pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure>
             Err(Failure::NoRenderer(lost("the connection to the display was lost", sentence())))
         }
         Err(panic) => {
-            let culprit = CULPRIT.lock().unwrap_or_else(PoisonError::into_inner).take();
+            let culprit = caught::lock(&CULPRIT).take();
             let why = culprit.map_or_else(|| "a system panicked".to_owned(), |(_, why)| why);
             complain(&lost(&format!("the window was closed: {why}"), sentence()));
             panic::resume_unwind(panic)
@@ -103,9 +103,7 @@ pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure>
 
 /// A panic in a system, described by function, if the program has debug symbols, and by location.
 fn described(info: &PanicHookInfo<'_>) -> String {
-    let payload = info.payload();
-    let text = payload.downcast_ref::<String>().map(String::as_str);
-    let why = text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("it gave no reason");
+    let why = caught::message(info.payload());
     let place = info.location().map_or_else(String::new, |at| format!(" at {}:{}", at.file(), at.line()));
     let trace = Backtrace::force_capture().to_string();
     let name = culprit(&trace).map_or_else(String::new, |name| format!(" {name}"));

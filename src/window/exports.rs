@@ -5,19 +5,17 @@ use std::path::{Path, PathBuf};
 use bevy::ecs::prelude::*;
 
 use super::background::Background;
-use crate::files::Shown as _;
 use crate::{
     export::{
         ExportError, Form, Progress, Request, form, view,
         write::{WriteError, inputs, may_write, write},
     },
-    files::{self, Before},
+    files::{self, Before, Shown as _},
     panel::{
         export::{SIZE, object},
-        state::{Exporting, Session, Severity},
+        state::{Question, Session, Severity},
     },
     registry::Registry,
-    scene::Scene,
 };
 
 /// The notes on an export, or why it failed.
@@ -25,27 +23,10 @@ type Outcome = Result<Vec<String>, Vec<String>>;
 
 /// The running export, labelled with the name of its format.
 #[derive(Debug, Default, Resource)]
-pub(super) struct Exports(Background<&'static str, Ended>);
+pub(super) struct Exports(pub(super) Background<&'static str, Ended>);
 
 /// The id of the format, the destination, and the outcome.
 type Ended = (&'static str, PathBuf, Outcome);
-
-/// An export with all its inputs.
-struct Job {
-    form: &'static Form,
-    scene: Scene,
-    registry: Registry,
-    stem: String,
-    object: usize,
-    /// The pinned pixel, and a remark about it.
-    point: Option<[u32; 2]>,
-    remark: Option<&'static str>,
-    /// The active view.
-    view: usize,
-    path: PathBuf,
-    /// State of the destination when the user chose it.
-    before: Before,
-}
 
 impl Exports {
     /// Starts an export and returns at once; if the destination exists, asks the user instead. Calls `wake` at each
@@ -67,47 +48,30 @@ impl Exports {
         let inputs = inputs(session.path.as_deref(), [session.document.scene()], registry);
         let before = match may_write(form, &path, overwrite, &inputs) {
             Ok(before) => before,
-            Err(WriteError::Exists(_)) => return session.export_exists(form.id, path),
+            Err(WriteError::Exists(_)) => {
+                return session.questions.ask(Question::ReplaceExport { form: form.id, path });
+            }
             Err(error) => return session.say(Severity::Error, format!("{error}.")),
         };
         let (point, remark) = if form.explains() { pinned(session) } else { (None, None) };
-        let job = Job {
-            form,
-            scene: (*session.document).clone(),
-            registry: registry.clone(),
-            stem: session.stem(),
-            object: object(session).unwrap_or_default(),
-            point,
-            remark,
-            view: session.active(),
-            path,
-            before,
-        };
-        let broken = vec!["The export failed: an internal error.".to_owned()];
-        let place = job.path.clone();
-        self.0.begin(
-            form.name,
-            wake,
-            move || (form.id, place, Err(broken)),
-            move |progress| {
-                let outcome = run(&job, progress);
-                (form.id, job.path, outcome)
-            },
-        );
-    }
-
-    /// Stops the export at its next step.
-    pub(super) fn cancel(&self) {
-        self.0.cancel();
+        let (scene, registry, stem) = ((*session.document).clone(), registry.clone(), session.stem());
+        let (object, view) = (object(session).unwrap_or_default(), form.of_view.then_some(session.active()));
+        let failed = Err(vec!["The export failed: an internal error.".to_owned()]);
+        let broken = (form.id, path.clone(), failed);
+        self.0.begin(form.name, wake, broken, move |progress| {
+            let (scene, of_view) = view::exported(form, &scene, view, &stem, &registry);
+            let (scene, registry, stem) = (&scene, &registry, &*stem);
+            let request = Request { scene, registry, stem, size: SIZE, object, point };
+            let notes = written(form, &request, &path, &before, progress);
+            let remarks = remark.map(str::to_owned);
+            let outcome = notes.map(|notes| of_view.into_iter().chain(notes).chain(remarks).collect());
+            (form.id, path, outcome)
+        });
     }
 
     /// Reports the progress to the panels. Returns the folder of an export that has just succeeded.
     pub(super) fn report(&self, session: &mut ResMut<Session>) -> Option<PathBuf> {
-        let running =
-            self.0.running().map(|now| Exporting { name: now.label, done: now.done, step: now.step });
-        if session.facts.export != running {
-            session.bypass_change_detection().facts.export = running;
-        }
+        session.bypass_change_detection().facts.export = self.0.running();
         let (form, path, outcome) = self.0.take()?;
         let folder = if path.is_dir() { path.clone() } else { files::folder_of(&path).to_owned() };
         let done = outcome.is_ok().then_some(folder);
@@ -143,12 +107,9 @@ fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
     }
 }
 
-fn run(job: &Job, progress: &Progress) -> Outcome {
-    let Job { form, scene, registry, stem, object, point, remark, view, path, before } = job;
-    let view = form.of_view.then_some(*view);
-    let (scene, of_view) = view::exported(form, scene, view, stem, registry);
-    let request = Request { scene: &scene, registry, stem, size: SIZE, object: *object, point: *point };
-    let made = (form.make)(&request, progress).and_then(|export| {
+/// Makes an export and writes it. Returns its notes.
+fn written(form: &Form, request: &Request, path: &Path, before: &Before, progress: &Progress) -> Outcome {
+    let made = (form.make)(request, progress).and_then(|export| {
         progress.step(1.0, "writing it")?;
         Ok(export)
     });
@@ -157,7 +118,7 @@ fn run(job: &Job, progress: &Progress) -> Outcome {
         ExportError::Cancelled => vec!["The export was cancelled.".to_owned()],
     })?;
     write(&export, path, before).map_err(|error| vec![format!("{error}.")])?;
-    Ok(of_view.into_iter().chain(export.notes).chain(remark.map(str::to_owned)).collect())
+    Ok(export.notes)
 }
 
 /// Shows a folder in the file manager.

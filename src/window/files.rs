@@ -7,13 +7,13 @@ use std::{
 
 use bevy::ecs::resource::Resource;
 
-use crate::files::Shown as _;
 use crate::{
-    files::{self, Kind},
+    files::{self, Kind, Shown as _},
     panel::{
         files::{Files, OnDisk, Opened, Saved},
         state::MissingPart,
     },
+    parameter::Outside,
     registry::Registry,
     scene::{
         Scene,
@@ -54,8 +54,8 @@ impl DiskFiles {
 }
 
 impl Files for DiskFiles {
-    fn open(&mut self, path: &Path, registry: &Registry) -> Opened {
-        let read = load::file(path, registry, Defaults::Ask);
+    fn open(&mut self, path: &Path, registry: &Registry, outside: &Outside) -> Opened {
+        let read = load::file(path, registry, Defaults::Ask.allowing(outside));
         if let Ok(loaded) = &read {
             self.read = Some((path.to_owned(), loaded.stamp));
         }
@@ -89,7 +89,7 @@ impl Files for DiskFiles {
         saved
     }
 
-    fn check(&mut self, path: &Path, registry: &Registry) -> OnDisk {
+    fn check(&mut self, path: &Path, registry: &Registry, outside: &Outside) -> OnDisk {
         match files::kind(path) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return OnDisk::Gone,
             Ok(Kind::Pipe | Kind::Device) if self.stream.as_deref() == Some(path) => return OnDisk::Same,
@@ -108,7 +108,8 @@ impl Files for DiskFiles {
             return OnDisk::Same;
         }
         let name = path.shown().to_string();
-        let content = opened(load::from_bytes(&bytes, &name, registry, Defaults::Ask));
+        let read = load::from_bytes(&bytes, &name, registry, Defaults::Ask.allowing(outside));
+        let content = opened(read);
         OnDisk::Changed { version, content }
     }
 

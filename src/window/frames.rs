@@ -4,8 +4,7 @@
 use std::time::{Duration, Instant};
 
 use bevy::{
-    app::AppExit,
-    ecs::prelude::*,
+    prelude::*,
     render::renderer::RenderAdapterInfo,
     winit::{UpdateMode, WinitSettings},
 };

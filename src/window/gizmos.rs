@@ -1,20 +1,7 @@
 //! The outline of the room, occluded by whatever is in front of it. Other marks are painted over the picture: see
 //! [`marks`](crate::panel::marks).
 
-use bevy::{
-    app::{App, Plugin},
-    camera::visibility::RenderLayers,
-    color::{Alpha as _, Color},
-    ecs::prelude::*,
-    gizmos::{
-        config::{GizmoConfig, GizmoConfigGroup},
-        gizmos::Gizmos,
-        primitives::dim3::GizmoPrimitive3d,
-    },
-    math::{Isometry3d, primitives::Cuboid},
-    reflect::Reflect,
-};
-use glam::Vec3;
+use bevy::{camera::visibility::RenderLayers, prelude::*};
 
 use crate::{
     panel::state::{Session, ThemeChoice},
@@ -35,7 +22,6 @@ pub struct GizmosPlugin;
 
 impl Plugin for GizmosPlugin {
     fn build(&self, app: &mut App) {
-        use bevy::gizmos::AppGizmoBuilder;
         let mut config = GizmoConfig::default();
         config.line.width = 1.0;
         config.render_layers = RenderLayers::layer(GIZMO_LAYER);
@@ -55,7 +41,7 @@ fn draw(session: Res<Session>, scene: Res<CurrentScene>, mut room: Gizmos<InRoom
     if !session.view.show_room {
         return;
     }
-    let grey = outline(session.view.theme);
+    let grey = outline(session.settings.theme);
     let colour = Color::srgb_u8(grey, grey, grey);
     let corner = scene.0.scene_size.corner();
     room.primitive_3d(&Cuboid::from_size(corner), Isometry3d::from_translation(corner * 0.5), colour);

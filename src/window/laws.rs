@@ -5,13 +5,13 @@ use std::{
     io::Read as _,
     path::{Path, PathBuf},
     process::{Command, Stdio},
-    sync::{Arc, Mutex, PoisonError},
     thread,
     time::{Duration, Instant},
 };
 
 use bevy::ecs::prelude::*;
 
+use super::background::Background;
 use crate::{files, library::assets::Folders, reflection::law_report::LawReport};
 
 /// Maximum duration of a check: software Vulkan needs seconds for a model at the limits.
@@ -21,37 +21,36 @@ const LONGEST: Duration = Duration::from_secs(120);
 pub type Outcome = Result<LawReport, String>;
 
 /// Checks laws, one model at a time.
-#[derive(Clone, Debug, Default, Resource)]
+#[derive(Debug, Default, Resource)]
 pub struct LawChecks {
     program: Option<PathBuf>,
-    done: Arc<Mutex<Option<(String, Outcome)>>>,
+    work: Background<(), (String, Outcome)>,
 }
 
 impl LawChecks {
     /// Creates checks that run the given program, normally this one.
     #[must_use]
     pub fn by(program: Option<PathBuf>) -> Self {
-        Self { program, done: Arc::default() }
+        Self { program, ..Self::default() }
     }
 
     /// Starts a check and returns at once. Calls `wake` when there is a result.
-    pub fn begin(&self, id: &str, folders: &Folders, wake: impl FnOnce() + Send + 'static) {
-        let (program, done) = (self.program.clone(), self.done.clone());
-        let (id, folders) = (id.to_owned(), folders.clone());
-        thread::spawn(move || {
+    pub fn begin(&self, id: &str, folders: &Folders, wake: impl Fn() + Send + 'static) {
+        let (program, id, folders) = (self.program.clone(), id.to_owned(), folders.clone());
+        let broken = (id.clone(), Err("an internal error".to_owned()));
+        self.work.begin((), wake, broken, move |_| {
             let outcome = match program {
                 Some(program) => checked(&program, &id, &folders),
                 None => Err("this program cannot be started again".to_owned()),
             };
-            *done.lock().unwrap_or_else(PoisonError::into_inner) = Some((id, outcome));
-            wake();
+            (id, outcome)
         });
     }
 
     /// The result since the last call, with the id of the model.
     #[must_use]
     pub fn take(&self) -> Option<(String, Outcome)> {
-        self.done.lock().unwrap_or_else(PoisonError::into_inner).take()
+        self.work.take()
     }
 }
 

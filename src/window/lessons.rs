@@ -8,7 +8,7 @@ use std::{
 use bevy::ecs::prelude::*;
 
 use super::watching::{FileWatch, FilesChanged, GRACE};
-use crate::panel::state::{Effect, LabEffect, LessonSource, Session};
+use crate::panel::state::{Effect, LessonSource, Session};
 
 /// The watched file or folder of the open lesson.
 #[derive(Default)]
@@ -23,7 +23,7 @@ pub(super) fn follow_lesson(
     mut changed: MessageReader<FilesChanged>,
     mut watch: ResMut<FileWatch>,
     session: Res<Session>,
-    mut effects: MessageWriter<LabEffect>,
+    mut effects: MessageWriter<Effect>,
     mut watched: Local<Watched>,
 ) {
     let wanted = match session.lesson.as_ref().map(|open| &open.source) {
@@ -50,7 +50,7 @@ pub(super) fn follow_lesson(
     let news = changed.read().flat_map(|files| &files.0).find(|file| concerned(file)).cloned();
     let Some(file) = news else { return };
     if std::mem::replace(&mut watched.suspect, false) {
-        effects.write(LabEffect(Effect::LookAtLesson));
+        effects.write(Effect::LookAtLesson);
     } else {
         // Many editors write in steps.
         watched.suspect = true;

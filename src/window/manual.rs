@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::files::Shown as _;
 use crate::{
-    files,
+    files::{self, Shown as _},
     library::assets::data_folder,
     panel::{
         manual,

@@ -5,14 +5,14 @@ use bevy::ecs::prelude::*;
 use super::background::Background;
 use crate::{
     matching::{Match, MatchError, Request, What, match_view},
-    panel::state::{Matching, Session},
+    panel::state::Session,
     registry::Registry,
     scene::Scene,
 };
 
 /// The running match of a view, labelled with the view.
 #[derive(Debug, Default, Resource)]
-pub(super) struct Matches(Background<usize, Ended>);
+pub(super) struct Matches(pub(super) Background<usize, Ended>);
 
 /// The scene in which a view was matched, and the outcome; `None` if the search crashed.
 type Ended = (Scene, usize, What, Option<Result<Match, MatchError>>);
@@ -27,34 +27,20 @@ impl Matches {
         wake: impl Fn() + Send + 'static,
     ) {
         let (scene, registry) = ((*session.document).clone(), registry.clone());
-        let same = scene.clone();
+        let broken = (scene.clone(), view, what, None);
         // Pictures are compared as seen from the current camera.
         let mut seen = scene.clone();
         seen.observer = session.facts.observer(seen.observer);
-        self.0.begin(
-            view,
-            wake,
-            move || (same, view, what, None),
-            move |progress| {
-                let request = Request { scene: &seen, view, what, parameters: &parameters };
-                let outcome = match_view(&request, &registry, progress);
-                (scene, view, what, Some(outcome))
-            },
-        );
-    }
-
-    /// Stops the match at its next step.
-    pub(super) fn cancel(&self) {
-        self.0.cancel();
+        self.0.begin(view, wake, broken, move |progress| {
+            let request = Request { scene: &seen, view, what, parameters: &parameters };
+            let outcome = match_view(&request, &registry, progress);
+            (scene, view, what, Some(outcome))
+        });
     }
 
     /// Reports the progress to the panels, and applies a finished match.
     pub(super) fn report(&self, session: &mut ResMut<Session>, registry: &Registry) {
-        let running =
-            self.0.running().map(|now| Matching { view: now.label, done: now.done, step: now.step });
-        if session.facts.matching != running {
-            session.bypass_change_detection().facts.matching = running;
-        }
+        session.bypass_change_detection().facts.matching = self.0.running();
         if let Some((scene, view, what, outcome)) = self.0.take() {
             session.matched(&scene, (view, what), outcome, registry);
         }

@@ -3,7 +3,15 @@
 //! [`panel`](crate::panel) draws and decides; this module does everything that needs entities, a camera, files or the
 //! operating system. Frames are drawn only when something changes.
 
-use bevy::{ecs::prelude::*, render::extract_component::ExtractComponent};
+use bevy::{
+    ecs::{prelude::*, system::SystemParam},
+    render::extract_component::ExtractComponent,
+};
+
+use crate::{
+    panel::state::{Action, Effect, Session},
+    registry::Registry,
+};
 
 pub mod authoring;
 mod background;
@@ -66,6 +74,20 @@ pub use watching::WatchingPlugin;
 /// their owners.
 #[derive(Component, ExtractComponent, Clone, Copy, Debug, Default)]
 pub struct WindowView;
+
+/// Applies actions of the user, whose effects are messages.
+#[derive(SystemParam)]
+struct Acting<'w> {
+    session: ResMut<'w, Session>,
+    registry: Res<'w, Registry>,
+    effects: MessageWriter<'w, Effect>,
+}
+
+impl Acting<'_> {
+    fn apply(&mut self, action: Action) {
+        self.effects.write_batch(self.session.apply(action, &self.registry));
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -1,9 +1,6 @@
 //! Opens the window: the program around the panels and the picture.
 
-use std::{
-    panic::{self, AssertUnwindSafe},
-    sync::PoisonError,
-};
+use std::panic::{self, AssertUnwindSafe};
 
 use bevy::app::{App, PluginGroup as _, Plugins};
 
@@ -16,7 +13,7 @@ use super::{
     recovery::Recovery,
     requirements::{RequirementsPlugin, need_display, need_driver},
 };
-use crate::failure::Failure;
+use crate::{caught::lock, failure::Failure};
 
 /// Opens the window and returns once it is closed. `extend` adds panels, systems and plugins to the app.
 ///
@@ -39,7 +36,7 @@ pub fn view(options: ViewOptions, extend: impl FnOnce(&mut App)) -> Result<(), F
     }
     let farewell = app.world_mut().get_resource_mut::<Recovery>().and_then(|mut r| r.hand_over());
     let ended = ending::run(&mut app, farewell.as_ref().map(|(farewell, _)| &farewell.keeper));
-    let failure = report.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let failure = lock(&report).take();
     if failure.is_none() {
         ended?;
     }

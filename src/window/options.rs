@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use crate::{
     panel::state::LessonSource,
+    parameter::Outside,
     registry::Registry,
     scene::{
         Scene,
@@ -32,6 +33,8 @@ pub struct ViewOptions {
     pub step: Option<usize>,
     /// True to show the examples, because the window starts without a scene of the user's.
     pub examples: bool,
+    /// The files outside their folders that scenes may name.
+    pub outside: Outside,
     /// True to use defaults if the file is later missing parts.
     pub use_defaults: bool,
     /// Size of the window in pixels; `None` for 1280×720 points.

@@ -1,17 +1,7 @@
 //! Selection by clicks into the picture: a light by its marker, a lamp or an object by its visible surface.
 
-use bevy::{
-    app::{App, Plugin},
-    camera::Camera,
-    ecs::prelude::*,
-    input::{ButtonInput, mouse::MouseButton},
-    math::Ray3d,
-    picking::mesh_picking::ray_cast::{MeshRayCast, MeshRayCastSettings, RayCastVisibility},
-    transform::components::GlobalTransform,
-    window::{PrimaryWindow, Window},
-};
+use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::egui::pos2;
-use glam::Vec2;
 
 use super::{
     WindowView,

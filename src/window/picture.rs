@@ -1,24 +1,16 @@
 //! The picture between the panels: camera, size and position.
 
 use bevy::{
-    app::{App, Plugin, PostUpdate, Startup},
     asset::AssetEventSystems,
-    camera::{
-        Camera, Camera2d, CameraMainTextureUsages, ClearColorConfig, Hdr, RenderTarget,
-        visibility::RenderLayers,
-    },
-    color::Color,
+    camera::{CameraMainTextureUsages, Hdr, RenderTarget, visibility::RenderLayers},
     core_pipeline::tonemapping::Tonemapping,
-    ecs::prelude::*,
     light::cluster::GlobalClusterSettings,
-    math::URect,
-    render::{render_resource::TextureUsages, renderer::RenderAdapterInfo, view::Msaa},
-    transform::TransformSystems,
-    window::{PrimaryWindow, Window},
+    prelude::*,
+    render::{render_resource::TextureUsages, renderer::RenderAdapterInfo},
+    window::PrimaryWindow,
 };
 use bevy_egui::{EguiGlobalSettings, EguiPostUpdateSet, EguiPrimaryContextPass, PrimaryEguiContext};
 use bevy_panorbit_camera::{ActiveCameraData, PanOrbitCameraSystemSet};
-use glam::UVec2;
 
 use super::{
     WindowView, camera,
@@ -133,7 +125,7 @@ fn fit_picture(
     let inset = (area.cells.is_empty() && frame != place).then(|| URect::from_corners(at, at + frame.size));
     view.set_if_neq(View { inset, ..View::for_display(place.size) });
     // The light theme has a light surround.
-    let grey = Palette::of(&session.view).surround;
+    let grey = Palette::of(&session.settings).surround;
     let surround = Color::srgb_u8(grey.r(), grey.g(), grey.b());
     if !matches!(camera.clear_color, ClearColorConfig::Custom(known) if known == surround) {
         camera.clear_color = ClearColorConfig::Custom(surround);

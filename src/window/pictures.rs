@@ -5,39 +5,33 @@ use std::{
     borrow::Cow,
     collections::VecDeque,
     path::{Path, PathBuf},
-    sync::{Mutex, PoisonError},
+    sync::Mutex,
     time::{Duration, Instant},
 };
 
 use arboard::{Clipboard, ImageData};
-use bevy::{
-    app::{App, Plugin, PostUpdate},
-    ecs::prelude::*,
-    window::RequestRedraw,
-};
-use glam::UVec2;
+use bevy::{prelude::*, window::RequestRedraw};
 
 use super::{
     background::Background,
-    difference::light,
-    readback::{Reading, codes},
+    readback::{Reading, SeenViews},
     views::ShownViews,
 };
-use crate::files::{Shown as _, words};
 use crate::{
     caption,
-    compare::{Shown, compose, size_around},
+    caught::lock,
+    compare::{compose, size_around},
     export::write::inputs,
-    files,
+    files::{self, Shown as _, words},
     optics::TermSelection,
-    panel::state::{Effect, LabEffect, PictureEnd, Session},
+    panel::state::{Effect, PictureEnd, Question, Session},
     registry::Registry,
     render::{
         capture::png::{self, About},
         view::{Drawing, ViewSystems},
     },
     scene::{
-        Observer, Scene,
+        Scene,
         comparison::{Compared, Layout},
         variant::LETTERS,
     },
@@ -78,18 +72,21 @@ const PATIENCE: Duration = Duration::from_secs(5);
 fn take(
     views: ShownViews,
     registry: Res<Registry>,
-    mut effects: MessageReader<LabEffect>,
+    mut effects: MessageReader<Effect>,
     mut session: ResMut<Session>,
     mut pictures: ResMut<Pictures>,
     mut requests: MessageWriter<RequestRedraw>,
     mut commands: Commands,
 ) {
-    for LabEffect(effect) in effects.read() {
+    for effect in effects.read() {
         let Effect::Picture { view, file, overwrite } = effect.clone() else { continue };
         let file = file.map(as_png);
         match file.as_deref().map_or(Ok(true), |file| may_write(file, overwrite, &session, &registry)) {
             Ok(true) => pictures.wanted.push_back(Wanted { view, file, since: Instant::now() }),
-            Ok(false) => session.picture_exists(view, file.unwrap_or_default()),
+            Ok(false) => {
+                let path = file.unwrap_or_default();
+                session.questions.ask(Question::ReplacePicture { view, path });
+            }
             Err(why) => session.pictured(PictureEnd::Failed(why)),
         }
     }
@@ -104,7 +101,7 @@ fn take(
         && let Some(job) = job.take()
     {
         let broken = PictureEnd::Failed("The picture was not taken: an internal error.".to_owned());
-        work.begin((), || {}, move || broken, move |_| job.run(&read));
+        work.begin((), || {}, broken, move |_| job.run(&read));
     }
     if !wanted.is_empty() || job.is_some() || work.running().is_some() {
         requests.write(RequestRedraw);
@@ -142,13 +139,9 @@ impl Pictures {
         if let (Some(textures), Some(first)) = (textures, found.first()) {
             self.reading = Some(Reading::begin(&textures, commands));
             self.job = Some(Job {
-                scene: scene(session, registry),
-                registry: registry.clone(),
-                shown: numbers.iter().map(|view| (*view, session.terms_of(*view))).collect(),
-                size: first.view.size,
-                camera: session.facts.observer(session.document.observer),
+                views: SeenViews::of(session, &numbers, first.view.size, registry),
                 camera_is_free: session.facts.camera_is_free,
-                caption: session.view.picture_caption,
+                caption: session.settings.picture_caption,
                 // A layout that shows a single view also means that view alone.
                 alone: view.is_some() || matches!(numbers.as_slice(), [shown] if *shown > 0),
                 file,
@@ -170,13 +163,6 @@ fn shown(session: &Session, cells: Vec<usize>, alone: Option<usize>) -> Vec<usiz
         }
         (None, _) => cells,
     }
-}
-
-/// The scene of the picture, with the comparison as on screen.
-fn scene(session: &Session, registry: &Registry) -> Scene {
-    let mut scene = session.document.named(registry);
-    scene.comparison.with = session.compared_with();
-    scene
 }
 
 /// Appends the extension of pictures, if the user typed none.
@@ -203,13 +189,7 @@ fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registr
 /// A picture with all its inputs.
 #[derive(Debug)]
 struct Job {
-    scene: Scene,
-    registry: Registry,
-    /// The views, with their visible terms.
-    shown: Vec<(usize, TermSelection)>,
-    /// Size of each view.
-    size: UVec2,
-    camera: Observer,
+    views: SeenViews,
     /// True if the camera is not at the observer of the scene.
     camera_is_free: bool,
     caption: bool,
@@ -230,58 +210,41 @@ impl Job {
 
     /// The RGB pixels of the picture, and its size.
     fn draw(&self, read: &[Vec<u8>]) -> Result<(Vec<u8>, [u32; 2]), String> {
-        let unread = || "The picture was not taken: the GPU returned no pixels.".to_owned();
-        let mut comparison = self.scene.comparison;
-        if self.shown.len() < 2 {
+        let SeenViews { scene, registry, shown, size, .. } = &self.views;
+        let mut comparison = scene.comparison;
+        if shown.len() < 2 {
             comparison.layout = Layout::Single;
         }
-        let observer = self.camera.fitting(self.size.to_array(), self.scene.view_angle());
         let is_map = comparison.layout.is_map();
-        let needs_light = is_map && comparison.values == Compared::Light;
-        let mut scenes = Vec::new();
-        let mut pictures = Vec::new();
-        for ((view, terms), bytes) in self.shown.iter().zip(read) {
-            let seen = self.scene.seen(*view, &self.registry).map(|(seen, _)| seen).ok_or_else(unread)?;
-            let codes = codes(bytes, self.size).ok_or_else(unread)?;
-            let mut picture = Shown::of_codes(self.size.x, self.size.y, codes).map_err(|e| e.to_string())?;
-            if needs_light {
-                let light = light(seen.clone(), observer, self.size, *terms, &self.registry);
-                picture = picture.with_light(light).map_err(|e| e.to_string())?;
-            }
-            if is_map && pictures.is_empty() {
-                picture = picture.outlined(&Scene { observer, ..seen.clone() }, &self.registry);
-            }
-            pictures.push(picture);
-            scenes.push((*view, seen, *terms));
-        }
-        if pictures.is_empty() {
-            return Err(unread());
-        }
+        let pictures = self.views.pictures(read, is_map && comparison.values == Compared::Light, is_map)?;
         let size = match comparison.layout {
-            Layout::Single => self.size.to_array(),
-            _ => size_around(&comparison, self.scene.variants.len(), self.size.to_array()),
+            Layout::Single => size.to_array(),
+            _ => size_around(&comparison, scene.variants.len(), size.to_array()),
         };
         let rgb8 = compose(&comparison, size, &pictures).map_err(|e| e.to_string())?;
         if !self.caption {
             return Ok((rgb8, size));
         }
-        let shown: Vec<_> = scenes.iter().map(|(view, seen, terms)| (*view, seen, *terms)).collect();
-        Ok(caption::draw(&caption::of_picture(&self.scene, &shown, &self.registry), rgb8, size))
+        let seen = |(view, terms): &(usize, TermSelection)| Some((*view, self.views.seen(*view)?, *terms));
+        let seen: Vec<_> = shown.iter().filter_map(seen).collect();
+        let shown: Vec<_> = seen.iter().map(|(view, seen, terms)| (*view, seen, *terms)).collect();
+        Ok(caption::draw(&caption::of_picture(scene, &shown, registry), rgb8, size))
     }
 
     fn save(&self, file: &Path, rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
-        let about = About::scene(&self.pictured(), &self.registry).with("Renderer", "GPU");
+        let about = About::scene(&self.pictured(), &self.views.registry).with("Renderer", "GPU");
         png::write(file, width, height, rgb8, &about)
             .map_err(|error| format!("{} could not be written: {}.", file.shown(), words(&error)))
     }
 
     /// The scene of the picture, with the observer at the camera, so that opening the picture shows the same view.
     fn pictured(&self) -> Scene {
-        let alone = self.shown.first().filter(|_| self.alone);
-        let alone = alone.and_then(|(view, _)| self.scene.seen(*view, &self.registry));
-        let mut scene = alone.map_or_else(|| self.scene.clone(), |(seen, _)| seen.alone());
+        let SeenViews { scene, registry, shown, camera, .. } = &self.views;
+        let alone = shown.first().filter(|_| self.alone);
+        let alone = alone.and_then(|(view, _)| scene.seen(*view, registry));
+        let mut scene = alone.map_or_else(|| scene.clone(), |(seen, _)| seen.alone());
         if self.camera_is_free {
-            scene.observer = self.camera;
+            scene.observer = *camera;
         }
         scene
     }
@@ -292,7 +255,7 @@ fn copy(rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
     static CLIPBOARD: Mutex<Option<Clipboard>> = Mutex::new(None);
     let rgba: Vec<u8> = rgb8.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
     let picture = ImageData { width: width as usize, height: height as usize, bytes: Cow::Owned(rgba) };
-    let mut clipboard = CLIPBOARD.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut clipboard = lock(&CLIPBOARD);
     let set = match &mut *clipboard {
         Some(clipboard) => clipboard.set_image(picture),
         none => Clipboard::new().and_then(|new| none.insert(new).set_image(picture)),

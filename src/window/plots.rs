@@ -33,8 +33,7 @@ impl PlotFiles {
         let file = file_of(&path);
         let request = Request::of(session, registry);
         let inputs = inputs(session.path.as_deref(), [session.document.scene()], registry);
-        let place = file.clone();
-        let broken = move || (place, Err("an internal error".to_owned()));
+        let broken = (file.clone(), Err("an internal error".to_owned()));
         // The dialog asked only about the exact name that was typed.
         let asked = file == path;
         self.0.begin((), wake, broken, move |progress| {

@@ -3,16 +3,14 @@
 use std::{path::PathBuf, time::Duration};
 
 use bevy::{
-    app::{PluginGroup, PluginGroupBuilder, ScheduleRunnerPlugin, TerminalCtrlCHandlerPlugin},
-    asset::AssetPlugin,
+    app::{PluginGroupBuilder, ScheduleRunnerPlugin, TerminalCtrlCHandlerPlugin},
     log::{Level, LogPlugin},
-    prelude::DefaultPlugins,
+    prelude::*,
     render::{RenderPlugin, pipelined_rendering::PipelinedRenderingPlugin, settings::RenderCreation},
-    window::{ExitCondition, PresentMode, Window, WindowPlugin, WindowResolution},
+    window::{ExitCondition, PresentMode, WindowResolution},
     winit::WinitPlugin,
 };
 use bevy_egui::EguiPlugin;
-use glam::UVec2;
 
 use super::{
     ViewOptions, camera::CameraPlugin, capture::CapturePlugin, clipping::ClippingPlugin,

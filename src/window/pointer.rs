@@ -8,16 +8,11 @@
 //! belongs, and earlier motion turns nothing.
 
 use bevy::{
-    app::{App, Plugin, PreUpdate},
-    ecs::{message::Messages, prelude::*},
-    input::{
-        ButtonInput, InputSystems,
-        mouse::{MouseButton, MouseMotion},
-    },
+    input::{InputSystems, mouse::MouseMotion},
+    prelude::*,
     window::{RequestRedraw, WindowEvent},
 };
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui::pos2};
-use glam::Vec2;
 
 use crate::panel::{is_over_picture, state::PictureArea};
 

@@ -1,14 +1,20 @@
-//! Reading back textures from the GPU.
+//! Reading back textures from the GPU, and the views in them.
 
 use std::sync::{Arc, OnceLock};
 
 use bevy::{
-    asset::Handle,
-    ecs::prelude::*,
-    image::Image,
+    prelude::*,
     render::gpu_readback::{Readback, ReadbackComplete},
 };
-use glam::UVec2;
+
+use crate::{
+    compare::Shown,
+    optics::TermSelection,
+    panel::state::Session,
+    reference::{self, Settings},
+    registry::Registry,
+    scene::{Observer, Scene},
+};
 
 /// Textures being read back: the entities that read them, and the results.
 #[derive(Debug)]
@@ -41,8 +47,65 @@ impl Reading {
     }
 }
 
+/// Views of a scene as the window shows them.
+#[derive(Debug)]
+pub(super) struct SeenViews {
+    pub(super) scene: Scene,
+    pub(super) registry: Registry,
+    /// The views, with their visible terms.
+    pub(super) shown: Vec<(usize, TermSelection)>,
+    /// Size of each view.
+    pub(super) size: UVec2,
+    pub(super) camera: Observer,
+}
+
+impl SeenViews {
+    /// Views of the scene of the window, with the comparison as on screen.
+    pub(super) fn of(session: &Session, views: &[usize], size: UVec2, registry: &Registry) -> Self {
+        let mut scene = session.document.named(registry);
+        scene.comparison.with = session.compared_with();
+        Self {
+            scene,
+            registry: registry.clone(),
+            shown: views.iter().map(|view| (*view, session.terms_of(*view))).collect(),
+            size,
+            camera: session.facts.observer(session.document.observer),
+        }
+    }
+
+    /// The scene of a view, seen by the camera of the window.
+    pub(super) fn seen(&self, view: usize) -> Option<Scene> {
+        let (seen, _) = self.scene.seen(view, &self.registry)?;
+        let observer = self.camera.fitting(self.size.to_array(), self.scene.view_angle());
+        Some(Scene { observer, ..seen })
+    }
+
+    /// The pictures that were read back, lit if their light is needed; for a map, with the outlines of the objects of
+    /// the first view.
+    pub(super) fn pictures(&self, read: &[Vec<u8>], lit: bool, map: bool) -> Result<Vec<Shown>, String> {
+        let unread = || "The picture was not taken: the GPU returned no pixels.".to_owned();
+        let [width, height] = self.size.to_array();
+        let mut pictures = Vec::new();
+        for ((view, terms), bytes) in self.shown.iter().zip(read) {
+            let seen = self.seen(*view).ok_or_else(unread)?;
+            let codes = codes(bytes, self.size).ok_or_else(unread)?;
+            let mut picture = Shown::of_codes(width, height, codes).map_err(|e| e.to_string())?;
+            if lit {
+                let settings = Settings { width, height, samples: 1, terms: *terms };
+                let light = reference::render(&seen, &self.registry, &settings);
+                picture = picture.with_light(light).map_err(|e| e.to_string())?;
+            }
+            if map && pictures.is_empty() {
+                picture = picture.outlined(&seen, &self.registry);
+            }
+            pictures.push(picture);
+        }
+        if pictures.is_empty() { Err(unread()) } else { Ok(pictures) }
+    }
+}
+
 /// Display codes of a texture that was read back, whose rows start at multiples of 256 bytes.
-pub(super) fn codes(bytes: &[u8], size: UVec2) -> Option<Vec<u8>> {
+fn codes(bytes: &[u8], size: UVec2) -> Option<Vec<u8>> {
     let row = 4 * size.x as usize;
     let stride = if size.y > 1 { row.next_multiple_of(256) } else { row };
     let mut out = Vec::with_capacity(3 * size.x as usize * size.y as usize);

@@ -12,13 +12,10 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-use bevy::{
-    app::{App, Last, Plugin, PreUpdate},
-    ecs::prelude::*,
-};
+use bevy::prelude::*;
 
 use super::{
-    ViewOptions,
+    Acting, ViewOptions,
     ending::{Guard, PATIENCE},
     files::DiskFiles,
     order::Loading,
@@ -28,7 +25,7 @@ use crate::files::Shown as _;
 use crate::{
     panel::{
         files::Files as _,
-        state::{Action, LabEffect, Offer, Question, RecoveryChoice, Session, Severity},
+        state::{Action, Offer, Question, RecoveryChoice, Session, Severity},
     },
     recovery::{Abandoned, About, Keeper, Store, ago},
     registry::Registry,
@@ -211,14 +208,9 @@ fn about(session: &Session, files: &DiskFiles) -> About {
 }
 
 /// Treats Ctrl+C in the terminal like Ctrl+Q in the window.
-fn interrupted(
-    recovery: Res<Recovery>,
-    mut session: ResMut<Session>,
-    registry: Res<Registry>,
-    mut effects: MessageWriter<LabEffect>,
-) {
+fn interrupted(recovery: Res<Recovery>, mut acting: Acting) {
     if recovery.farewell.interrupt.take() {
-        effects.write_batch(session.apply(Action::Quit, &registry).into_iter().map(LabEffect));
+        acting.apply(Action::Quit);
     }
 }
 

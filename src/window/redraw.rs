@@ -3,8 +3,7 @@
 use std::time::Duration;
 
 use bevy::{
-    ecs::prelude::*,
-    transform::components::Transform,
+    prelude::*,
     window::RequestRedraw,
     winit::{UpdateMode, WinitSettings},
 };

@@ -5,10 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use bevy::{
-    app::{App, Plugin},
-    ecs::prelude::*,
-};
+use bevy::prelude::*;
 
 use super::{
     order::Loading,

@@ -1,18 +1,14 @@
 //! The window on the desktop: title, full screen, closing, sleep.
 
 use bevy::{
-    app::{App, Last, Plugin, PostUpdate, PreUpdate, Startup},
-    ecs::prelude::*,
-    window::{FileDragAndDrop, MonitorSelection, PrimaryWindow, Window, WindowCloseRequested, WindowMode},
+    prelude::*,
+    window::{PrimaryWindow, WindowCloseRequested, WindowMode},
 };
 
 use bevy_egui::{EguiPostUpdateSet, EguiPreUpdateSet};
 
-use super::{frames, input, redraw};
-use crate::{
-    panel::state::{Action, LabEffect, Session},
-    registry::Registry,
-};
+use super::{Acting, frames, input, redraw};
+use crate::panel::state::{Action, Session};
 
 /// The window on the desktop. It sleeps while nothing changes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -71,36 +67,19 @@ fn fullscreen(session: Res<Session>, mut window: Single<&mut Window, With<Primar
 }
 
 /// Opens files dropped on the window, or adds them to the scene.
-fn file_dropped(
-    mut drops: MessageReader<FileDragAndDrop>,
-    mut session: ResMut<Session>,
-    registry: Res<Registry>,
-    mut effects: MessageWriter<LabEffect>,
-) {
-    let dropped: Vec<_> = drops
-        .read()
-        .filter_map(|drop| match drop {
-            FileDragAndDrop::DroppedFile { path_buf, .. } => Some(path_buf.clone()),
-            FileDragAndDrop::HoveredFile { .. } | FileDragAndDrop::HoveredFileCanceled { .. } => None,
-        })
-        .collect();
-    if dropped.is_empty() {
-        return;
-    }
-    for effect in session.apply(Action::Drop(dropped), &registry) {
-        effects.write(LabEffect(effect));
+fn file_dropped(mut drops: MessageReader<FileDragAndDrop>, mut acting: Acting) {
+    let file = |drop: &FileDragAndDrop| match drop {
+        FileDragAndDrop::DroppedFile { path_buf, .. } => Some(path_buf.clone()),
+        FileDragAndDrop::HoveredFile { .. } | FileDragAndDrop::HoveredFileCanceled { .. } => None,
+    };
+    let dropped: Vec<_> = drops.read().filter_map(file).collect();
+    if !dropped.is_empty() {
+        acting.apply(Action::Drop(dropped));
     }
 }
 
-fn close_requested(
-    mut requests: MessageReader<WindowCloseRequested>,
-    mut session: ResMut<Session>,
-    registry: Res<Registry>,
-    mut effects: MessageWriter<LabEffect>,
-) {
+fn close_requested(mut requests: MessageReader<WindowCloseRequested>, mut acting: Acting) {
     if requests.read().count() > 0 {
-        for effect in session.apply(Action::Quit, &registry) {
-            effects.write(LabEffect(effect));
-        }
+        acting.apply(Action::Quit);
     }
 }

@@ -1,17 +1,12 @@
 //! The views of a comparison in the window: one shared camera position, textures of equal size, and positions.
 
 use bevy::{
-    asset::Handle,
-    camera::{Camera, Hdr, RenderTarget},
-    ecs::{prelude::*, system::SystemParam},
-    image::Image,
-    math::URect,
-    render::view::Msaa,
-    transform::components::Transform,
-    window::{PrimaryWindow, RequestRedraw, Window},
+    camera::{Hdr, RenderTarget},
+    ecs::system::SystemParam,
+    prelude::*,
+    window::{PrimaryWindow, RequestRedraw},
 };
 use bevy_egui::{PrimaryEguiContext, egui::Rect};
-use glam::{UVec2, Vec3};
 
 use super::{
     WindowView,
@@ -70,7 +65,7 @@ pub(super) fn set_views(
     (channels, registry): (Option<Res<ShownChannels>>, Res<Registry>),
     main: Query<(Entity, &View, &Transform, &Camera, &Msaa, Option<&Overrides>), With<WindowView>>,
     mut others: Query<
-        (Entity, &OtherView, &mut View, &mut Transform, &mut Camera, Option<&mut Overrides>),
+        (Entity, &OtherView, &mut View, &mut Transform, &mut Camera, Option<&Overrides>),
         Without<WindowView>,
     >,
     mut commands: Commands,
@@ -80,13 +75,7 @@ pub(super) fn set_views(
     let own = area.as_deref().map_or(0, first);
     let channels = channels.as_deref().copied().unwrap_or_default();
     let overrides_of = |view| channels.overrides(&scene.0, view, &registry, place.translation);
-    let wanted = overrides_of(own);
-    if overrides != wanted.as_ref() {
-        match wanted {
-            Some(wanted) => _ = commands.entity(entity).insert(wanted),
-            None => _ = commands.entity(entity).remove::<Overrides>(),
-        }
-    }
+    override_view(entity, overrides, overrides_of(own), &mut commands);
     let shown: Vec<_> = cells.iter().map(|cell| cell.view).filter(|shown| *shown != own).collect();
     let mut known = Vec::new();
     for (entity, OtherView(number), mut other, mut transform, mut camera, overrides) in &mut others {
@@ -100,12 +89,7 @@ pub(super) fn set_views(
         if background_of(&camera) != background_of(lens) {
             camera.clear_color = lens.clear_color;
         }
-        match (overrides_of(*number), overrides) {
-            (Some(wanted), Some(mut overrides)) => _ = overrides.set_if_neq(wanted),
-            (Some(wanted), None) => _ = commands.entity(entity).insert(wanted),
-            (None, Some(_)) => _ = commands.entity(entity).remove::<Overrides>(),
-            (None, None) => {}
-        }
+        override_view(entity, overrides, overrides_of(*number), &mut commands);
     }
     for number in shown.into_iter().filter(|number| !known.contains(number)) {
         let samples = if *samples == Msaa::Off { 1 } else { 4 };
@@ -121,6 +105,15 @@ pub(super) fn set_views(
         if let Some(overrides) = overrides_of(number) {
             new.insert(overrides);
         }
+    }
+}
+
+/// Gives a view what it overrides.
+fn override_view(view: Entity, now: Option<&Overrides>, wanted: Option<Overrides>, commands: &mut Commands) {
+    match wanted {
+        wanted if wanted.as_ref() == now => {}
+        Some(wanted) => _ = commands.entity(view).insert(wanted),
+        None => _ = commands.entity(view).remove::<Overrides>(),
     }
 }
 

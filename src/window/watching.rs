@@ -8,16 +8,14 @@ use std::{
 };
 
 use bevy::{
-    app::{App, Plugin},
-    ecs::prelude::*,
+    prelude::*,
     winit::{EventLoopProxyWrapper, WinitUserEvent},
 };
 
 use super::order::Loading;
-use crate::files::Shown as _;
 use crate::{
-    files,
-    panel::state::{Effect, LabEffect, Session, Severity},
+    files::{self, Shown as _},
+    panel::state::{Effect, Session, Severity},
     parameter::NamedFile,
     render::{entities::CurrentScene, schedule::LabFrame},
     watch::Watcher,
@@ -45,11 +43,7 @@ impl Plugin for WatchingPlugin {
             LabFrame,
             (
                 collect.in_set(Loading::Watch),
-                (
-                    (watch_document, watch_named_files).chain().run_if(resource_changed::<Session>),
-                    follow_document,
-                    follow_named_files,
-                )
+                (watch_files.run_if(resource_changed::<Session>), follow_document, follow_named_files)
                     .chain()
                     .in_set(Loading::Follow),
             ),
@@ -58,8 +52,13 @@ impl Plugin for WatchingPlugin {
 }
 
 /// A function that wakes the sleeping window, from any thread.
-pub(super) fn waker(world: &World) -> impl Fn() + Send + Sync + use<> {
-    let proxy = world.get_resource::<EventLoopProxyWrapper>().map(|proxy| (**proxy).clone());
+pub(super) fn waker(world: &World) -> impl Fn() + Send + Sync + 'static + use<> {
+    wake(world.get_resource::<EventLoopProxyWrapper>())
+}
+
+/// Wakes the window with this event loop, if there is one.
+pub(super) fn wake(proxy: Option<&EventLoopProxyWrapper>) -> impl Fn() + Send + Sync + 'static + use<> {
+    let proxy = proxy.map(|proxy| (**proxy).clone());
     move || {
         if let Some(proxy) = &proxy {
             // An error means that the window is closed.
@@ -88,40 +87,18 @@ fn collect(
     }
 }
 
-/// Watches the file of the current document.
-fn watch_document(mut watch: ResMut<FileWatch>, session: Res<Session>, mut watched: Local<Option<PathBuf>>) {
-    if *watched == session.path {
-        return;
-    }
-    if let Some(old) = watched.take() {
-        watch.0.forget(&old);
-    }
-    watched.clone_from(&session.path);
-    if let Some(path) = watched.as_deref().filter(|path| !files::is_stream(path)) {
+/// Watches the file of the current document, and those that its lights and objects refer to.
+fn watch_files(mut watch: ResMut<FileWatch>, session: Res<Session>, mut watched: Local<BTreeSet<PathBuf>>) {
+    let named = session.document.files().filter_map(|file| file.path().map(Path::to_owned));
+    let own = session.path.iter().filter(|path| watched.contains(*path) || !files::is_stream(path));
+    let wanted: BTreeSet<_> = named.chain(own.cloned()).collect();
+    watched.difference(&wanted).for_each(|path| watch.0.forget(path));
+    for path in wanted.difference(&watched) {
         watch.0.watch_file(path);
         // The file may have changed after it was read and before it was watched.
         watch.0.report_later(path, Duration::ZERO);
     }
-}
-
-/// Watches the files that lights and objects of the document refer to.
-fn watch_named_files(
-    mut watch: ResMut<FileWatch>,
-    session: Res<Session>,
-    mut watched: Local<BTreeSet<PathBuf>>,
-) {
-    let named: BTreeSet<_> =
-        session.document.files().filter_map(|file| file.path().map(Path::to_owned)).collect();
-    if *watched == named {
-        return;
-    }
-    watched.difference(&named).for_each(|path| watch.0.forget(path));
-    for path in named.difference(&watched) {
-        watch.0.watch_file(path);
-        // The file may have changed after it was read and before it was watched.
-        watch.0.report_later(path, Duration::ZERO);
-    }
-    *watched = named;
+    *watched = wanted;
 }
 
 /// Reloads changed files that lights and objects refer to. If a file is unusable, its last good version stays in use;
@@ -166,11 +143,11 @@ fn follow_named_files(
 fn follow_document(
     mut changed: MessageReader<FilesChanged>,
     session: Res<Session>,
-    mut effects: MessageWriter<LabEffect>,
+    mut effects: MessageWriter<Effect>,
 ) {
     let concerned = |files: &FilesChanged| session.path.as_ref().is_some_and(|path| files.0.contains(path));
     if changed.read().filter(|files| concerned(files)).count() > 0 {
-        effects.write(LabEffect(Effect::CheckFile { discard: false }));
+        effects.write(Effect::CheckFile { discard: false });
     }
 }
 

@@ -1,7 +1,7 @@
 //! The parts of a picture that show one of several views, and their letters.
 
 use crate::{
-    compare::canvas::{Canvas, DARK, Rect},
+    compare::canvas::{Canvas, DARK, Rect, in_corner},
     lettering::Lettering,
     scene::variant::LETTERS,
 };
@@ -24,7 +24,7 @@ impl Area {
     /// The rectangle of the letter's plate in the corner; `None` without room.
     fn plate(&self, canvas: &Canvas) -> Option<Rect> {
         let letter = LETTERS.get(self.view)?;
-        let ([left, top, width, height], [at_right, at_bottom]) = (self.rect, self.corner);
+        let [_, _, width, height] = self.rect;
         let (scale, style) = (canvas.scale(), Lettering::Semibold);
         let px = LETTER * scale;
         let line = style.height(px);
@@ -33,9 +33,7 @@ impl Area {
         if width < plate[0] + 2 * margin || height < plate[1] + 2 * margin {
             return None;
         }
-        let x = if at_right { left + width - plate[0] - margin } else { left + margin };
-        let y = if at_bottom { top + height - plate[1] - margin } else { top + margin };
-        Some([x, y, plate[0], plate[1]])
+        Some(in_corner(self.rect, self.corner, plate, margin))
     }
 
     /// The part of the area below the letter, or above it.

@@ -1,5 +1,7 @@
 //! Axes: ranges and the positions of their labels.
 
+use crate::text::superscript;
+
 /// An axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
@@ -118,10 +120,6 @@ impl Axis {
         if short && (-3..=3).contains(&power) || (-1..=1).contains(&power) {
             return format!("{}", 10f64.powi(power));
         }
-        let superscript = |c: char| match c {
-            '-' => '⁻',
-            _ => c.to_digit(10).map_or(c, |d| ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][d as usize]),
-        };
         format!("10{}", power.to_string().chars().map(superscript).collect::<String>())
     }
 }

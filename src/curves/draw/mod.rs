@@ -205,7 +205,9 @@ impl Figure {
         }
     }
 
-    fn frame(&self) -> ([f64; 2], &str) {
+    /// The size of the figure, and its content for screen readers.
+    #[must_use]
+    pub fn frame(&self) -> ([f64; 2], &str) {
         match self {
             Self::Plot(plot) => (size(plot.size), &plot.title),
             Self::Polar(polar) => (size(polar.size), &polar.title),

@@ -85,10 +85,8 @@ impl Pen for Svg {
             // Writing to a string cannot fail.
             let _ = write!(style, " stroke-dasharray=\"{}\"", lengths.join(" "));
         }
-        self.add(&format!(
-            "<polyline fill=\"none\" {style} stroke-linejoin=\"round\" points=\"{}\"/>",
-            points(path)
-        ));
+        let path = points(path);
+        self.add(&format!("<polyline fill=\"none\" {style} stroke-linejoin=\"round\" points=\"{path}\"/>"));
     }
 
     fn fill(&mut self, path: &[[f64; 2]], ink: Ink) {
@@ -103,13 +101,9 @@ impl Pen for Svg {
             Anchor::End => "end",
         };
         let colour = self.colour(Ink::Text);
-        self.add(&format!(
-            "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\" font-family=\"sans-serif\" font-size=\"{px}\" \
-             fill=\"{colour}\">{}</text>",
-            short(x),
-            short(y),
-            escaped(text)
-        ));
+        let ([x, y], text) = ([x, y].map(short), escaped(text));
+        let font = format!("font-family=\"sans-serif\" font-size=\"{px}\" fill=\"{colour}\"");
+        self.add(&format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" {font}>{text}</text>"));
     }
 
     fn picture(&mut self, [x, y, width, height]: [f64; 4], [across, down]: [u32; 2], rgb8: &[u8]) {

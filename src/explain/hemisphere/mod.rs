@@ -69,12 +69,6 @@ pub fn above(place: Vec2) -> Option<Vec3> {
 /// The lights of a scene that can shine on a point.
 pub struct Shining(Vec<(Box<dyn Emitter>, LightRecord, bool)>);
 
-impl std::fmt::Debug for Shining {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Shining").finish_non_exhaustive()
-    }
-}
-
 impl Shining {
     /// The lights of a scene that are switched on.
     #[must_use]
@@ -153,29 +147,24 @@ impl Hemisphere {
             let l = frame.t * local.x + frame.b * local.y + frame.n * local.z;
             let arriving = shining.seen(spot.position, l);
             let lobe = surface.response(l, spot.view, frame).select(terms) / local.z;
-            Some(Above { arriving, lobe, product: arriving * lobe })
+            Some([arriving, lobe, arriving * lobe])
         };
         let (mut sum, mut count) = (Vec3::ZERO, 0.0f32);
         let mut pixels = Vec::with_capacity(side * side);
         let fine = (side * FINE) as f32;
         for pixel in 0..side * side {
             let (column, row) = (pixel % side, pixel / side);
-            let (mut all, mut n) = (Above::default(), 0.0f32);
+            let (mut all, mut n) = ([Vec3::ZERO; 3], 0.0f32);
             for part in 0..FINE * FINE {
                 let x = (column * FINE + part % FINE) as f32 + 0.5;
                 let y = (row * FINE + part / FINE) as f32 + 0.5;
                 let Some(found) = at(Vec2::new(2.0 * x / fine - 1.0, 1.0 - 2.0 * y / fine)) else { continue };
-                all.arriving += found.arriving;
-                all.lobe += found.lobe;
-                all.product += found.product;
+                all.iter_mut().zip(found).for_each(|(sum, part)| *sum += part);
                 n += 1.0;
             }
-            (sum, count) = (sum + all.product, count + n);
-            pixels.push((n > 0.0).then(|| Above {
-                arriving: all.arriving / n,
-                lobe: all.lobe / n,
-                product: all.product / n,
-            }));
+            (sum, count) = (sum + all[2], count + n);
+            let [arriving, lobe, product] = all.map(|sum| sum / n);
+            pixels.push((n > 0.0).then_some(Above { arriving, lobe, product }));
         }
         let integral = std::f32::consts::PI * sum / count.max(1.0);
         let [view, mirror] = [spot.view, mirror(spot.view, frame.n)].map(place);

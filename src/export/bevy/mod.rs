@@ -2,8 +2,8 @@
 //!
 //! `program` writes `main.rs`, `words` converts values and names to Rust.
 
-use super::{Export, ExportError, File, Form, Makes, Progress, Request, filled, lit::Lit, shader::Host};
-use crate::optics::tone::exposure_factor;
+use super::{Export, ExportError, File, Form, Makes, Progress, Request, lit::Lit, shader::Host};
+use crate::{optics::tone::exposure_factor, text::template::filled};
 
 mod program;
 mod words;
@@ -19,28 +19,9 @@ pub const BEVY: Form = Form {
     make,
 };
 
-/// The text of `Cargo.toml`.
+/// `Cargo.toml`, with the Bevy features that the project needs. Sound, gamepads and Wayland would need system packages to
+/// build; with X11 alone the window also opens on Wayland, through XWayland.
 const MANIFEST: &str = include_str!("template/Cargo.toml.txt");
-/// The version of Bevy that the project is written for.
-const BEVY_VERSION: &str = "=0.19.1";
-/// The Bevy features that the project needs. Sound, gamepads and Wayland would need system packages to build;
-/// with X11 alone the window also opens on Wayland, through XWayland.
-const FEATURES: [&str; 14] = [
-    "std",
-    "async_executor",
-    "multi_threaded",
-    "bevy_asset",
-    "bevy_log",
-    "bevy_winit",
-    "x11",
-    "bevy_render",
-    "bevy_core_pipeline",
-    "bevy_pbr",
-    "tonemapping_luts",
-    "ktx2",
-    "zstd_rust",
-    "png",
-];
 
 fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     progress.step(0.0, "composing the shaders")?;
@@ -57,8 +38,9 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     }
     progress.step(0.5, "writing the program")?;
     let name = words::package(request.stem);
+    let manifest = filled(MANIFEST, &[("name", &name)]);
     let mut files =
-        vec![File::new("Cargo.toml", manifest(&name)), File::new("src/main.rs", program::text(&lit, &name))];
+        vec![File::new("Cargo.toml", manifest), File::new("src/main.rs", program::text(&lit, &name))];
     for program in &lit.programs {
         let path = format!("assets/shaders/{}.wgsl", program.name());
         files.push(File::new(path, program.shader.text.as_str()));
@@ -72,15 +54,4 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         files.push(File::new(format!("assets/meshes/{}.bin", mesh.name), bytes));
     }
     Ok(Export { files, notes: lit.notes() })
-}
-
-fn manifest(name: &str) -> String {
-    let features: String = FEATURES
-        .chunks(5)
-        .map(|row| {
-            let quoted: Vec<_> = row.iter().map(|f| format!("\"{f}\"")).collect();
-            format!("    {},\n", quoted.join(", "))
-        })
-        .collect();
-    filled(MANIFEST, &[("name", name), ("version", BEVY_VERSION), ("features", &features)])
 }

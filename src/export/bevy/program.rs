@@ -2,7 +2,7 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    fmt::Write as _,
+    fmt::{Display, Write as _},
 };
 
 use glam::Vec3;
@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::words::{camel, comment, field as field_name, kind, number, snake, string, value, vector};
 use crate::{
     export::{
-        Request, filled,
+        Request,
         lights::{LightField, size},
         lit::{Lit, Material, MeshData, Program},
         names::Names,
@@ -23,21 +23,8 @@ use crate::{
     },
     parameter::Parameter,
     scene::observer::{NEAR, orientation},
+    text::template::{chosen, filled},
 };
-
-/// The program.
-const MAIN: &str = include_str!("template/main.rs.txt");
-/// A material type, and its implementation.
-const MATERIAL: &str = include_str!("template/material.rs.txt");
-/// The struct of curves.
-const CURVE: &str = include_str!("template/curve.rs.txt");
-/// The system that spawns the objects of a material type.
-const SPAWN: &str = include_str!("template/spawn.rs.txt");
-/// The decoding of colours.
-const SRGB: &str = include_str!("template/srgb.rs.txt");
-/// The attributes of vertices, and those of vertices that know their polygon.
-const ATTRIBUTES: &str = include_str!("template/attributes.rs.txt");
-const WITH_POLYGONS: &str = include_str!("template/with_polygons.rs.txt");
 
 /// The program for a scene; `package` is its name.
 pub(super) fn text(lit: &Lit, package: &str) -> String {
@@ -45,49 +32,59 @@ pub(super) fn text(lit: &Lit, package: &str) -> String {
     let observer = &scene.observer;
     let [r, g, b] = BACKGROUND;
     let title = scene.name.as_deref().unwrap_or(stem);
-    let description = scene.description.as_deref();
     let mut names = Names::default();
     let meshes: Vec<_> = lit.meshes.iter().map(|m| names.unique(snake(&m.name))).collect();
-    let programs = lit.programs.iter();
-    let spawns: String = programs.clone().enumerate().map(|(i, p)| spawn(lit, i, p, &meshes)).collect();
+    let spawns: String = lit.programs.iter().enumerate().map(|(i, p)| spawn(lit, i, p, &meshes)).collect();
     let polygons = lit.programs.iter().any(Program::faces);
-    let others = lit.programs.iter().any(|p| !p.faces());
+    let main = chosen(include_str!("template/main.rs.txt"), |part| match part {
+        "described" => scene.description.is_some(),
+        "lamps" => lit.programs.iter().any(|p| p.shader.reads_lamps),
+        "srgb" => spawns.contains("srgb("),
+        "polygons" => polygons,
+        _ => lit.programs.iter().any(|p| !p.faces()),
+    });
+    let numbers = lit.lights.numbers.chunks(4);
+    let number_of = |row: &[f32], i: usize| row.get(i).copied().unwrap_or_default();
+    let all = |text: &dyn Fn(&Program) -> String| lit.programs.iter().map(text).collect::<String>();
     filled(
-        MAIN,
+        &main,
         &[
             ("title", &comment(title)),
-            ("description", &description.map_or_else(String::new, |d| format!("//!\n//! {}\n", comment(d)))),
+            ("description", &comment(scene.description.as_deref().unwrap_or_default())),
             ("size", &format!("{width}, {height}")),
             ("background", &format!("{r}, {g}, {b}")),
             ("position", &vector(observer.position)),
             ("direction", &vector(observer.direction)),
             ("field_of_view", &number(observer.field_of_view)),
             ("near", &number(NEAR)),
-            ("light_count", &lit.lights.rows.len().max(1).to_string()),
+            ("light_count", &lit.lights.rows.len().max(1)),
             ("lights", &lights(lit)),
-            ("lamp_numbers", &lamp_numbers(lit)),
+            ("lamp_count", &numbers.len()),
             (
-                "material_types",
-                &programs.clone().map(|program| material_type(lit, program)).collect::<String>(),
+                "lamp_numbers",
+                &numbers.map(|r| row("    ", [0, 1, 2, 3].map(|i| number_of(r, i)))).collect::<String>(),
             ),
+            ("material_types", &all(&|program| material_type(lit, program))),
             ("parameters", &parameters(lit)),
             ("light_fields", &light_types(lit)),
             ("curves", &curves(lit)),
-            ("package", package),
+            ("package", &package),
             ("window", &string(title)),
-            ("plugins", &programs.clone().map(plugin).collect::<String>()),
-            ("tone_mapping", tonemapping(scene.display.tone_mapping)),
-            ("up", up(observer.direction)),
+            ("plugins", &all(&plugin)),
+            ("tone_mapping", &tonemapping(scene.display.tone_mapping)),
+            ("up", &up(observer.direction)),
             ("meshes", &meshes.iter().map(|name| format!("    {name}: Handle<Mesh>,\n")).collect::<String>()),
             ("shaders", &shaders(lit)),
             ("mesh_files", &mesh_files(lit, &meshes)),
             ("spawns", &spawns),
-            ("srgb", if spawns.contains("srgb(") { SRGB } else { "" }),
-            ("attributes", if others { ATTRIBUTES } else { "" }),
-            ("with_polygons", if polygons { WITH_POLYGONS } else { "" }),
-            ("all_attributes", if polygons { "WITH_POLYGONS" } else { "ATTRIBUTES" }),
+            ("all_attributes", &attributes(polygons)),
         ],
     )
+}
+
+/// The name of the attributes of vertices.
+fn attributes(polygons: bool) -> &'static str {
+    if polygons { "WITH_POLYGONS" } else { "ATTRIBUTES" }
 }
 
 /// A comment above a declaration, wrapped to the line width.
@@ -147,23 +144,11 @@ fn lights(lit: &Lit) -> String {
     out
 }
 
-/// The numbers of the files of lamps, if a shader reads them.
-fn lamp_numbers(lit: &Lit) -> String {
-    if !lit.programs.iter().any(|p| p.shader.reads_lamps) {
-        return String::new();
-    }
-    let rows = lit.lights.numbers.chunks(4);
-    let about = "The numbers of the files of lamps: counts of angles, angles, candelas.";
-    let count = rows.len();
-    let rows: String =
-        rows.map(|r| row("    ", [0, 1, 2, 3].map(|i| r.get(i).copied().unwrap_or_default()))).collect();
-    format!("\n/// {about}\n#[rustfmt::skip]\nconst LAMP_NUMBERS: [Vec4; {count}] = [\n{rows}];\n")
-}
-
 fn light_value(field: &LightField, words: &[u32]) -> String {
     let float = |i: usize| words.get(i).copied().map_or(0.0, f32::from_bits);
     match field.kind {
         "vec3<f32>" => vector(Vec3::new(float(0), float(1), float(2))),
+        "vec2<f32>" => format!("Vec2::new({}, {})", number(float(0)), number(float(1))),
         "u32" => words.first().copied().unwrap_or_default().to_string(),
         _ => number(float(0)),
     }
@@ -193,28 +178,31 @@ fn material_type(lit: &Lit, program: &Program) -> String {
         }
         about.push_str("/// ```\n");
     }
-    let mut more = String::new();
-    let mut field = |used: bool, place: u32, name: &str, kind: String| {
-        if used {
-            let _ = write!(more, "    #[uniform({place})]\n    {name}: {kind},\n");
-        }
-    };
-    let shader = &program.shader;
-    field(shader.reads_curve, 2, "albedo_curve", curve_type(program.model.curve_length()));
-    field(shader.reads_shading, 3, "shading", format!("{}Shading", camel(shading.id)));
-    field(shader.reads_lamps, 4, "lamp_numbers", format!("[Vec4; {}]", lit.lights.numbers.len().div_ceil(4)));
-    field(shader.reads_lobes, 7, "lobes", format!("[Vec4; {MAX_LOBES}]"));
     filled(
-        MATERIAL,
+        &with_inputs(include_str!("template/material.rs.txt"), program),
         &[
             ("about", &about),
             ("name", &type_name(program)),
             ("model", &camel(model.id)),
-            ("more", &more),
+            ("curve", &curve_type(program.model.curve_length())),
+            ("shading", &camel(shading.id)),
+            ("lamp_count", &lit.lights.numbers.len().div_ceil(4)),
+            ("lobe_count", &MAX_LOBES),
             ("file", &program.name()),
-            ("attributes", if program.faces() { "WITH_POLYGONS" } else { "ATTRIBUTES" }),
+            ("attributes", &attributes(program.faces())),
         ],
     )
+}
+
+/// A template with the inputs that the shader of a program reads.
+fn with_inputs(template: &str, program: &Program) -> String {
+    let shader = &program.shader;
+    chosen(template, |input| match input {
+        "curve" => shader.reads_curve,
+        "shading" => shader.reads_shading,
+        "lamps" => shader.reads_lamps,
+        _ => shader.reads_lobes,
+    })
 }
 
 /// The structs of parameters, each once: those of the reflection models, then those of the shading models.
@@ -231,18 +219,17 @@ fn parameters(lit: &Lit) -> String {
     let mut out = String::new();
     for (id, kind, what, all) in models.chain(shadings) {
         if known.insert((kind, id)) {
-            parameter_struct(&mut out, &format!("{}{kind}", camel(id)), all, &what);
+            let name = format!("{}{kind}", camel(id));
+            let places: &[(&str, &dyn Display)] = &[("of", &what), ("name", &name), ("fields", &fields(all))];
+            out.push_str(&filled(include_str!("template/parameters.rs.txt"), places));
         }
     }
     out
 }
 
-/// A struct of parameters.
-fn parameter_struct(out: &mut String, name: &str, all: &[Parameter], of: &str) {
-    let _ = write!(
-        out,
-        "\n/// The parameters of {of}.\n#[derive(ShaderType, Clone, Copy, Debug)]\nstruct {name} {{\n"
-    );
+/// The fields of a struct of parameters.
+fn fields(all: &[Parameter]) -> String {
+    let mut out = String::new();
     for p in all {
         let unit = match p.unit {
             "" => String::new(),
@@ -252,13 +239,13 @@ fn parameter_struct(out: &mut String, name: &str, all: &[Parameter], of: &str) {
         };
         let own = p.symbol.is_empty() || p.symbol == p.label;
         let symbol = if own { String::new() } else { format!("{}: ", p.symbol) };
-        doc(out, &format!("{symbol}{}{unit}.", p.label), "    ", "///");
+        doc(&mut out, &format!("{symbol}{}{unit}.", p.label), "    ", "///");
         let _ = writeln!(out, "    {}: {},", field_name(p.name), kind(p.wgsl_type()));
     }
     if all.is_empty() {
         out.push_str("    unused: f32,\n");
     }
-    out.push_str("}\n");
+    out
 }
 
 /// The unit of a parameter, appended to its label.
@@ -294,7 +281,8 @@ fn light_types(lit: &Lit) -> String {
 fn curves(lit: &Lit) -> String {
     let with_curves = lit.programs.iter().filter(|p| p.shader.reads_curve);
     let lengths: BTreeSet<_> = with_curves.map(|p| p.model.curve_length()).collect();
-    let curve = |n: usize| filled(CURVE, &[("name", &curve_type(n)), ("length", &n.to_string())]);
+    let curve =
+        |n: usize| filled(include_str!("template/curve.rs.txt"), &[("name", &curve_type(n)), ("length", &n)]);
     lengths.into_iter().map(curve).collect()
 }
 
@@ -323,13 +311,8 @@ fn tonemapping(tone: ToneMapping) -> &'static str {
 
 /// The statements of the program for a material type.
 fn plugin(program: &Program) -> String {
-    format!(
-        "    app.add_plugins(MaterialPlugin::<{}>::default())
-        .add_systems(Startup, spawn_{}.after(load));
-",
-        type_name(program),
-        program.name()
-    )
+    let places: &[(&str, &dyn Display)] = &[("type", &type_name(program)), ("program", &program.name())];
+    filled(include_str!("template/plugin.rs.txt"), places)
 }
 
 /// The up direction of the picture: y, unless that is the viewing direction.
@@ -377,29 +360,24 @@ fn spawn(lit: &Lit, index: usize, program: &Program, meshes: &[String]) -> Strin
             .filter(|name| !name.is_empty())
             .unwrap_or_else(|| program.model.declaration.id.to_owned());
         let handle = taken.unique(format!("{base}_material"));
-        new_material(&mut materials, lit, program, material, &handle);
+        materials.push_str(&new_material(lit, program, material, &handle));
         handles.insert(m, handle);
     }
     let mut objects = String::new();
     for drawn in lit.objects.iter().filter(|o| lit.materials[o.material].program == index) {
         let object = &lit.request.scene.objects[drawn.index];
         let name = object.name.as_deref().unwrap_or(&object.object_type);
-        let _ = writeln!(
-            objects,
-            "        ({}, &meshes.{}, &{}, {}, {}, {}),",
-            string(name),
-            meshes[drawn.mesh],
-            handles[&drawn.material],
-            vector(object.position),
-            vector(object.rotation),
-            number(object.size)
-        );
+        let (name, mesh, material) = (string(name), &meshes[drawn.mesh], &handles[&drawn.material]);
+        let [position, rotation] = [object.position, object.rotation].map(vector);
+        let size = number(object.size);
+        let place = format!("{position}, {rotation}, {size}");
+        let _ = writeln!(objects, "        ({name}, &meshes.{mesh}, &{material}, {place}),");
     }
     filled(
-        SPAWN,
+        include_str!("template/spawn.rs.txt"),
         &[
-            ("model", program.model.declaration.name),
-            ("shading", program.shading.declaration.name),
+            ("model", &program.model.declaration.name),
+            ("shading", &program.shading.declaration.name),
             ("program", &program.name()),
             ("type", &type_name(program)),
             ("materials", &materials),
@@ -408,38 +386,34 @@ fn spawn(lit: &Lit, index: usize, program: &Program, meshes: &[String]) -> Strin
     )
 }
 
-fn new_material(out: &mut String, lit: &Lit, program: &Program, material: &Material, handle: &str) {
+/// The statement that makes a material.
+fn new_material(lit: &Lit, program: &Program, material: &Material, handle: &str) -> String {
     let encoding = lit.request.scene.display.encoding;
-    let _ = writeln!(out, "    let {handle} = materials.add({} {{", type_name(program));
-    let _ = writeln!(out, "        parameters: {}Parameters {{", camel(program.model.declaration.id));
-    values(out, program.model.parameters, material, encoding);
-    out.push_str("        },\n        lights: Lights { lights: LIGHTS },\n");
-    if program.shader.reads_curve {
-        let length = program.model.curve_length();
-        let nodes = material.curve.get(..16 * length).unwrap_or_default();
-        let mean = material.curve.get(16 * length..).and_then(|b| b.first_chunk());
-        let _ = writeln!(out, "        albedo_curve: {} {{\n            nodes: [", curve_type(length));
-        out.extend(nodes.chunks(16).map(|node| row_of("                ", node)));
-        let mean = mean.copied().map_or(0.0, f32::from_le_bytes);
-        let _ = writeln!(out, "            ],\n            mean: {mean:?},\n        }},");
-    }
-    if program.shader.reads_shading {
-        let _ = writeln!(out, "        shading: {}Shading {{", camel(program.shading.declaration.id));
-        values(out, program.shading.parameters, material, encoding);
-        out.push_str("        },\n");
-    }
-    if program.shader.reads_lamps {
-        out.push_str("        lamp_numbers: LAMP_NUMBERS,\n");
-    }
-    if program.shader.reads_lobes {
-        out.push_str("        // The directions from which it reflects most light: they guide samples.\n        lobes: [\n");
-        out.extend(material.lobes.chunks(16).map(|lobe| row_of("            ", lobe)));
-        out.push_str("        ],\n");
-    }
-    out.push_str("    });\n");
+    let length = program.model.curve_length();
+    let nodes = material.curve.get(..16 * length).unwrap_or_default();
+    let mean = material.curve.get(16 * length..).and_then(|b| b.first_chunk());
+    let rows =
+        |bytes: &[u8], indent: &str| bytes.chunks(16).map(|row| row_of(indent, row)).collect::<String>();
+    filled(
+        &with_inputs(include_str!("template/new_material.rs.txt"), program),
+        &[
+            ("handle", &handle),
+            ("type", &type_name(program)),
+            ("model", &camel(program.model.declaration.id)),
+            ("parameters", &values(program.model.parameters, material, encoding)),
+            ("curve", &curve_type(length)),
+            ("nodes", &rows(nodes, "                ")),
+            ("mean", &number(mean.copied().map_or(0.0, f32::from_le_bytes))),
+            ("shading", &camel(program.shading.declaration.id)),
+            ("shading_parameters", &values(program.shading.parameters, material, encoding)),
+            ("lobes", &rows(&material.lobes, "            ")),
+        ],
+    )
 }
 
-fn values(out: &mut String, all: &[Parameter], material: &Material, encoding: Encoding) {
+/// The fields of a struct of parameters with the values of a material.
+fn values(all: &[Parameter], material: &Material, encoding: Encoding) -> String {
+    let mut out = String::new();
     for p in all {
         let (text, comment) = value(p, &material.values, encoding);
         if let Some(comment) = comment {
@@ -450,4 +424,5 @@ fn values(out: &mut String, all: &[Parameter], material: &Material, encoding: En
     if all.is_empty() {
         out.push_str("            unused: 0.0,\n");
     }
+    out
 }

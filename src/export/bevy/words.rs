@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::{
     optics::colour::Encoding,
-    parameter::{Parameter, ParameterKind, Value, Values},
+    parameter::{Parameter, Value, Values, lanes},
 };
 
 /// The name of a package: lower-case letters, digits and underscores, beginning with a letter.
@@ -12,7 +12,7 @@ pub(super) fn package(stem: &str) -> String {
     let name = snake(stem);
     if name.is_empty() {
         "scene".to_owned()
-    } else if RESERVED.contains(&name.as_str()) {
+    } else if is_reserved(&name) {
         format!("{name}_scene")
     } else {
         name
@@ -20,70 +20,12 @@ pub(super) fn package(stem: &str) -> String {
 }
 
 /// Names that a package cannot have: Rust keywords, standard crates, cargo's folders, and names used here.
-const RESERVED: &[&str] = &[
-    "abstract",
-    "alloc",
-    "as",
-    "async",
-    "await",
-    "become",
-    "bevy",
-    "box",
-    "break",
-    "build",
-    "const",
-    "continue",
-    "core",
-    "crate",
-    "deps",
-    "do",
-    "dyn",
-    "else",
-    "enum",
-    "examples",
-    "extern",
-    "false",
-    "final",
-    "fn",
-    "for",
-    "gen",
-    "if",
-    "impl",
-    "in",
-    "incremental",
-    "let",
-    "loop",
-    "macro",
-    "main",
-    "match",
-    "mod",
-    "move",
-    "mut",
-    "override",
-    "priv",
-    "proc_macro",
-    "pub",
-    "ref",
-    "return",
-    "self",
-    "static",
-    "std",
-    "struct",
-    "super",
-    "test",
-    "trait",
-    "true",
-    "try",
-    "type",
-    "typeof",
-    "unsafe",
-    "unsized",
-    "use",
-    "virtual",
-    "where",
-    "while",
-    "yield",
-];
+const RESERVED: &str = include_str!("reserved.txt");
+
+/// True if a name is one of them.
+fn is_reserved(name: &str) -> bool {
+    RESERVED.lines().any(|word| word == name)
+}
 
 /// A text as a lower-case Rust name; empty if nothing remains.
 pub(super) fn snake(text: &str) -> String {
@@ -131,36 +73,38 @@ pub(super) fn vector(v: Vec3) -> String {
 }
 
 /// The type of a parameter.
-pub(super) fn kind(wgsl: &str) -> &'static str {
-    match wgsl {
-        "vec3<f32>" => "Vec3",
-        "u32" => "u32",
-        _ => "f32",
+pub(super) fn kind(wgsl: &str) -> String {
+    match lanes(wgsl) {
+        1 => wgsl.to_owned(),
+        n => format!("Vec{n}"),
     }
 }
 
 /// The value of a parameter, with a comment if the number is not self-explanatory.
 pub(super) fn value(p: &Parameter, values: &Values, encoding: Encoding) -> (String, Option<String>) {
-    match (&p.kind, values.get(p)) {
-        (ParameterKind::Colour { .. }, Value::Colour([r, g, b])) if encoding == Encoding::Srgb => {
-            (format!("srgb({r}, {g}, {b})"), None)
+    let (given, mut words) = (values.get(p), Vec::new());
+    if let (Value::Colour([r, g, b]), Encoding::Srgb) = (&given, encoding) {
+        return (format!("srgb({r}, {g}, {b})"), None);
+    }
+    p.kind.words(&given, encoding, &mut words);
+    let all: Vec<_> = words.iter().map(|word| f32::from_bits(*word)).collect();
+    match (p.wgsl_type(), &all[..]) {
+        ("u32", _) => {
+            let name = p.kind.options().get(words[0] as usize).map(|(_, name)| (*name).to_owned());
+            (words[0].to_string(), name)
         }
-        (ParameterKind::Colour { .. } | ParameterKind::Triple { .. }, _) => {
-            (vector(values.colour(p, encoding)), None)
+        (_, [one]) => (number(*one), None),
+        (_, [x, y, z]) => (vector(Vec3::new(*x, *y, *z)), None),
+        (wgsl, all) => {
+            let all: Vec<_> = all.iter().map(|one| number(*one)).collect();
+            (format!("{}::new({})", kind(wgsl), all.join(", ")), None)
         }
-        (ParameterKind::Choice { options, .. }, _) => {
-            let index = values.choice(p);
-            let name = options.get(index as usize).map(|(_, name)| (*name).to_owned());
-            (index.to_string(), name)
-        }
-        _ if p.wgsl_type() == "u32" => (values.choice(p).to_string(), None),
-        _ => (number(values.number(p)), None),
     }
 }
 
 /// The name of a struct field: the parameter's name, unless it is a Rust keyword.
 pub(super) fn field(name: &str) -> String {
-    if RESERVED.contains(&name) { format!("{name}_") } else { name.to_owned() }
+    if is_reserved(name) { format!("{name}_") } else { name.to_owned() }
 }
 
 /// A text for comments: one line, without control characters of terminals or editors.

@@ -17,7 +17,7 @@ use crate::{
         view::called,
     },
     optics::{TermSelection, colour::srgb_encode},
-    parameter::{Parameter, ParameterKind, Value, json as value, layout, stride},
+    parameter::{Parameter, Value, json as value, layout, stride},
     reflection::{Ambient, ModelEntry, OnPages},
     registry::Registry,
     scene::{Scene, variant::LETTERS},
@@ -47,8 +47,7 @@ fn normals<'a>(lit: &'a Lit) -> impl Iterator<Item = String> + 'a {
         let object = &scene.objects[drawn.index];
         let shape = registry.shape(&object.object_type)?;
         // Of the built-in shapes, only files have explicit normals; rebuilding all meshes would take a while.
-        let from_file = |p: &Parameter| matches!(p.kind, ParameterKind::File { .. });
-        shape.parameters.iter().any(from_file).then_some(())?;
+        shape.parameters.iter().any(|p| p.kind.format().is_some()).then_some(())?;
         let mesh = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
         mesh.has_own_normals().then(|| {
             let path = object_path(scene, drawn.index);
@@ -347,18 +346,15 @@ fn parameter(p: &Parameter, at: usize) -> Json {
         "at": at,
         "usedWhen": p.used_when.map(|used| json!({ "parameter": used.parameter, "choices": used.choices })),
     });
-    match &p.kind {
-        ParameterKind::Number { min, max, .. } | ParameterKind::Triple { min, max, .. } => {
-            json["min"] = json!(min);
-            json["max"] = json!(max);
+    if let Some(range) = p.kind.limits().filter(|_| p.kind.is_measured()) {
+        let end = |v: f64| if range.whole { json!(v as i64) } else { json!(v) };
+        (json["min"], json["max"]) = (end(range.min), end(range.top()));
+        if range.whole {
+            json["open"] = json!(range.max.is_infinite());
         }
-        ParameterKind::Integer { min, max, slider_max, .. } => {
-            json["min"] = json!(min);
-            json["max"] = json!(max.unwrap_or(*slider_max));
-            json["open"] = json!(max.is_none());
-        }
-        ParameterKind::Choice { options, .. } => json["options"] = json!(options),
-        ParameterKind::Colour { .. } | ParameterKind::File { .. } => {}
+    }
+    if !p.kind.options().is_empty() {
+        json["options"] = json!(p.kind.options());
     }
     json
 }

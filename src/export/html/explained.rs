@@ -78,16 +78,15 @@ pub fn point(request: &Request, pixel: [u32; 2]) -> Result<(Json, Option<String>
 fn doubt(request: &Request, explanation: &Explanation) -> Option<String> {
     let trouble = explanation.seen.as_ref().and_then(|seen| seen.model.trouble.as_ref());
     let ignored: Vec<_> = ignored_edits(request.registry, request.scene).into_iter().collect();
-    match trouble {
-        Some(trouble) => Some(format!(
-            "The explanation is not that of the picture, since the CPU cannot run this model: {trouble}"
-        )),
-        None if ignored.is_empty() => None,
-        None => Some(format!(
-            "The explanation is not that of the picture: explanations follow the CPU renderer, which ignores the edited {}",
-            listed(&ignored, "and")
-        )),
-    }
+    let why = match trouble {
+        Some(trouble) => format!(", since the CPU cannot run this model: {trouble}"),
+        None if ignored.is_empty() => return None,
+        None => {
+            let ignored = listed(&ignored, "and");
+            format!(": explanations follow the CPU renderer, which ignores the edited {ignored}")
+        }
+    };
+    Some(format!("The explanation is not that of the picture{why}"))
 }
 
 /// A paragraph of plain text.
@@ -220,12 +219,8 @@ fn lights(out: &mut String, seen: &Seen, spot: &Spot, name: &dyn Fn(usize) -> St
         *out += &ending("rest", &format!("Sum over {}:", plural(all.len(), "light")), spot.sum, spot.error());
     }
     if spot.is_replaced() {
-        *out += &ending(
-            "rest",
-            "What is no number counts as 0, and nothing beyond ±10³⁰:",
-            spot.colour,
-            spot.error(),
-        );
+        let rule = "What is no number counts as 0, and nothing beyond ±10³⁰:";
+        *out += &ending("rest", rule, spot.colour, spot.error());
     }
     if matches!(spot.place, Place::Vertex { .. }) {
         *out += &ending("rest", "Mixed from the vertices:", seen.light, seen.error());

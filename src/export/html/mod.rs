@@ -9,7 +9,8 @@ use base64::{Engine as _, engine::general_purpose::STANDARD};
 use flate2::{Compression, write::ZlibEncoder};
 
 use self::equation::escaped;
-use super::{Export, ExportError, Form, Makes, Progress, Request, filled};
+use super::{Export, ExportError, Form, Makes, Progress, Request};
+use crate::text::template::filled;
 
 mod blocks;
 mod data;
@@ -71,7 +72,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
             ("name", &escaped(name)),
             ("description", &escaped(description)),
             ("style", &[STYLE, explained.style].concat()),
-            ("section", explained.section),
+            ("section", &explained.section),
             ("script", &[SCRIPT.concat().as_str(), explained.script, &data.script, START].concat()),
             ("scene", &scene),
             ("meshes", &meshes),
@@ -97,15 +98,10 @@ fn too_large(page: usize, [scene, meshes, words]: [usize; 3], several_views: boo
     } else {
         "lower tessellations, or fewer different reflection models, make it smaller"
     };
-    format!(
-        "the page would have {} kB, and {} kB is the limit: {} kB are meshes, {} kB shaders and values, {} kB the name \
-         and the description of the scene; {remedy}",
-        kb(page),
-        kb(LIMIT),
-        kb(meshes),
-        kb(scene),
-        kb(words)
-    )
+    let [page, most, meshes, scene, words] = [page, LIMIT, meshes, scene, words].map(kb);
+    let all = format!("the page would have {page} kB, and {most} kB is the limit: {meshes} kB are meshes");
+    let named = format!("{words} kB the name and the description of the scene");
+    format!("{all}, {scene} kB shaders and values, {named}; {remedy}")
 }
 
 /// Bytes as text, compressed in zlib format.

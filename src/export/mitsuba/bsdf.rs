@@ -107,10 +107,8 @@ fn matte_phong(m: &Material) -> Result<Bsdf, String> {
         return Err("Mitsuba has a counterpart only where k_s and k_a are 0".to_owned());
     }
     if m.ambient {
-        return Err(
-            "Mitsuba has a counterpart only without ambient lights, which this model reflects by k_a"
-                .to_owned(),
-        );
+        let lights = "ambient lights, which this model reflects by k_a";
+        return Err(format!("Mitsuba has a counterpart only without {lights}"));
     }
     Ok(diffuse(m.number("k_d") * m.colour("base_colour")))
 }

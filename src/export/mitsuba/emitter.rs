@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use glam::{Mat3, Mat4, Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::xml::{Xml, number, to_world, triple};
+use super::xml::{Xml, look_at, number, to_world};
 use crate::{
     export::File,
     light::{LightEntry, LightRecord, extent::sides},
@@ -148,11 +148,8 @@ fn sphere(lamp: &Lamp) -> Result<Emitter, String> {
 fn cylinder(lamp: &Lamp) -> Result<Emitter, String> {
     let LightRecord { position, direction, .. } = lamp.record;
     let half = 0.5 * lamp.parameter("length") * direction;
-    let shape = Xml::plugin("shape", "cylinder").with(place("point", "p0", position - half)).with(place(
-        "point",
-        "p1",
-        position + half,
-    ));
+    let [from, to] = [place("point", "p0", position - half), place("point", "p1", position + half)];
+    let shape = Xml::plugin("shape", "cylinder").with(from).with(to);
     alone(lamp.shining(shape.float("radius", lamp.parameter("radius"))))
 }
 
@@ -224,14 +221,8 @@ fn spot(lamp: &Lamp) -> Result<Emitter, String> {
         return Err(format!("Mitsuba has a counterpart of cones up to {WIDEST}°, but this one has {angle}°"));
     }
     let LightRecord { position, direction, .. } = lamp.record;
-    let look = format!(
-        "lookat origin=\"{}\" target=\"{}\" up=\"{}\"",
-        triple(position),
-        triple(position + direction),
-        triple(orientation(direction).y_axis)
-    );
     let xml = Xml::plugin("emitter", "spot")
-        .with(Xml::element("transform name=\"to_world\"").with(Xml::element(look)))
+        .with(look_at(position, direction, orientation(direction).y_axis))
         .rgb("intensity", PI * lamp.power())
         .set("float", "cutoff_angle", &number(angle))
         .set("float", "beam_width", &number(angle));

@@ -12,7 +12,7 @@ use self::{
     bsdf::{Bsdf, Material},
     emitter::{Emitter, Lamp},
     mesh::{Surface, ply},
-    xml::{Xml, to_world, triple},
+    xml::{Xml, look_at, to_world},
 };
 use super::{
     Export, ExportError, File, Form, Makes, Progress, Request, light_path, object_path, refusals::Refusals,
@@ -187,17 +187,12 @@ fn objects<'a>(request: &'a Request, refused: &mut Refusals) -> Vec<Counterpart<
 fn sensor(request: &Request) -> Xml {
     let observer = &request.scene.observer;
     let (width, height) = request.size;
-    let look = format!(
-        "lookat origin=\"{}\" target=\"{}\" up=\"{}\"",
-        triple(observer.position),
-        triple(observer.position + observer.direction.normalize_or(Vec3::NEG_Z)),
-        triple(orientation(observer.direction).y_axis)
-    );
+    let ahead = observer.direction.normalize_or(Vec3::NEG_Z);
     Xml::plugin("sensor", "perspective")
         .set("string", "fov_axis", "y")
         .float("fov", observer.field_of_view)
         .float("near_clip", NEAR)
-        .with(Xml::element("transform name=\"to_world\"").with(Xml::element(look)))
+        .with(look_at(observer.position, ahead, orientation(observer.direction).y_axis))
         .with(Xml::plugin("sampler", "multijitter").set("integer", "sample_count", SAMPLES))
         .with(
             Xml::plugin("film", "hdrfilm")
@@ -229,9 +224,8 @@ fn differences(request: &Request) -> Vec<String> {
     }
     if display.exposure != 0.0 || display.tone_mapping != ToneMapping::None {
         let (exposure, curve) = (display.exposure, display.tone_mapping.id());
-        notes.push(format!(
-            "the picture is linear light, before the exposure of {exposure} EV and the tone mapping {curve}"
-        ));
+        let before = format!("the exposure of {exposure} EV and the tone mapping {curve}");
+        notes.push(format!("the picture is linear light, before {before}"));
     }
     if display.encoding == Encoding::Off {
         notes.push("colours are taken as linear light, as the scene's display does".to_owned());

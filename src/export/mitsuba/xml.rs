@@ -97,8 +97,15 @@ pub(super) fn to_world(matrix: Mat4) -> Xml {
     Xml::element("transform name=\"to_world\"").with(matrix)
 }
 
+/// The transform of what stands at a place and looks in a direction.
+pub(super) fn look_at(position: Vec3, direction: Vec3, up: Vec3) -> Xml {
+    let [origin, target, up] = [position, position + direction, up].map(triple);
+    let look = Xml::element(format!("lookat origin=\"{origin}\" target=\"{target}\" up=\"{up}\""));
+    Xml::element("transform name=\"to_world\"").with(look)
+}
+
 /// Three numbers.
-pub(super) fn triple(value: Vec3) -> String {
+fn triple(value: Vec3) -> String {
     format!("{}, {}, {}", value.x, value.y, value.z)
 }
 

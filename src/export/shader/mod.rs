@@ -1,7 +1,10 @@
 //! The shader of one reflection model and one shading model for the lights of one scene: the source used on
 //! screen, without the tables for arbitrary scenes, and without the parts that the scene does not use.
 
-use std::{collections::BTreeSet, fmt::Write as _};
+use std::{
+    collections::BTreeSet,
+    fmt::{Display, Write as _},
+};
 
 use naga::{
     Module,
@@ -19,7 +22,7 @@ use crate::{
     reflection::{Ambient, ModelEntry},
     registry::{
         Registry,
-        compose::{AMBIENT, named_curves},
+        compose::{named_curves, part},
     },
     shader::{
         Source,
@@ -29,6 +32,7 @@ use crate::{
         },
     },
     shading::{self, ShadingEntry, Stage},
+    text::template::{chosen, filled},
 };
 
 pub mod items;
@@ -129,7 +133,7 @@ pub fn compose(
     }
     let mut response = text(sources, &own.wgsl)?;
     if own.ambient == Ambient::Albedo {
-        response.push_str(AMBIENT);
+        response.push_str(&part("ambient", &[]));
     }
     sections.push(Section { heading, items: items(&response) });
     let mut vocabulary = Vec::new();
@@ -142,7 +146,7 @@ pub fn compose(
     if lights.has_extent() {
         // GLSL for WebGL 2 lacks a function that reverses bits.
         let sampling = text(sources, &SAMPLING)?.replace("reverseBits(", "bits_reversed(");
-        vocabulary.extend(items(&(sampling + BITS_REVERSED)));
+        vocabulary.extend(items(&(sampling + include_str!("bits_reversed.wgsl"))));
     }
     if let Host::Alone { .. } = host {
         vocabulary.extend(items(include_str!("tone.wgsl")));
@@ -161,11 +165,9 @@ pub fn compose(
 fn unique(sections: &[Section]) -> Result<(), ExportError> {
     let mut known = BTreeSet::new();
     let twice = sections.iter().flat_map(|s| &s.items).find(|item| !known.insert(item.name.as_str()));
-    twice.map_or(Ok(()), |item| {
-        Err(ExportError::refused(format!(
-            "a shader declares `{}`, a name reserved for exports; choose another name",
-            item.name
-        )))
+    twice.map_or(Ok(()), |Item { name, .. }| {
+        let what = format!("a shader declares `{name}`, a name reserved for exports; choose another name");
+        Err(ExportError::refused(what))
     })
 }
 
@@ -259,16 +261,6 @@ const EITHER: &str = "        var terms: Terms;
 /// The replacement of that part without uniform light.
 const DIRECTED: &str = "        let terms = response(arriving.l, v, frame, parameters);\n";
 
-/// A number with its bits reversed.
-const BITS_REVERSED: &str = "fn bits_reversed(number: u32) -> u32 {
-    var x = (number >> 16u) | (number << 16u);
-    x = ((x & 0xff00ff00u) >> 8u) | ((x & 0x00ff00ffu) << 8u);
-    x = ((x & 0xf0f0f0f0u) >> 4u) | ((x & 0x0f0f0f0fu) << 4u);
-    x = ((x & 0xccccccccu) >> 2u) | ((x & 0x33333333u) << 2u);
-    return ((x & 0xaaaaaaaau) >> 1u) | ((x & 0x55555555u) << 1u);
-}
-";
-
 /// The functions that dispatch a light to its type.
 fn dispatch(lights: &Lights) -> String {
     let mut text = "// The light that arrives at a point of the room from one light.\n".to_owned();
@@ -310,93 +302,27 @@ fn function(text: &mut String, lights: &Lights, twin: &Twin, name: &str, extent:
 
 /// The inputs of the shader: their types, bindings, and the functions that read them.
 fn inputs(lights: &Lights, model: &ModelEntry, shading: &ShadingEntry, host: Host) -> String {
-    let group = wrapper::group(host);
-    let count = lights.rows.len();
-    let mut text = parameter_struct("Parameters", model.parameters);
-    let _ = write!(
-        text,
-        "// The parameters of the material.
-@group({group}) @binding(0) var<uniform> parameters: Parameters;
-const LIGHT_COUNT: u32 = {count}u;
-const MAX_LIGHTS: u32 = LIGHT_COUNT;
-struct Illumination {{
-    count: u32,
-    terms: u32,
-    exposure: f32,
-    gamma_naive: u32,
-    lights: array<Light, {}>,
-}}
-// The lights of the scene.
-@group({group}) @binding(1) var<uniform> illumination: Illumination;
-",
-        count.max(1)
-    );
-    if model.has_curve() {
-        let harmonics = model.harmonics();
-        let _ = write!(
-            text,
-            "// The directional albedo of the material, by the angle of view.
-struct AlbedoCurve {{
-    nodes: array<vec4<f32>, {}>,
-    mean: f32,
-}}
-@group({group}) @binding(2) var<uniform> albedo_curve: AlbedoCurve;
-const HARMONICS: u32 = {harmonics}u;
-fn curve_node(i: u32) -> vec4<f32> {{
-    return albedo_curve.nodes[i];
-}}
-fn lobe_mean() -> f32 {{
-    return albedo_curve.mean;
-}}
-",
-            model.curve_length()
-        );
-    }
-    if !shading.parameters.is_empty() {
-        let name = shading::PARAMETERS;
-        text.push_str(&parameter_struct(name, shading.parameters));
-        let _ = write!(
-            text,
-            "// The parameters of the shading model.
-@group({group}) @binding(3) var<uniform> shading_values: {name};
-fn shading_parameters() -> {name} {{
-    return shading_values;
-}}
-"
-        );
-    }
-    if lights.has_extent() {
-        let _ = write!(
-            text,
-            "// The samples of light with extent. They are the same in every picture, and so is their noise.
-const LIGHT_SAMPLES: u32 = {LIGHT_SAMPLES}u;
-// The directions from which the material reflects most light. They guide the samples: any others give the same mean, with
-// another noise.
-@group({group}) @binding(7) var<uniform> material_lobes: array<vec4<f32>, {MAX_LOBES}>;
-fn lobe_row(i: u32) -> vec4<f32> {{
-    return material_lobes[i];
-}}
-// The seed of the samples: that of the pixel; 0 for all vertices, so that interpolation is smooth.
-var<private> sample_seed: u32;
-"
-        );
-    }
-    if !lights.numbers.is_empty() {
-        let _ = write!(
-            text,
-            "// The numbers of the files of lamps.
-@group({group}) @binding(4) var<uniform> lamp_numbers: array<vec4<f32>, {}>;
-fn illumination_number(i: u32) -> f32 {{
-    return lamp_numbers[i / 4u][i % 4u];
-}}
-",
-            lights.numbers.len().div_ceil(4)
-        );
-    } else if lights.has_extent() {
+    let wanted = |part: &str| match part {
+        "curve" => model.has_curve(),
+        "shading" => !shading.parameters.is_empty(),
+        "extent" => lights.has_extent(),
+        "lamps" => !lights.numbers.is_empty(),
         // Surroundings may have a picture.
-        text.push_str("fn illumination_number(i: u32) -> f32 {\n    return 0.0;\n}\n");
-    }
-    text
+        _ => lights.numbers.is_empty() && lights.has_extent(),
+    };
+    let places: &[(&str, &dyn Display)] = &[
+        ("group", &wrapper::group(host)),
+        ("parameters", &parameter_struct("Parameters", model.parameters)),
+        ("count", &lights.rows.len()),
+        ("room", &lights.rows.len().max(1)),
+        ("length", &model.curve_length()),
+        ("harmonics", &model.harmonics()),
+        ("shading", &parameter_struct(shading::PARAMETERS, shading.parameters)),
+        ("samples", &LIGHT_SAMPLES),
+        ("lobes", &MAX_LOBES),
+        ("rows", &lights.numbers.len().div_ceil(4)),
+    ];
+    filled(&chosen(include_str!("inputs.wgsl"), wanted), places)
 }
 
 /// Drops unused parts, then builds the record of a light from the fields that are left.

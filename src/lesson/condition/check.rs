@@ -36,13 +36,8 @@ impl Condition {
             match part {
                 Expression::Truth(operand) => {
                     if let Some(kind @ (Kind::Number | Kind::Text)) = kinds(operand) {
-                        mistakes.push((
-                            operand.at,
-                            format!(
-                                "this is a {}, which alone is neither true nor false; compare it, as in … = …",
-                                kind.name()
-                            ),
-                        ));
+                        let what = "which alone is neither true nor false; compare it, as in … = …";
+                        mistakes.push((operand.at, format!("this is a {}, {what}", kind.name())));
                     }
                 }
                 Expression::Comparison { left, sign, right } => {
@@ -82,12 +77,8 @@ fn compared(left: &Operand, (a, b): (Kind, Kind), sign: Sign, right: &Operand) -
     for (operand, kind) in [(left, a), (right, b)] {
         if has_order && matches!(kind, Kind::Text | Kind::Truth) {
             let what = if kind == Kind::Text { "a text" } else { "true or false" };
-            return Some((
-                operand.at,
-                format!(
-                    "this is {what}, which cannot be greater or less than another value; compare it with = or !="
-                ),
-            ));
+            let rule = "cannot be greater or less than another value; compare it with = or !=";
+            return Some((operand.at, format!("this is {what}, which {rule}")));
         }
     }
     (a != b && a != Kind::Various && b != Kind::Various).then(|| {
@@ -96,10 +87,8 @@ fn compared(left: &Operand, (a, b): (Kind, Kind), sign: Sign, right: &Operand) -
             Kind::Text => "a text",
             Kind::Truth | Kind::Various => "true or false",
         };
-        (
-            right.at,
-            format!("this is {}, but the other side is {}; both must have the same type", word(b), word(a)),
-        )
+        let (here, there) = (word(b), word(a));
+        (right.at, format!("this is {here}, but the other side is {there}; both must have the same type"))
     })
 }
 
@@ -125,9 +114,8 @@ fn spelling(
     }
     match &asked.argument {
         Argument::Name(name) => {
-            let parameter = registry.material_parameter(name);
-            if let Some(crate::parameter::ParameterKind::Choice { options, .. }) = parameter.map(|p| &p.kind)
-            {
+            let options = registry.material_parameter(name).map_or(&[][..], |p| p.kind.options());
+            if !options.is_empty() {
                 known = options.iter().map(|(id, _)| *id).collect();
             }
         }
@@ -147,12 +135,7 @@ fn spelling(
     }
     let near = did_you_mean(written, known.iter().map(|k| (*k, *k)));
     let all = if known.len() > 12 { String::new() } else { format!("; it is {}", listed(&known, "or")) };
-    let name = match &asked.argument {
-        Argument::Path(path) => format!("scene.{path}"),
-        Argument::Name(name) => format!("knob.{name}"),
-        Argument::None | Argument::Angle(_) => asked.quantity.name.to_owned(),
-    };
-    Some((text.at, format!("{name} is never {}{all}{near}", quoted(written))))
+    Some((text.at, format!("{} is never {}{all}{near}", asked.written(), quoted(written))))
 }
 
 /// The names of the objects, as in the probe.
@@ -207,10 +190,7 @@ fn of_knob(
         "tone_mapping" | "encoding" => return Ok(Kind::Text),
         _ => {}
     }
-    let lights = registry.lights().iter().flat_map(|entry| entry.parameters);
-    let shapes = registry.shapes().iter().flat_map(|entry| entry.parameters);
-    let found = registry.material_parameters().chain(lights).chain(shapes).find(|p| p.name == name);
-    if let Some(parameter) = found {
+    if let Some(parameter) = controls::parameters(registry).find(|p| p.name == name) {
         let used = match selection {
             Some(Selection::Object(i)) => scene.objects.get(i).and_then(|object| {
                 let model = registry.model(scene.model_of(object))?;
@@ -241,8 +221,7 @@ fn of_knob(
             Err("colour is three numbers; compare one of them, as in scene.lights[0].colour[0]".to_owned())
         }
         _ => {
-            let mut known = controls::parameters(registry);
-            known.extend(controls::KNOBS);
+            let known = controls::knobs(registry);
             let near = did_you_mean(name, known.iter().map(|k| (*k, *k)));
             Err(format!("there is no parameter {}{near}", quoted(name)))
         }

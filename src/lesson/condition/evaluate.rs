@@ -8,7 +8,7 @@ type Ask<'a> = dyn Fn(&Asked) -> Result<Value, String> + 'a;
 /// Tolerance of equality: scenes have 32-bit numbers, and people write few digits.
 const EQUAL: f64 = 1e-5;
 
-fn value(operand: &Operand, ask: &Ask) -> Result<Value, String> {
+pub(super) fn value(operand: &Operand, ask: &Ask) -> Result<Value, String> {
     match &operand.what {
         Term::Value(value) => Ok(value.clone()),
         Term::Quantity(asked) => ask(asked),

@@ -1,6 +1,6 @@
 //! Comparisons that can never hold: numbers beyond the range of a quantity.
 
-use super::{Operand, Sign, Term, Value, quantity::Argument, subject};
+use super::{Operand, Sign, Term, Value, subject};
 use crate::{registry::Registry, text::detailed};
 
 /// The byte of a number that a quantity cannot reach, and a sentence.
@@ -18,34 +18,21 @@ pub(super) fn beyond(
         return None;
     };
     let [least, most] = subject::range(asked, registry)?;
-    let never = match sign {
-        Sign::Less => *number <= least,
-        Sign::LessOrEqual => *number < least,
-        Sign::Greater => *number >= most,
-        Sign::GreaterOrEqual => *number > most,
-        Sign::Equal => *number < least || *number > most,
-        Sign::NotEqual => false,
+    let (never, word) = match sign {
+        Sign::Less => (*number <= least, "less than "),
+        Sign::LessOrEqual => (*number < least, "at most "),
+        Sign::Greater => (*number >= most, "more than "),
+        Sign::GreaterOrEqual => (*number > most, "at least "),
+        Sign::Equal => (*number < least || *number > most, ""),
+        Sign::NotEqual => (false, ""),
     };
     if !never {
         return None;
     }
-    let word = match sign {
-        Sign::Less => "less than ",
-        Sign::LessOrEqual => "at most ",
-        Sign::Greater => "more than ",
-        Sign::GreaterOrEqual => "at least ",
-        Sign::Equal | Sign::NotEqual => "",
-    };
-    let name = match &asked.argument {
-        Argument::Path(path) => format!("scene.{path}"),
-        Argument::Name(name) => format!("knob.{name}"),
-        Argument::Angle(angle) => format!("curve.albedo({angle})"),
-        Argument::None => asked.quantity.name.to_owned(),
-    };
     let range = if most.is_finite() {
         format!("it ranges from {least} to {most}")
     } else {
         format!("its smallest value is {least}")
     };
-    Some((bound.at, detailed(&format!("{name} is never {word}{number}"), &range)))
+    Some((bound.at, detailed(&format!("{} is never {word}{number}", asked.written()), &range)))
 }

@@ -40,10 +40,10 @@ pub(super) fn expression(text: &str) -> Result<Expression, Failure> {
             None => Ok(read),
         },
         Token::Close => Err((parser.at, "there is no opening bracket for this one".to_owned())),
-        _ => Err((
-            parser.at,
-            format!("expected “and”, “or” or the end of the condition, not {}", parser.shown()),
-        )),
+        _ => {
+            let found = parser.shown();
+            Err((parser.at, format!("expected “and”, “or” or the end of the condition, not {found}")))
+        }
     }
 }
 
@@ -147,18 +147,13 @@ impl<'a> Parser<'a> {
             return Err((self.at, format!("{} is not a number", quoted(&rest[..start + length]))));
         };
         let value = if negative { -value } else { value };
-        let after = &digits[length..];
-        let mut end = start + length;
-        let unit = after.trim_start_matches(' ');
-        let spaces = after.len() - unit.len();
-        if unit.starts_with('°') {
-            end += spaces + '°'.len_utf8();
-            return Ok((Token::Number(value), end));
-        }
-        if unit.starts_with('%') {
-            return Ok((Token::Number(value / 100.0), end + spaces + 1));
-        }
-        Ok((Token::Number(value), end))
+        let unit = digits[length..].trim_start_matches(' ');
+        let after_spaces = rest.len() - unit.len();
+        Ok(match unit.chars().next() {
+            Some('°') => (Token::Number(value), after_spaces + '°'.len_utf8()),
+            Some('%') => (Token::Number(value / 100.0), after_spaces + 1),
+            _ => (Token::Number(value), start + length),
+        })
     }
 
     /// Refuses a unit given as a word or a symbol: `20 degrees`, `20deg`.
@@ -204,10 +199,8 @@ impl<'a> Parser<'a> {
 
     fn single(&mut self, depth: usize) -> Result<Expression, Failure> {
         if depth > DEEPEST_CONDITION {
-            return Err((
-                self.at,
-                format!("the condition is nested more than {DEEPEST_CONDITION} levels deep"),
-            ));
+            let what = format!("the condition is nested more than {DEEPEST_CONDITION} levels deep");
+            return Err((self.at, what));
         }
         if self.is_word("not") {
             self.advance()?;

@@ -67,10 +67,7 @@ pub(super) fn is_highlight(s: &Situation) -> Result<bool, String> {
     let seen = seen(s)?;
     let mut sums = [0.0f32; 2];
     for spot in &seen.spots {
-        let weight = match spot.place {
-            Place::Vertex { weight, .. } => weight,
-            Place::Polygon | Place::Pixel => 1.0,
-        };
+        let weight = spot.place.weight();
         for lit in &spot.lights {
             let terms = [lit.response.diffuse, lit.response.specular];
             for (sum, term) in sums.iter_mut().zip(terms) {
@@ -87,11 +84,8 @@ pub(super) fn brightest_vertex(s: &Situation) -> Result<bool, String> {
     let vertices: Vec<_> =
         seen.spots.iter().filter(|spot| matches!(spot.place, Place::Vertex { .. })).collect();
     let Some(eye) = vertices.first().map(|spot| spot.position + spot.distance * spot.eye) else {
-        return Err(format!(
-            "the equation is not evaluated at vertices but at {} under {}",
-            plural(seen.spots.len(), "point"),
-            seen.shading.name
-        ));
+        let (points, name) = (plural(seen.spots.len(), "point"), seen.shading.name);
+        return Err(format!("the equation is not evaluated at vertices but at {points} under {name}"));
     };
     let terms = pinned(s)?.terms;
     let most = brightest(s.scene, s.registry, terms, seen.object.index, eye);

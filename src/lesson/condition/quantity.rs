@@ -1,6 +1,6 @@
 //! The quantities of conditions: one entry each, with the meaning and the calculation.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use super::{Value, probe, scene};
 use crate::{
@@ -64,6 +64,10 @@ pub struct Quantity {
     pub kind: Kind,
     /// Meaning, with its unit.
     pub meaning: &'static str,
+    /// Minimum and maximum of numbers.
+    pub(super) range: Option<[f64; 2]>,
+    /// The unit of numbers and their name in a sentence, or the sentences for false and for true.
+    pub(super) words: [&'static str; 2],
     /// Possible texts, if there are few.
     pub(super) texts: fn(&Registry) -> Vec<&'static str>,
     value: fn(&Situation, &Argument) -> Result<Value, String>,
@@ -80,6 +84,16 @@ impl Asked {
     /// The value of the quantity, or the reason why it has none.
     pub(super) fn value(&self, situation: &Situation) -> Result<Value, String> {
         (self.quantity.value)(situation, &self.argument)
+    }
+
+    /// The quantity as in a condition.
+    pub(super) fn written(&self) -> String {
+        match &self.argument {
+            Argument::Path(path) => format!("scene.{path}"),
+            Argument::Name(name) => format!("knob.{name}"),
+            Argument::Angle(angle) => format!("curve.albedo({angle})"),
+            Argument::None => self.quantity.name.to_owned(),
+        }
     }
 
     /// The part of the name before the first dot.
@@ -100,110 +114,93 @@ fn number(number: impl Into<f64>) -> Result<Value, String> {
     Ok(Value::Number(number.into()))
 }
 
-macro_rules! quantities {
-    ($($name:literal, $kind:ident, $texts:expr, $meaning:literal, $value:expr;)*) => {
-        /// All quantities, in the order of the documentation.
-        pub const QUANTITIES: &[Quantity] = &[$(Quantity {
-            name: $name,
-            kind: Kind::$kind,
-            meaning: $meaning,
-            texts: $texts,
-            value: $value,
-        }),*];
+/// What a quantity says of a situation, and the texts that it may be.
+type Answer = (fn(&Registry) -> Vec<&'static str>, fn(&Situation, &Argument) -> Result<Value, String>);
+
+macro_rules! answers {
+    ($($name:literal, $texts:expr, $value:expr;)*) => {
+        const ANSWERS: &[(&str, Answer)] = &[$(($name, ($texts, $value))),*];
     };
 }
 
-quantities! {
-    "scene.PATH", Various, free,
-    "the value in the scene, by its path in the scene file; defaults are filled in, and overrides of the active view; `scene.lights.count`, `scene.objects.count` and `scene.variants.count` are numbers of parts",
-    |s, a| match a {
+answers! {
+    "scene.PATH", free, |s, a| match a {
         Argument::Path(path) => scene::value(s.scene, path, s.registry),
         _ => Err("no path is given".to_owned()),
     };
-    "window.selected", Text, |_| vec!["room", "observer", "light", "object"],
-    "the kind of the selected part: `\"room\"`, `\"observer\"`, `\"light\"` or `\"object\"`",
-    |s, _| text(kind_of(s.selection));
-    "window.selected_index", Number, free, "the number of the selected light or object, from 1",
-    |s, _| match s.selection {
+    "window.selected", |_| vec!["room", "observer", "light", "object"], |s, _| text(kind_of(s.selection));
+    "window.selected_index", free, |s, _| match s.selection {
         Selection::Light(i) | Selection::Object(i) => number((i + 1) as u32),
         _ => Err("no light and no object is selected".to_owned()),
     };
-    "window.channel", Text, |_| DebugChannel::ALL.map(DebugChannel::id).into_iter().chain(["none"]).collect(),
-    "the debug channel of the active view by its id, or `\"none\"`",
+    "window.channel", |_| DebugChannel::ALL.map(DebugChannel::id).into_iter().chain(["none"]).collect(),
     |s, _| text(s.window.channel.map_or("none", DebugChannel::id));
-    "window.terms", Text, |_| TermSelection::ALL.map(TermSelection::id).to_vec(),
-    "the terms that are shown: `\"all\"`, `\"ambient\"`, `\"diffuse\"` or `\"specular\"`",
-    |s, _| text(s.window.terms.id());
-    "window.shows_term_alone", Truth, free, "true if one term is shown alone",
-    |s, _| Ok(Value::Truth(s.window.terms != TermSelection::All));
-    "window.views", Number, free, "the number of views, 1 to 4", |s, _| number(s.window.views as u32);
-    "window.active", Text, |_| LETTERS.to_vec(), "the letter of the active view: `\"A\"` to `\"D\"`",
+    "window.terms", |_| TermSelection::ALL.map(TermSelection::id).to_vec(), |s, _| text(s.window.terms.id());
+    "window.shows_term_alone", free, |s, _| Ok(Value::Truth(s.window.terms != TermSelection::All));
+    "window.views", free, |s, _| number(s.window.views as u32);
+    "window.active", |_| LETTERS.to_vec(),
     |s, _| text(LETTERS.get(s.window.active).copied().unwrap_or_default());
-    "window.plots", Text, |_| Plot::ALL.map(Plot::id).into_iter().chain(["off"]).collect(),
-    "the plot that is shown by its id, or `\"off\"`",
+    "window.plots", |_| Plot::ALL.map(Plot::id).into_iter().chain(["off"]).collect(),
     |s, _| text(s.window.plots.map_or("off", Plot::id));
-    "window.explain", Truth, free, "true if the panel *Explain* is open", |s, _| Ok(Value::Truth(s.window.explain));
-    "window.presenting", Truth, free, "true while the picture is presented",
-    |s, _| Ok(Value::Truth(s.window.presenting));
-    "window.reflection_model", Text, |r| r.models().iter().map(|m| m.declaration.id).collect(),
-    "the id of the reflection model of the selected object in the active view",
+    "window.explain", free, |s, _| Ok(Value::Truth(s.window.explain));
+    "window.presenting", free, |s, _| Ok(Value::Truth(s.window.presenting));
+    "window.reflection_model", |r| r.models().iter().map(|m| m.declaration.id).collect(),
     |s, _| object(s).and_then(|object| text(s.scene.model_of(object)));
-    "window.shading_model", Text, |r| r.shading_models().iter().map(|m| m.declaration.id).collect(),
-    "the id of the shading model of the selected object in the active view",
+    "window.shading_model", |r| r.shading_models().iter().map(|m| m.declaration.id).collect(),
     |s, _| object(s).and_then(|object| text(s.scene.shading_model_of(object)));
-    "knob.PARAMETER", Various, free,
-    "the parameter of the selected object or light, by its name in scene files; `knob.exposure` is that of the picture, in EV",
-    |s, a| match a {
+    "knob.PARAMETER", free, |s, a| match a {
         Argument::Name(name) => knob(s, name),
         _ => Err("no parameter is given".to_owned()),
     };
-    "probe.pinned", Truth, free, "true if a pixel is pinned", |s, _| Ok(Value::Truth(s.pinned));
-    "probe.background", Truth, free, "true if there is no object at the pinned pixel",
-    |s, _| probe::pinned(s).map(|e| Value::Truth(e.seen.is_none()));
-    "probe.object", Text, free, "the name of the object at the pinned pixel; `\"object 2\"` for one without a name",
-    |s, _| probe::object(s).map(Value::Text);
-    "probe.red", Number, free, "the code of red of the pinned pixel, 0 to 255",
-    |s, _| probe::pinned(s).map(|e| Value::Number(e.code()[0].into()));
-    "probe.green", Number, free, "the code of green", |s, _| probe::pinned(s).map(|e| Value::Number(e.code()[1].into()));
-    "probe.blue", Number, free, "the code of blue", |s, _| probe::pinned(s).map(|e| Value::Number(e.code()[2].into()));
-    "probe.luminance", Number, free, "the luminance of the light at the pinned pixel before exposure",
-    |s, _| probe::seen(s).and_then(|seen| number(luminance(seen.light)));
-    "probe.n_dot_l", Number, free, "N·L at the point seen at the pinned pixel, for the light that is brightest there",
-    |s, _| probe::cosine(s, "N·L").map(Value::Number);
-    "probe.n_dot_v", Number, free, "N·V there", |s, _| probe::cosine(s, "N·V").map(Value::Number);
-    "probe.n_dot_h", Number, free, "N·H there, for the light that is brightest there",
-    |s, _| probe::cosine(s, "N·H").map(Value::Number);
-    "probe.angle_n_l", Number, free, "the angle between N and L there, degrees",
-    |s, _| probe::angle(s, "N·L").map(Value::Number);
-    "probe.angle_n_v", Number, free, "the angle between N and V there, degrees",
-    |s, _| probe::angle(s, "N·V").map(Value::Number);
-    "probe.angle_n_h", Number, free, "the angle between N and H there, degrees",
-    |s, _| probe::angle(s, "N·H").map(Value::Number);
-    "probe.light_distance", Number, free, "the distance to the light that is brightest there, metres",
-    |s, _| probe::light_distance(s).map(Value::Number);
-    "probe.brightest_vertex", Truth, free,
-    "Gouraud shading: true if the pinned pixel is near the brightest of the vertices that face the observer (its weight in the pixel is 0.6 or more)",
-    |s, _| probe::brightest_vertex(s).map(Value::Truth);
-    "probe.is_highlight", Truth, free, "true if the specular term is brighter than the diffuse one at the pinned pixel",
-    |s, _| probe::is_highlight(s).map(Value::Truth);
-    "probe.clipped", Truth, free, "true if the display cuts off red, green or blue of the pinned pixel at its upper end",
-    |s, _| probe::pinned(s).map(|e| Value::Truth(e.steps.mapped.max_element() > 1.0));
-    "curve.highlight_width", Number, free,
-    "degrees: the full width of the specular term at half its maximum, over the angle θ_o of the viewer in the plane of incidence, for light at θ_i = 30°; a side that does not fall to half ends at the horizon",
-    |s, _| with_surface(s, |surface, _, name| {
+    "probe.pinned", free, |s, _| Ok(Value::Truth(s.pinned));
+    "probe.background", free, |s, _| probe::pinned(s).map(|e| Value::Truth(e.seen.is_none()));
+    "probe.object", free, |s, _| probe::object(s).map(Value::Text);
+    "probe.red", free, |s, _| probe::pinned(s).map(|e| Value::Number(e.code()[0].into()));
+    "probe.green", free, |s, _| probe::pinned(s).map(|e| Value::Number(e.code()[1].into()));
+    "probe.blue", free, |s, _| probe::pinned(s).map(|e| Value::Number(e.code()[2].into()));
+    "probe.luminance", free, |s, _| probe::seen(s).and_then(|seen| number(luminance(seen.light)));
+    "probe.n_dot_l", free, |s, _| probe::cosine(s, "N·L").map(Value::Number);
+    "probe.n_dot_v", free, |s, _| probe::cosine(s, "N·V").map(Value::Number);
+    "probe.n_dot_h", free, |s, _| probe::cosine(s, "N·H").map(Value::Number);
+    "probe.angle_n_l", free, |s, _| probe::angle(s, "N·L").map(Value::Number);
+    "probe.angle_n_v", free, |s, _| probe::angle(s, "N·V").map(Value::Number);
+    "probe.angle_n_h", free, |s, _| probe::angle(s, "N·H").map(Value::Number);
+    "probe.light_distance", free, |s, _| probe::light_distance(s).map(Value::Number);
+    "probe.brightest_vertex", free, |s, _| probe::brightest_vertex(s).map(Value::Truth);
+    "probe.is_highlight", free, |s, _| probe::is_highlight(s).map(Value::Truth);
+    "probe.clipped", free, |s, _| probe::pinned(s).map(|e| Value::Truth(e.steps.mapped.max_element() > 1.0));
+    "curve.highlight_width", free, |s, _| with_surface(s, |surface, _, name| {
         highlight_width(surface, INCIDENCE).ok_or_else(|| format!("{name} has no highlight"))
     });
-    "curve.peak", Number, free, "the largest specular response π f cos θ_i in the plane of incidence, for light at θ_i = 30°",
-    |s, _| with_surface(s, |surface, _, _| Ok(peak(surface)));
-    "curve.albedo(DEGREES)", Number, free,
-    "the directional albedo for a viewer at that angle from the normal: the largest of red, green and blue",
-    |s, a| with_surface(s, |surface, _, _| match a {
+    "curve.peak", free, |s, _| with_surface(s, |surface, _, _| Ok(peak(surface)));
+    "curve.albedo(DEGREES)", free, |s, a| with_surface(s, |surface, _, _| match a {
         Argument::Angle(angle) => Ok(albedo(surface, &[*angle])),
         _ => Err("no angle is given".to_owned()),
     });
-    "curve.largest_albedo", Number, free,
-    "the largest directional albedo of red, green and blue for viewers at 0°, 15°, 30°, 45°, 60°, 70°, 80° and 85° from the normal",
-    |s, _| with_surface(s, |surface, _, _| Ok(albedo(surface, &ANGLES)));
+    "curve.largest_albedo", free, |s, _| with_surface(s, |surface, _, _| Ok(albedo(surface, &ANGLES)));
+}
+
+/// All quantities, in the order of the documentation.
+pub static QUANTITIES: LazyLock<Vec<Quantity>> =
+    LazyLock::new(|| include_str!("quantities.txt").lines().filter_map(Quantity::read).collect());
+
+impl Quantity {
+    /// A line of the table: the name and the type; for numbers the range, the unit and the words of a sentence; for
+    /// what is true or false two sentences; and the meaning.
+    fn read(line: &'static str) -> Option<Self> {
+        let mut cells = line.split('|');
+        let [name, kind, least, most, first, second, meaning] =
+            std::array::from_fn(|_| cells.next().unwrap_or_default());
+        let (_, (texts, value)) = *ANSWERS.iter().find(|(known, _)| *known == name)?;
+        let kind = match kind {
+            "number" => Kind::Number,
+            "text" => Kind::Text,
+            "truth" => Kind::Truth,
+            _ => Kind::Various,
+        };
+        let range = least.parse().ok().zip(most.parse().ok()).map(|(least, most)| [least, most]);
+        Some(Self { name, kind, meaning, range, words: [first, second], texts, value })
+    }
 }
 
 /// Angle of the light in the curves of conditions, in degrees.
@@ -269,21 +266,15 @@ fn knob(s: &Situation, name: &str) -> Result<Value, String> {
     if DISPLAY.contains(&name) {
         return scene::value(s.scene, &Path::root().key("display").key(name.to_owned()), s.registry);
     }
-    let path = |list: &'static str, i: usize| Path::root().key(list).index(i);
-    let found = match s.selection {
-        Selection::Object(i) => {
-            let own = scene::value(s.scene, &path("objects", i).key(name.to_owned()), s.registry);
-            own.or_else(|_| {
-                scene::value(s.scene, &path("objects", i).key("material").key(name.to_owned()), s.registry)
-            })
-        }
-        Selection::Light(i) => scene::value(s.scene, &path("lights", i).key(name.to_owned()), s.registry),
-        Selection::Observer => {
-            scene::value(s.scene, &Path::root().key("observer").key(name.to_owned()), s.registry)
-        }
+    let entry = |list: &'static str, i: usize| Path::root().key(list).index(i);
+    let paths = match s.selection {
+        Selection::Object(i) => vec![entry("objects", i), entry("objects", i).key("material")],
+        Selection::Light(i) => vec![entry("lights", i)],
+        Selection::Observer => vec![Path::root().key("observer")],
         Selection::Room => return Err("no object and no light is selected".to_owned()),
     };
-    found.map_err(|_| format!("the selected part has no {name}"))
+    let held = |path: Path| scene::value(s.scene, &path.key(name.to_owned()), s.registry).ok();
+    paths.into_iter().find_map(held).ok_or_else(|| format!("the selected part has no {name}"))
 }
 
 /// The quantity of a word in a condition, or the byte of a mistake in the word, and a sentence.
@@ -311,15 +302,14 @@ pub(super) fn asked(word: &str) -> Result<Asked, (usize, String)> {
             return Err(unknown());
         }
         let written = angle.trim_end_matches(')').trim().trim_end_matches('°').trim();
-        let at = name.len() + 1;
         return match written.parse::<f64>() {
             Ok(angle) if (0.0..90.0).contains(&angle) => {
                 of("curve.albedo(DEGREES)", Argument::Angle(angle)).ok_or_else(unknown)
             }
-            _ => Err((
-                at,
-                format!("the angle is {}, but it must be at least 0° and less than 90°", quoted(written)),
-            )),
+            _ => {
+                let rule = "it must be at least 0° and less than 90°";
+                Err((name.len() + 1, format!("the angle is {}, but {rule}", quoted(written))))
+            }
         };
     }
     if word == "curve.albedo" {
@@ -333,10 +323,10 @@ pub(super) fn asked(word: &str) -> Result<Asked, (usize, String)> {
 
 /// The type of a parameter for comparisons; `None` for those with several numbers.
 pub(super) fn kind_of_parameter(kind: &ParameterKind) -> Option<Kind> {
-    match kind {
-        ParameterKind::Number { .. } | ParameterKind::Integer { .. } => Some(Kind::Number),
-        ParameterKind::Choice { .. } if kind.is_flag() => Some(Kind::Truth),
-        ParameterKind::Choice { .. } | ParameterKind::File { .. } => Some(Kind::Text),
-        ParameterKind::Colour { .. } | ParameterKind::Triple { .. } => None,
+    match (kind.components(), kind.limits()) {
+        (1, Some(_)) => Some(Kind::Number),
+        (1, None) if kind.is_flag() => Some(Kind::Truth),
+        (1, None) => Some(Kind::Text),
+        _ => None,
     }
 }

@@ -81,10 +81,8 @@ fn walk(mut json: Json, from: &str, path: &[Segment]) -> Result<Json, String> {
             }
             (Segment::Index(i), Json::Array(mut list)) if *i < list.len() => list.swap_remove(*i),
             (Segment::Index(i), Json::Array(list)) => {
-                return Err(format!(
-                    "there is no {at}[{i}]: the list has {} entries, counted from 0",
-                    list.len()
-                ));
+                let count = list.len();
+                return Err(format!("there is no {at}[{i}]: the list has {count} entries, counted from 0"));
             }
             (Segment::Key(key), Json::Array(_)) => {
                 return Err(format!("{place} is a list, so it has no {}; continue with [0]", quoted(key)));

@@ -364,7 +364,7 @@ fn senseless_conditions_say_where_and_why() {
 
 #[test]
 fn every_quantity_is_reachable_by_its_name() {
-    for quantity in QUANTITIES {
+    for quantity in QUANTITIES.iter() {
         let name =
             quantity.name.replace("PATH", "name").replace("PARAMETER", "alpha").replace("DEGREES", "30");
         let asked = quantity::asked(&name).unwrap_or_else(|(_, what)| panic!("{what}"));

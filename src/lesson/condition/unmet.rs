@@ -12,7 +12,6 @@ use crate::{
     curves::Kind as Plot,
     lesson::Situation,
     optics::tone::ToneMapping,
-    parameter::ParameterKind,
     text::{path::Segment, shortened},
 };
 
@@ -74,10 +73,7 @@ fn reasons(expression: &Expression, wanted: bool, state: &State) -> Vec<String> 
 }
 
 fn value(operand: &Operand, state: &State) -> Result<Value, String> {
-    match &operand.what {
-        Term::Value(value) => Ok(value.clone()),
-        Term::Quantity(asked) => state.value(asked),
-    }
+    evaluate::value(operand, &|asked| state.value(asked))
 }
 
 /// States that a quantity is true, or that it is false.
@@ -216,12 +212,10 @@ fn text(asked: &Asked, now: &str, situation: &Situation) -> String {
                 "shading_model" => shading(),
                 "tone_mapping" => ToneMapping::from_id(now).map_or(now, |curve| curve.name()),
                 "encoding" if now == "srgb" => "sRGB",
-                name => match registry.material_parameter(name).map(|p| &p.kind) {
-                    Some(ParameterKind::Choice { options, .. }) => {
-                        options.iter().find(|(id, _)| *id == now).map_or(now, |(_, name)| *name)
-                    }
-                    _ => now,
-                },
+                name => {
+                    let options = registry.material_parameter(name).map_or(&[][..], |p| p.kind.options());
+                    options.iter().find(|(id, _)| *id == now).map_or(now, |(_, name)| *name)
+                }
             };
             format!("{subject} is {}", shortened(shown))
         }

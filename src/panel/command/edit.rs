@@ -5,7 +5,7 @@ use crate::{
     document::Selection,
     panel::{
         history::HISTORY_TAB,
-        state::{Action, ModelCommand, ViewChange},
+        state::{Action, Effect, ModelCommand, Pick, ViewChange},
     },
 };
 
@@ -84,5 +84,6 @@ fn models(to: &mut List) {
     let duplicate = model("duplicate_model", "Duplicate the model as a file…", ModelCommand::Duplicate);
     to.add(duplicate.keys("Ctrl+Shift+D"));
     to.add(model("edit_model", "Open the model in an editor", ModelCommand::EditShown).keys("Ctrl+E"));
-    to.add(model("export_shaders", "Export shaders for editing…", ModelCommand::ExportDialog));
+    let export = Action::Do(Effect::Pick(Pick::ShaderFolder));
+    to.add(command("export_shaders", "Export shaders for editing…", export).group(Group::CustomModels));
 }

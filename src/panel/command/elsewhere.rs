@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::{Command, Group, List, command};
 use crate::{
     channel::DebugChannel,
-    panel::state::{Action, CompareCommand, LessonCommand, MODEL_SLOTS, Steer, ViewChange},
+    panel::state::{Action, CompareCommand, Effect, LessonCommand, MODEL_SLOTS, Steer, ViewChange},
     scene::{Comparison, comparison::Layout},
 };
 
@@ -105,7 +105,7 @@ fn camera(to: &mut List) {
         ("nearer", "PageUp", "Nearer", Steer::Zoom(0.9)),
         ("farther", "PageDown", "Farther", Steer::Zoom(1.0 / 0.9)),
     ] {
-        to.add(command(id, name, Action::Steer(steer)).keys(keys).group(Group::Camera));
+        to.add(command(id, name, Action::Do(Effect::Steer(steer))).keys(keys).group(Group::Camera));
     }
 }
 

@@ -6,7 +6,7 @@ use crate::{
     files::Shown as _,
     panel::{
         export,
-        state::{Action, ExportCommand, PictureCommand, ViewChange},
+        state::{Action, Effect, ExportCommand, Pick, ViewChange},
     },
     scene::variant::LETTERS,
 };
@@ -19,7 +19,7 @@ pub(super) fn file(to: &mut List) {
         to.menu(Menu::new(super::EXAMPLES), |_| ());
         to.line();
         to.add(command("save", "Save", Action::Save).keys("Ctrl+S"));
-        to.add(command("save_as", "Save as…", Action::SaveAsDialog).keys("Ctrl+Shift+S"));
+        to.add(command("save_as", "Save as…", Action::Do(Effect::Pick(Pick::Save))).keys("Ctrl+Shift+S"));
         let unsaved = to.session.path.is_none();
         let reload = command("reload", "Reload from disk", Action::Reload);
         to.add(reload.unless(unsaved, "The scene has no file yet"));
@@ -32,7 +32,7 @@ pub(super) fn file(to: &mut List) {
 }
 
 fn recent(to: &mut List) {
-    let files = &to.session.recent_files;
+    let files = &to.session.settings.recent_files;
     to.menu(Menu::new("Open recent").empty("Files that you open or save appear here."), |to| {
         for (i, path) in files.iter().enumerate() {
             let whole = path.shown().to_string();
@@ -51,24 +51,24 @@ fn pictures(to: &mut List) {
     let view = to.session.active();
     let letter = LETTERS.get(view).copied().unwrap_or_default();
     let (save, copy) = if alone { ("Save all views…", "Copy all views") } else { ("Save…", "Copy") };
-    let picture = |id: &'static str, name: String, what| command(id, name, Action::Picture(what));
+    let copied = |view| Action::Do(Effect::Picture { view, file: None, overwrite: false });
     to.menu(Menu::new("Picture").width(super::show::WIDTH), |to| {
         let file = "Write the picture as it is shown to a PNG file, without handles and labels. The file holds the scene, \
                     so it can be opened again.";
-        let save = picture("save_picture", save.to_owned(), PictureCommand::Dialog(None));
+        let save = command("save_picture", save, Action::Do(Effect::Pick(Pick::Picture(None))));
         to.add(save.says("Save the picture…").keys("Ctrl+P").tip(file));
         let help = "Write the picture of the active view to a PNG file";
         let name = format!("Save view {letter} alone…");
-        let save = picture("save_view", name, PictureCommand::Dialog(Some(view)));
+        let save = command("save_view", name, Action::Do(Effect::Pick(Pick::Picture(Some(view)))));
         to.add(save.tip(help).absent(!alone));
-        let copy = picture("copy_picture", copy.to_owned(), PictureCommand::Copy(None));
+        let copy = command("copy_picture", copy, copied(None));
         let help = "Put the picture as it is shown on the clipboard";
         to.add(copy.says("Copy the picture").keys("Ctrl+Shift+P").tip(help));
         let help = "Put the picture of the active view on the clipboard";
-        let copy = picture("copy_view", format!("Copy view {letter} alone"), PictureCommand::Copy(Some(view)));
+        let copy = command("copy_view", format!("Copy view {letter} alone"), copied(Some(view)));
         to.add(copy.tip(help).absent(!alone));
         to.line();
-        let on = to.session.view.picture_caption;
+        let on = to.session.settings.picture_caption;
         let caption = command("caption", "With a caption", Action::View(ViewChange::PictureCaption(!on)));
         let help = "Add a strip below the picture: models, values that differ from the defaults, tone mapping, version";
         to.add(caption.mark(Mark::Check(on)).tip(help));

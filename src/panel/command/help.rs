@@ -1,15 +1,15 @@
 //! The menu of help.
 
 use super::{Group, List, Menu, command};
-use crate::panel::state::{Action, LessonCommand, ViewChange};
+use crate::panel::state::{Action, Effect, LessonCommand, Pick, ViewChange};
 
 pub(super) fn help(to: &mut List) {
     to.menu(Menu::new("Help").group(Group::Window).width(super::show::WIDTH), |to| {
-        to.add(command("manual", "Manual", Action::Manual));
+        to.add(command("manual", "Manual", Action::Do(Effect::OpenManual)));
         let keys = Action::View(ViewChange::Keys(!to.session.view.keys_open));
         to.add(command("keys", "Keys and mouse", keys).row("This list").keys("F1").anywhere());
         to.menu(Menu::new(super::LESSONS).group(Group::Lessons), |to| {
-            let open = command("open_lesson", "Open a lesson…", Action::Lesson(LessonCommand::OpenDialog));
+            let open = command("open_lesson", "Open a lesson…", Action::Do(Effect::Pick(Pick::Lesson)));
             to.add(open.says("Open a lesson…").tip("A lesson of your own: a Markdown file"));
             let leave = command("leave_lesson", "Leave the lesson", Action::Lesson(LessonCommand::Leave));
             let none = to.session.lesson.is_none();

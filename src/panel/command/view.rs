@@ -5,8 +5,8 @@ use crate::{
     channel::DebugChannel,
     optics::TermSelection,
     panel::state::{
-        Action, CompareCommand, HandleChange, HandleMode, Labels, LobeChoice, LobeScale, MESSAGES_TAB,
-        PLOTS_TAB, PanelInfo, Place, SHADER_TAB, ThemeChoice, ViewChange,
+        Action, CompareCommand, Effect, HandleChange, HandleMode, Labels, LobeChoice, LobeScale,
+        MESSAGES_TAB, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, ThemeChoice, ViewChange,
     },
     scene::comparison::Layout,
     text::capitalised,
@@ -36,7 +36,7 @@ pub(super) fn view_menu(to: &mut List) {
         marks(to);
         handles(to);
         to.menu(Menu::new("Labels of objects"), |to| {
-            for labels in Labels::ALL {
+            for labels in Labels::ALL.iter().copied() {
                 let on = to.session.view.labels == labels;
                 to.add(choice("labels", labels.id(), labels.name(), on, ViewChange::Labels(labels)));
             }
@@ -55,12 +55,12 @@ pub(super) fn view_menu(to: &mut List) {
 }
 
 fn camera(to: &mut List) {
-    to.add(command("home", "Home: the observer’s view", Action::HomeView).keys("H"));
-    to.add(command("focus", "Focus selection", Action::FocusSelection).keys("C"));
+    to.add(command("home", "Home: the observer’s view", Action::Do(Effect::HomeView)).keys("H"));
+    to.add(command("focus", "Focus selection", Action::Do(Effect::FocusSelection)).keys("C"));
     let side = command("side", "Look from the side", Action::LookFromSide).keys("Shift+H");
     let says = "Look at the pinned point from the side: its vectors N and L face on";
     to.add(side.says(says).unless(!to.has_sides, "No point is pinned"));
-    let observer = command("set_observer", "Set observer to this view", Action::ObserverFromView);
+    let observer = command("set_observer", "Set observer to this view", Action::Do(Effect::ObserverFromView));
     let problem = to.session.observer_problem();
     to.add(observer.unless(problem.is_some(), problem.unwrap_or_default()));
 }
@@ -84,10 +84,10 @@ fn terms(to: &mut List) {
 fn lobe(to: &mut List) {
     let now = to.session.view.lobe;
     to.menu(Menu::new(super::LOBE).group(Group::Picture).stays(), |to| {
-        for scale in LobeScale::ALL {
+        for scale in LobeScale::ALL.iter().copied() {
             let change = ViewChange::Lobe(LobeChoice { scale, ..now });
-            let id = scale.name().to_lowercase();
-            to.add(choice("lobe", &id, scale.name(), now.scale == scale, change).tip(scale.about()));
+            let entry = choice("lobe", scale.id(), scale.name(), now.scale == scale, change);
+            to.add(entry.tip(scale.summary()));
         }
         to.line();
         for (all, id, name, help) in [
@@ -133,16 +133,16 @@ fn marks(to: &mut List) {
 
 fn handles(to: &mut List) {
     let v = &to.session.view;
-    let word = if v.show_handles { v.handles.name().to_lowercase() } else { "hidden".to_owned() };
+    let word = if v.show_handles { v.handles.id() } else { "hidden" };
     let menu = Menu { shown: Some(format!("Handles: {word}")), ..Menu::new("Handles").group(Group::Handles) };
     to.menu(menu, |to| {
         let show = ViewChange::Handles(HandleChange::Show(!v.show_handles));
         to.add(switch("handles", "Show handles", v.show_handles, show).says("Show handles").at_desk());
         to.line();
-        for mode in HandleMode::ALL {
+        for mode in HandleMode::ALL.iter().copied() {
             let on = v.show_handles && v.handles == mode;
             let change = ViewChange::Handles(HandleChange::Mode(mode));
-            to.add(choice("handles", &mode.name().to_lowercase(), mode.name(), on, change).at_desk());
+            to.add(choice("handles", mode.id(), mode.name(), on, change).at_desk());
         }
         to.line();
         let next = view("next_handles", "Next", ViewChange::Handles(HandleChange::Mode(v.handles.next())));
@@ -180,7 +180,7 @@ fn panels(to: &mut List) {
             session.panels.iter().filter(|p| p.guest && matches!(p.place, Place::Left | Place::Right))
         {
             let side = if panel.place == Place::Left { v.left_open } else { v.right_open };
-            let shown = side && !v.hides(panel.id);
+            let shown = side && !session.settings.hides(panel.id);
             to.add(of_panel(panel, shown, ViewChange::Panel(panel.id.to_owned(), !shown)));
         }
         for panel in session.panels.iter().filter(|p| p.place == Place::Bottom) {
@@ -212,8 +212,8 @@ fn tab(session: &super::Session, panel: &PanelInfo) -> Command {
 }
 
 fn sizes(to: &mut List) {
-    let v = &to.session.view;
-    let shown = Some(format!("Size of everything: {} %", v.scale));
+    let settings = &to.session.settings;
+    let shown = Some(format!("Size of everything: {} %", settings.scale));
     let menu = Menu { shown, ..Menu::new("Size of everything").group(Group::Window) };
     to.menu(menu, |to| {
         to.add(view("larger", "Larger", ViewChange::Larger).says("Everything larger").keys("Ctrl++"));
@@ -223,7 +223,7 @@ fn sizes(to: &mut List) {
     to.menu(Menu::new("Theme").group(Group::Window).stays(), |to| {
         for (theme, id, name) in [(ThemeChoice::Dark, "dark", "Dark"), (ThemeChoice::Light, "light", "Light")]
         {
-            to.add(choice("theme", id, name, v.theme == theme, ViewChange::Theme(theme)));
+            to.add(choice("theme", id, name, settings.theme == theme, ViewChange::Theme(theme)));
         }
     });
 }

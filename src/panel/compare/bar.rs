@@ -1,16 +1,13 @@
 //! The bar below the views of a comparison: the layout, its options, and the statistics.
 
-use bevy_egui::egui::{
-    self, Align, Layout as Direction, Rect, Sense, Stroke, TextStyle, Ui, UiBuilder, WidgetInfo, WidgetType,
-    vec2,
-};
+use bevy_egui::egui::Layout as Direction;
 
 use super::place::Arranging;
 use crate::{
     panel::{
-        segmented::{segment_width, segmented},
-        state::{Action, CompareCommand, LARGEST, Session},
-        theme::{self, Palette},
+        prelude::*,
+        segmented::{segment_width, values},
+        state::LARGEST,
     },
     scene::comparison::Layout,
 };
@@ -24,10 +21,10 @@ pub(super) const NARROW: f32 = 560.0;
 pub(super) fn bar(
     ui: &mut Ui,
     rect: Rect,
-    session: &Session,
     arranging: fn(Layout) -> &'static Arranging,
-    actions: &mut Vec<Action>,
+    context: &mut PanelContext<'_>,
 ) {
+    let session = context.session();
     let palette = Palette::here(ui);
     ui.painter().rect_filled(rect, 0.0, palette.panel);
     ui.painter().hline(rect.x_range(), rect.top(), Stroke::new(1.0, palette.line));
@@ -41,7 +38,7 @@ pub(super) fn bar(
     let right = Direction::right_to_left(Align::Center);
     ui.scope_builder(left(row(0.0)), |ui| {
         ui.set_clip_rect(ui.clip_rect().intersect(rect));
-        let width = layouts(ui, rect.width(), comparison.layout, hint, actions);
+        let width = layouts(ui, rect.width(), comparison.layout, hint, context);
         if wide {
             let room = rect.width() - width - 28.0;
             let first = |name: &str| !arranging.largest_apart || name != LARGEST;
@@ -67,7 +64,7 @@ pub(super) fn bar(
             }
         });
         if now != comparison {
-            actions.push(Action::Compare(CompareCommand::Set(now)));
+            context.act(Action::Compare(CompareCommand::Set(now)));
         }
     }
 }
@@ -77,28 +74,26 @@ fn layouts(
     ui: &mut Ui,
     most: f32,
     shown: Layout,
-    hint: impl Fn(Layout) -> Option<fn(&egui::Context) -> String>,
-    actions: &mut Vec<Action>,
+    hint: impl Fn(Layout) -> Option<fn(&Context) -> String>,
+    context: &mut PanelContext<'_>,
 ) -> f32 {
     let names: Vec<_> = Layout::ALL.iter().map(|layout| layout.name()).collect();
     let width: f32 = names.iter().map(|name| segment_width(ui, name)).sum();
-    let chosen = Layout::ALL.iter().position(|layout| *layout == shown);
-    let tip = |ui: &mut Ui, i: usize| {
+    let tip = |ui: &mut Ui, layout: Layout| {
         ui.set_max_width(280.0);
-        ui.label(Layout::ALL[i].summary());
-        if let Some(hint) = hint(Layout::ALL[i]) {
-            let text = hint(ui.ctx());
-            ui.label(theme::small(ui, text));
+        ui.label(layout.summary());
+        if let Some(hint) = hint(layout) {
+            ui.label(theme::small(ui, hint(ui.ctx())));
         }
     };
     let mut layout = shown;
     if width + 16.0 > most {
         choose(ui, "layout", Layout::ALL, &mut layout, Layout::name, Layout::summary);
-    } else if let Some(i) = segmented(ui, "Layout", &names, chosen, tip) {
-        layout = Layout::ALL[i];
+    } else if let Some(other) = values(ui, "Layout", Layout::ALL, shown, Layout::name, tip) {
+        layout = other;
     }
     if layout != shown {
-        actions.push(Action::Compare(CompareCommand::Layout(layout)));
+        context.act(Action::Compare(CompareCommand::Layout(layout)));
     }
     width
 }
@@ -137,7 +132,7 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
             let galley = theme::elided(ui, &reason, TextStyle::Body, palette.weak, room);
             let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
             ui.painter().galley(rect.min, galley, palette.weak);
-            response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &reason));
+            theme::says(&response, WidgetType::Label, &reason);
             response.on_hover_text(help);
         }
         return;
@@ -149,7 +144,7 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
         let text = format!("{name} {value}").trim_end().to_owned();
         (theme::elided(ui, &text, TextStyle::Body, palette.text, f32::INFINITY), text, help)
     });
-    let mut fits = |(galley, ..): &(std::sync::Arc<egui::Galley>, String, &str)| {
+    let mut fits = |(galley, ..): &(std::sync::Arc<Galley>, String, &str)| {
         left -= galley.size().x + SPACE;
         left >= 0.0
     };
@@ -158,9 +153,8 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
     for (galley, text, help) in shown.into_iter().rev() {
         let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
         ui.painter().galley(rect.min, galley, palette.text);
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
-        response.on_hover_ui(|ui| {
-            ui.set_max_width(320.0);
+        theme::says(&response, WidgetType::Label, text);
+        theme::tip(response, 320.0, |ui| {
             ui.label(help);
         });
         ui.add_space(SPACE - ui.spacing().item_spacing.x);

@@ -1,9 +1,7 @@
 //! Two views, one after the other.
 
-use bevy_egui::egui::Rect;
-
 use super::place::{Arranging, over_each_other};
-use crate::panel::keys;
+use crate::panel::{keys, prelude::*};
 
 pub(super) static ARRANGING: Arranging = Arranging {
     hint: Some(|ctx| format!("Hold {} to see the other view.", keys::word(ctx, "blink"))),

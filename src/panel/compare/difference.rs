@@ -1,14 +1,12 @@
 //! The difference between two views, as a map.
 
-use bevy_egui::egui::{self, Button, Rect, Ui, WidgetInfo, WidgetType};
-
 use super::{
     bar::choose,
     place::{Arranging, over_each_other},
 };
 use crate::{
     compare::fitting_amplification,
-    panel::{segmented::segmented, state::Session, theme},
+    panel::{prelude::*, segmented::values},
     scene::{
         Comparison,
         comparison::{Channel, Compared, Sign},
@@ -27,11 +25,9 @@ pub(super) static ARRANGING: Arranging = Arranging {
             chosen_values(ui, now);
             return;
         }
-        let names: Vec<_> = Sign::ALL.iter().map(|sign| sign.name()).collect();
-        let at = Sign::ALL.iter().position(|sign| *sign == now.sign);
-        let tip = |ui: &mut Ui, i: usize| _ = ui.label(Sign::ALL[i].summary());
-        if let Some(i) = segmented(ui, "Sign", &names, at, tip) {
-            now.sign = Sign::ALL[i];
+        let tip = |ui: &mut Ui, sign: Sign| _ = ui.label(sign.summary());
+        if let Some(sign) = values(ui, "Sign", Sign::ALL, now.sign, Sign::name, tip) {
+            now.sign = sign;
         }
         if wide {
             chosen_values(ui, now);
@@ -66,7 +62,7 @@ fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
     }
     let fits = now.amplification.is_none();
     let fit = ui.add(Button::new("auto").small().selected(fits));
-    fit.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, fits, "Amplify automatically"));
+    theme::says_chosen(&fit, WidgetType::Checkbox, fits, "Amplify automatically");
     let fit = fit.on_hover_text("Amplify so that the largest difference has nearly the last colour.");
     if fit.clicked() {
         now.amplification = if fits { used } else { None };

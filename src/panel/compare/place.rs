@@ -1,9 +1,7 @@
 //! The declaration of a layout in the window, and the places that it gives to views.
 
-use bevy_egui::egui::{Context, Rect, Ui, vec2};
-
 use crate::{
-    panel::state::{Action, Cell, Session},
+    panel::{prelude::*, state::Cell},
     scene::Comparison,
 };
 
@@ -29,20 +27,12 @@ pub struct Arrangement {
     pub(super) vacant: Option<Rect>,
 }
 
-impl Default for Arrangement {
-    fn default() -> Self {
-        Self {
-            cells: Vec::new(),
-            headers: Vec::new(),
-            bar: None,
-            picture: Rect::NOTHING,
-            map: None,
-            vacant: None,
-        }
-    }
-}
-
 impl Arrangement {
+    pub(super) fn new(picture: Rect) -> Self {
+        let (cells, headers, bar, map, vacant) = Default::default();
+        Self { cells, headers, bar, picture, map, vacant }
+    }
+
     /// True if the scene has no variants and the picture stands alone.
     #[must_use]
     pub fn is_single(&self) -> bool {
@@ -63,7 +53,7 @@ pub(super) struct Arranging {
     /// True if the largest difference stands in the row of the choices.
     pub(super) largest_apart: bool,
     /// Shows what lies over the picture, and says where.
-    pub(super) over: fn(&mut Ui, Rect, &Comparison, &mut Vec<Action>) -> Option<Rect>,
+    pub(super) over: fn(&mut Ui, Rect, &mut PanelContext<'_>) -> Option<Rect>,
 }
 
 impl Arranging {
@@ -74,7 +64,7 @@ impl Arranging {
         rows: [0, 0],
         choices: |_, _, _, _, _| (),
         largest_apart: false,
-        over: |_, _, _, _| None,
+        over: |_, _, _| None,
     };
 }
 

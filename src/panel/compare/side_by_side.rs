@@ -1,9 +1,7 @@
 //! All views beside each other.
 
-use bevy_egui::egui::{Rect, pos2, vec2};
-
 use super::place::{Arranging, GAP, halves};
-use crate::panel::state::Cell;
+use crate::panel::{prelude::*, state::Cell};
 
 pub(super) static ARRANGING: Arranging = Arranging {
     arrange: |all, frame| {

@@ -1,17 +1,8 @@
 //! Two views over each other, and the edge between them.
 
-use bevy_egui::egui::{
-    self, CursorIcon, Id, Pos2, Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
-};
-
 use super::place::{Arranging, over_each_other};
 use crate::{
-    panel::{
-        focus,
-        segmented::segmented,
-        state::{Action, CompareCommand},
-        theme,
-    },
+    panel::{focus, prelude::*, segmented::values},
     scene::{Comparison, comparison::Edge},
 };
 
@@ -26,15 +17,13 @@ pub(super) static ARRANGING: Arranging = Arranging {
     },
     rows: [1, 1],
     choices: |ui, _, now, _, _| {
-        let names: Vec<_> = Edge::ALL.iter().map(|edge| edge.name()).collect();
-        let at = Edge::ALL.iter().position(|edge| *edge == now.edge);
-        let tip = |ui: &mut Ui, i: usize| _ = ui.label(Edge::ALL[i].summary());
+        let tip = |ui: &mut Ui, edge: Edge| _ = ui.label(edge.summary());
         ui.label(theme::small(ui, "edge"));
-        if let Some(i) = segmented(ui, "Edge", &names, at, tip) {
-            now.edge = Edge::ALL[i];
+        if let Some(edge) = values(ui, "Edge", Edge::ALL, now.edge, Edge::name, tip) {
+            now.edge = edge;
         }
     },
-    over: |ui, rect, comparison, actions| Some(wipe(ui, rect, comparison, actions)),
+    over: |ui, rect, context| Some(wipe(ui, rect, context)),
     ..Arranging::PLAIN
 };
 
@@ -56,7 +45,8 @@ fn edge_of(rect: Rect, comparison: &Comparison) -> Pos2 {
 }
 
 /// The edge of a wipe, with a handle. Returns the rectangle that it takes from the picture.
-fn wipe(ui: &mut Ui, rect: Rect, comparison: &Comparison, actions: &mut Vec<Action>) -> Rect {
+fn wipe(ui: &mut Ui, rect: Rect, context: &mut PanelContext<'_>) -> Rect {
+    let comparison = &context.session().document.comparison;
     let at = edge_of(rect, comparison);
     let upright = comparison.edge == Edge::Vertical;
     let (size, cursor) = if upright {
@@ -80,7 +70,7 @@ fn wipe(ui: &mut Ui, rect: Rect, comparison: &Comparison, actions: &mut Vec<Acti
     split += STEP * steps.clamp(-1.0, 1.0) as f32;
     if split != comparison.split {
         let split = (split.clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
-        actions.push(Action::Compare(CompareCommand::Set(Comparison { split, ..*comparison })));
+        context.act(Action::Compare(CompareCommand::Set(Comparison { split, ..*comparison })));
     }
     response.on_hover_cursor(cursor).on_hover_text(
         "Drag the edge between the views. With the focus, arrow keys move it; double-click: the middle.",
@@ -97,10 +87,10 @@ fn paint(ui: &Ui, rect: Rect, at: Pos2, upright: bool, response: &Response) {
         ([pos2(rect.left(), at.y), pos2(rect.right(), at.y)], vec2(0.0, 4.0), vec2(3.0, 0.0))
     };
     let on = response.hovered() || response.dragged() || response.has_focus();
-    let core = if on { egui::Color32::from_rgb(0x7c, 0xc8, 0xff) } else { egui::Color32::WHITE };
-    painter.line_segment(ends, Stroke::new(3.5, egui::Color32::from_black_alpha(160)));
+    let core = if on { Color32::from_rgb(0x7c, 0xc8, 0xff) } else { Color32::WHITE };
+    painter.line_segment(ends, Stroke::new(3.5, Color32::from_black_alpha(160)));
     painter.line_segment(ends, Stroke::new(1.5, core));
-    painter.circle(at, 9.0, egui::Color32::from_black_alpha(190), Stroke::new(1.5, core));
+    painter.circle(at, 9.0, Color32::from_black_alpha(190), Stroke::new(1.5, core));
     for side in [-1.0, 1.0] {
         let tip = at + side * 1.5 * along;
         let back = at + side * 0.6 * along;

@@ -1,8 +1,7 @@
 //! Features that the file dialogs lack: tooltips for their icons, and a button that opens a folder.
 
-use bevy_egui::egui::{
-    Area, Button, Context, Id, LayerId, Order, Rect, Shape, Tooltip, epaint::ClippedShape, vec2,
-};
+use crate::panel::prelude::*;
+use bevy_egui::egui::{Area, LayerId, Order, Tooltip, epaint::ClippedShape};
 use egui_file_dialog::FileDialogConfig;
 
 /// Padding around an icon, in points.

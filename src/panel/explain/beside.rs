@@ -1,21 +1,13 @@
 //! Two views of one point side by side: the lines of each equation, with a mark where they differ.
 
-use bevy_egui::egui::{self, Color32, Rect, Stroke, Ui, pos2, vec2};
-
 use super::{
     lights,
-    probe::{self, Choice, Explained},
+    probe::{self, Explained},
     rows,
 };
 use crate::{
-    document::Selection,
-    explain::{Line, Lit, Pair, Seen, Spot, pairs},
-    panel::{
-        state::Session,
-        theme::{self, Palette},
-    },
-    registry::Registry,
-    scene::variant::LETTERS,
+    explain::{Line, Lit, Pair, Seen, pairs},
+    panel::prelude::*,
 };
 
 /// Gap between the two sides, in points.
@@ -23,8 +15,7 @@ const GAP: f32 = 20.0;
 
 /// Shows the current explanation next to that of the other view.
 pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, registry: &Registry) {
-    let choice = probe::choice(ui.ctx());
-    egui::ScrollArea::vertical().id_salt("beside").auto_shrink(false).show(ui, |ui| {
+    ScrollArea::vertical().id_salt("beside").auto_shrink(false).show(ui, |ui| {
         ui.set_max_width(ui.available_width() - 10.0);
         rows::close(ui);
         halves(ui, false, |ui, i| head(ui, sides[i], session));
@@ -37,12 +28,11 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
             rows::note(ui, "The views show different objects here.");
         }
         // The same light on both sides: the brightest light may differ between views.
-        let first = shown(a, choice);
+        let first = shown(ui.ctx(), a);
         let index = first.map(|lit| lit.light.index);
-        let lit = [
-            first,
-            spot(b, choice).and_then(|spot| spot.lights.iter().find(|l| Some(l.light.index) == index)),
-        ];
+        let spot = probe::shown_spot(ui.ctx(), b).map(|(_, spot)| spot);
+        let other = spot.and_then(|spot| spot.lights.iter().find(|l| Some(l.light.index) == index));
+        let lit = [first, other];
         let [Some(first), Some(second)] = lit else {
             rows::note(ui, "No light is switched on here.");
             return;
@@ -50,7 +40,7 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
         let name = session.name_of(Selection::Light(first.light.index), registry);
         rows::heading(ui, &format!("Light of {name}"));
         let lines = [probe::lines(ui.ctx(), first, &a.model), probe::lines(ui.ctx(), second, &b.model)];
-        let factors = choice.level == probe::Level::Factors;
+        let factors = probe::choice(ui.ctx()).level == probe::Level::Factors;
         let all = pairs(&lines[0], &lines[1]);
         let shown = |pair: &&Pair| {
             let line = pair.a.as_ref().or(pair.b.as_ref());
@@ -80,14 +70,9 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
 }
 
 /// The light whose block is unfolded, at the point with the largest weight.
-fn shown(seen: &Seen, choice: Choice) -> Option<&Lit> {
-    let spot = spot(seen, choice)?;
-    probe::shown_light(spot, choice).or_else(|| spot.brightest().first().copied())
-}
-
-/// The current point.
-fn spot(seen: &Seen, choice: Choice) -> Option<&Spot> {
-    probe::spots(seen).get(probe::shown_spot(seen, choice)).copied()
+fn shown<'s>(ctx: &Context, seen: &'s Seen) -> Option<&'s Lit> {
+    let (_, spot) = probe::shown_spot(ctx, seen)?;
+    probe::shown_light(ctx, spot).or_else(|| spot.brightest().first().copied())
 }
 
 /// Shows the name of a view, its models and its display code.
@@ -117,7 +102,7 @@ fn halves(ui: &mut Ui, differ: bool, mut add: impl FnMut(&mut Ui, usize)) {
     for i in 0..2 {
         let left = room.left() + i as f32 * (width + GAP);
         let place = Rect::from_min_max(pos2(left, room.top()), pos2(left + width, f32::INFINITY));
-        let mut half = ui.new_child(egui::UiBuilder::new().max_rect(place).id_salt(("half", i)));
+        let mut half = ui.new_child(UiBuilder::new().max_rect(place).id_salt(("half", i)));
         half.set_max_width(width);
         add(&mut half, i);
         bottom = bottom.max(half.min_rect().bottom());
@@ -126,9 +111,9 @@ fn halves(ui: &mut Ui, differ: bool, mut add: impl FnMut(&mut Ui, usize)) {
     let middle = room.left() + width + 0.5 * GAP;
     if differ {
         let colour: Color32 = palette.accent;
-        let font = egui::TextStyle::Body.resolve(ui.style());
+        let font = TextStyle::Body.resolve(ui.style());
         let at = pos2(middle, 0.5 * (room.top() + bottom));
-        ui.painter().text(at, egui::Align2::CENTER_CENTER, "≠", font, colour);
+        ui.painter().text(at, Align2::CENTER_CENTER, "≠", font, colour);
     } else {
         ui.painter().vline(middle, room.top()..=bottom, Stroke::new(1.0, palette.line));
     }

@@ -1,10 +1,7 @@
 //! The conversion of light to the display code.
 
-use bevy_egui::egui::Ui;
-use glam::Vec3;
-
 use super::rows;
-use crate::{explain::Explanation, optics::colour::Encoding, panel::theme, reference::DisplaySteps};
+use crate::{explain::Explanation, optics::colour::Encoding, panel::prelude::*, reference::DisplaySteps};
 
 /// Shows the steps one below the other, each with its result.
 pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
@@ -22,11 +19,9 @@ pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
         step(ui, "background, whatever the exposure", |steps| steps.exposed);
     }
     if display.encoding == Encoding::Off {
-        rows::note(
-            ui,
-            "Without encoding, the numbers themselves are to reach the display: clipped to 0–1 and decoded, since the last \
-             step encodes.",
-        );
+        let text = "Without encoding, the numbers themselves are to reach the display: clipped to 0–1 and decoded, since the \
+                    last step encodes.";
+        rows::note(ui, text);
         step(ui, "decoded", |steps| steps.input);
     }
     step(ui, &format!("tone mapping, {}", display.tone_mapping.name()), |steps| steps.mapped);
@@ -41,7 +36,7 @@ pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
     let [r, g, b] = steps.codes;
     ui.horizontal(|ui| {
         ui.label(theme::small(ui, "× 255, rounded: the code"));
-        rows::chip(ui, steps.codes, bevy_egui::egui::vec2(28.0, 16.0));
+        rows::chip(ui, steps.codes, vec2(28.0, 16.0));
         ui.label(theme::strong(ui, format!("{r}, {g}, {b}")));
     });
 }

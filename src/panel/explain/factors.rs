@@ -1,20 +1,12 @@
 //! The quantities of an equation, one row each: the value and, when unfolded, the quantity's equation, a plot with the
 //! current point, and the source.
 
-use std::sync::Arc;
-
-use bevy_egui::egui::{
-    self, Align2, Color32, FontId, Id, Rect, Response, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo,
-    WidgetType, lerp, pos2, remap, vec2,
-};
+use bevy_egui::egui::{lerp, remap};
 
 use super::{probe, rows};
 use crate::{
     explain::{Along, FactorCurve, Geometry, Line, Model, of_value},
-    panel::{
-        maths,
-        theme::{self, Palette},
-    },
+    panel::{maths, prelude::*},
 };
 
 /// Size of the plot of a factor, in points.
@@ -42,7 +34,7 @@ pub(super) fn factor(
         row.scroll_to_me(None);
     }
     if row.clicked() && probe::once(ui.ctx()) {
-        probe::unfold(ui.ctx(), line.defines(), !open);
+        probe::turn(ui.ctx(), line.defines());
     }
     if !open {
         return None;
@@ -78,26 +70,16 @@ fn head(ui: &mut Ui, line: &Line, open: bool) -> Response {
     let scale = theme::scale_here(ui);
     let value = line.value.as_ref().map_or_else(String::new, |value| of_value(value, rows::DIGITS));
     let label = line.quantity.map_or("", |quantity| quantity.label);
+    let text = format!("{} = {value}", line.defines());
     let size = vec2(ui.available_width(), 22.0 * scale);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let id = ui.id().with(("factor", line.defines(), line.symbol()));
-    let response = ui.interact(rect, id, Sense::click());
-    response.widget_info(|| {
-        let text = format!("{} = {value}, {label}", line.defines());
-        WidgetInfo::selected(WidgetType::CollapsingHeader, true, open, text)
-    });
-    if response.hovered() || response.has_focus() {
-        ui.painter().rect_filled(rect, 3.0, palette.hovered);
-    }
-    let sign = Rect::from_center_size(rect.left_center() + vec2(8.0, 0.0), vec2(8.0, 8.0));
-    let openness = if open { 1.0 } else { 0.0 };
-    egui::collapsing_header::paint_default_icon(ui, openness, &response.clone().with_new_rect(sign));
+    let response = rows::fold_row(ui, rect, id, &format!("{text}, {label}"), open);
     let at = pos2(rect.left() + 20.0, rect.center().y + 0.32 * LETTER * scale);
-    let text = format!("{} = {value}", line.defines());
     let width = maths::paint_line(ui, at, &text, LETTER * scale, palette.text);
     let end = at.x + width + 8.0;
-    let label = theme::elided(ui, label, TextStyle::Small, palette.weak, (rect.right() - end).max(0.0));
-    ui.painter().galley(pos2(end, rect.center().y - 0.5 * label.size().y), label, palette.weak);
+    let shown = theme::elided(ui, label, TextStyle::Small, palette.weak, (rect.right() - end).max(0.0));
+    ui.painter().galley(pos2(end, rect.center().y - 0.5 * shown.size().y), shown, palette.weak);
     let whole = line.quantity.map_or_else(String::new, |quantity| format!(": {}", quantity.label));
     response.on_hover_text(format!("{}{whole}", line.defines()))
 }
@@ -125,10 +107,10 @@ fn plot(ui: &mut Ui, curve: &FactorCurve, line: &Line) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, (PLOT[1] + 18.0) * scale), Sense::hover());
     let who = if curve.along == Along::Light { "light" } else { "viewer" };
     let spoken = format!("{} over the angle of the {who} to the normal", line.defines());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, spoken.clone()));
+    theme::says(&response, WidgetType::Image, &spoken);
     let room = rect.with_max_y(rect.bottom() - 18.0 * scale).shrink2(vec2(2.0, 3.0));
     let painter = ui.painter();
-    painter.rect(room, 3.0, palette.field, Stroke::new(1.0, palette.line), egui::StrokeKind::Outside);
+    painter.rect(room, 3.0, palette.field, Stroke::new(1.0, palette.line), StrokeKind::Outside);
     let values = || curve.points.iter().filter_map(|(_, value)| *value).flatten().filter(|v| v.is_finite());
     let (low, high) = values().fold((0.0f32, 0.0f32), |(low, high), v| (low.min(v), high.max(v)));
     if high <= low {

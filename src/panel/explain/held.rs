@@ -3,7 +3,7 @@
 use crate::{
     document::PartId,
     explain::{Anchor, Seen},
-    panel::state::Session,
+    panel::prelude::*,
     scene::observer::rotation,
 };
 

@@ -4,31 +4,25 @@
 //! It is calculated in a thread because it evaluates the model for thousands of directions. Meanwhile, the previous
 //! discs stay if they belong to the same point.
 
-use std::{
-    sync::{
-        Arc, Mutex, PoisonError,
-        mpsc::{self, Receiver, TryRecvError},
-    },
-    thread,
-};
+use std::time::Duration;
 
-use bevy_egui::egui::{
-    Align2, Color32, ColorImage, Context, FontId, Id, Rect, Sense, Stroke, TextureHandle, TextureOptions, Ui,
-    pos2, vec2,
-};
-use glam::{Vec2, Vec3};
+use bevy_egui::egui::{ColorImage, TextureHandle, TextureOptions};
+use glam::Vec2;
 
 use super::{
-    probe::{self, Choice, Explained},
+    probe::{self, Explained},
     rows,
 };
 use crate::{
+    caught::catch,
     explain::{
         Seen, Spot, angle,
         hemisphere::{Above, DISCS, Hemisphere, Shining, above},
     },
-    panel::theme::{self, Palette},
-    registry::Registry,
+    panel::{
+        kept::{Background, Same},
+        prelude::*,
+    },
 };
 
 /// Side of a disc, in pixels.
@@ -43,14 +37,7 @@ const MARKS: [(&str, Color32); 2] =
     [("V", Color32::from_rgb(86, 180, 233)), ("R", Color32::from_rgb(230, 110, 40))];
 
 /// The explanation that the discs belong to, and the index of the point in it.
-#[derive(Clone)]
-struct Question(Arc<Explained>, usize);
-
-impl PartialEq for Question {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0) && self.1 == other.1
-    }
-}
+type Question = (Same<Explained>, usize);
 
 /// Calculated discs with their textures.
 struct Discs {
@@ -61,51 +48,32 @@ struct Discs {
     scales: [String; DISCS.len()],
 }
 
-#[derive(Default)]
-struct Work {
-    shown: Option<(Question, Arc<Discs>)>,
-    running: Option<(Question, Vec3, Receiver<Hemisphere>)>,
-}
+/// The calculation of discs; none where it crashes.
+type Work = Background<Question, Option<Arc<Discs>>>;
 
-impl Work {
-    /// The discs or, while they are calculated, the previous discs if they belong to the same point.
-    fn answer(
-        &mut self,
-        ctx: &Context,
-        question: Question,
-        (seen, spot): (&Seen, &Spot),
-        registry: &Registry,
-    ) -> Option<Arc<Discs>> {
-        if let Some((asked, position, receiver)) = &self.running {
-            match receiver.try_recv() {
-                Ok(hemisphere) => {
-                    let textures = textures(ctx, &hemisphere);
-                    let scales = DISCS.each_ref().map(|disc| hemisphere.end_of_scale(disc));
-                    let discs = Discs { position: *position, hemisphere, textures, scales };
-                    self.shown = Some((asked.clone(), Arc::new(discs)));
-                    self.running = None;
-                }
-                Err(TryRecvError::Disconnected) => self.running = None,
-                Err(TryRecvError::Empty) => {}
-            }
-        }
-        let fits = self.shown.as_ref().is_some_and(|(of, _)| *of == question);
-        if !fits && self.running.is_none() {
-            let view = question.0.view;
-            let shining = probe::with_scene(ctx, view, |scene| Shining::new(scene, registry))?;
-            let terms = question.0.explanation.terms;
-            let (surface, spot, ctx) = (seen.model.surface.0.clone(), spot.clone(), ctx.clone());
-            let (sender, receiver) = mpsc::channel();
-            self.running = Some((question, spot.position, receiver));
-            thread::spawn(move || {
-                // The receiver is gone once the window is closed.
-                drop(sender.send(Hemisphere::new(&shining, &*surface, &spot, terms, SIDE)));
-                ctx.request_repaint();
-            });
-        }
-        let shown = self.shown.as_ref().map(|(_, discs)| discs.clone());
-        shown.filter(|discs| fits || discs.position.distance(spot.position) < SAME)
-    }
+/// The discs or, while they are calculated, the previous discs if they belong to the same point.
+fn answer(
+    work: &mut Work,
+    ctx: &Context,
+    question: &Question,
+    (seen, spot): (&Seen, &Spot),
+    registry: &Registry,
+) -> Option<Arc<Discs>> {
+    let explained = &question.0.0;
+    work.ask(ctx, question, Duration::ZERO, || {
+        let shining = probe::with_scene(ctx, explained.view, |scene| Shining::new(scene, registry))?;
+        let terms = explained.explanation.terms;
+        let (surface, spot, ctx) = (seen.model.surface.0.clone(), spot.clone(), ctx.clone());
+        let discs = move || {
+            let hemisphere = Hemisphere::new(&shining, &*surface, &spot, terms, SIDE);
+            let textures = textures(&ctx, &hemisphere);
+            let scales = DISCS.each_ref().map(|disc| hemisphere.end_of_scale(disc));
+            Arc::new(Discs { position: spot.position, hemisphere, textures, scales })
+        };
+        Some(move || catch(discs).ok())
+    });
+    let (asked, discs) = work.shown.as_ref()?;
+    discs.clone().filter(|discs| asked == question || discs.position.distance(spot.position) < SAME)
 }
 
 fn textures(ctx: &Context, hemisphere: &Hemisphere) -> Vec<TextureHandle> {
@@ -117,37 +85,25 @@ fn textures(ctx: &Context, hemisphere: &Hemisphere) -> Vec<TextureHandle> {
 }
 
 /// Shows the discs if light with extent shines on the current point.
-pub(super) fn hemisphere(
-    ui: &mut Ui,
-    explained: &Arc<Explained>,
-    seen: &Seen,
-    choice: Choice,
-    registry: &Registry,
-) {
-    let number = probe::shown_spot(seen, choice);
-    let spot = probe::spots(seen).get(number).copied();
-    let Some(spot) = spot.filter(|spot| spot.lights.iter().any(|lit| lit.integral.is_some())) else { return };
+pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, registry: &Registry) {
+    let Some((number, spot)) = probe::shown_spot(ui.ctx(), seen) else { return };
+    if spot.lights.iter().all(|lit| lit.integral.is_none()) {
+        return;
+    }
     ui.add_space(8.0);
     rows::heading(ui, "The hemisphere above the point");
     if seen.model.trouble.is_some() {
         rows::note(ui, "The CPU cannot run this model: there is no picture of it.");
         return;
     }
-    let work =
-        ui.ctx().data_mut(|d| d.get_temp_mut_or_default::<Arc<Mutex<Work>>>(Id::new("hemisphere")).clone());
-    let question = Question(explained.clone(), number);
-    let discs = {
-        let mut work = work.lock().unwrap_or_else(PoisonError::into_inner);
-        work.answer(ui.ctx(), question, (seen, spot), registry)
-    };
+    let question = (Same(explained.clone()), number);
+    let discs = kept::shared(ui.ctx(), |work| answer(work, ui.ctx(), &question, (seen, spot), registry));
     let Some(discs) = discs else {
         rows::note(ui, "Calculating…");
         return;
     };
-    rows::note(
-        ui,
-        "From straight above: area is projected solid angle, N is the middle, the rim is the horizon, the tangent points right.",
-    );
+    let text = "From straight above: area is projected solid angle, N is the middle, the rim is the horizon, the tangent points right.";
+    rows::note(ui, text);
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
         let width = ((ui.available_width() - 2.0 * GAP) / 3.0).clamp(24.0, LARGEST * theme::scale_here(ui));
@@ -162,10 +118,8 @@ pub(super) fn hemisphere(
     });
     // From the pixels of the disc, which give two digits; the integral of the samples is shown below its light.
     let integral = crate::explain::rounded_number_or_triple(discs.hemisphere.integral, 2);
-    rows::note(
-        ui,
-        &format!("The mean of the product times π is the light to the observer: about {integral}"),
-    );
+    let text = format!("The mean of the product times π is the light to the observer: about {integral}");
+    rows::note(ui, &text);
 }
 
 /// One disc with its marks. The pointer shows a direction and the light from there.

@@ -1,40 +1,29 @@
 //! The equation at a point, light by light: symbolic, with numbers, and the result. One light is unfolded.
 
-use bevy_egui::egui::{Context, Id, Label, Ui};
-use glam::Vec3;
-
 use super::{
     factors, pairs,
     probe::{self, Choice, Level, Unfolded},
-    rows,
+    rows::{self, Name},
 };
 use crate::{
     explain::{Brightest, Explanation, Geometry, Line, Lit, Model, Place, Seen, Spot, angle, of_value},
     panel::{
         linked::{self, Domain, linked},
         maths,
+        prelude::*,
         segmented::{segment_width, segmented},
-        theme,
     },
     reflection::Term,
-    text::plural,
 };
 
 /// Maximum number of lights in the list.
 const MOST: usize = 32;
 
 /// Shows the current point and its lights, the brightest first.
-pub(super) fn lights(
-    ui: &mut Ui,
-    explanation: &Explanation,
-    seen: &Seen,
-    choice: Choice,
-    name: &dyn Fn(usize) -> String,
-) {
+pub(super) fn lights(ui: &mut Ui, explanation: &Explanation, seen: &Seen, name: &dyn Fn(usize) -> String) {
     rows::close(ui);
-    let spots = probe::spots(seen);
-    let shown = probe::shown_spot(seen, choice);
-    let Some(spot) = spots.get(shown) else {
+    let (choice, spots) = (probe::choice(ui.ctx()), probe::spots(seen));
+    let Some((shown, spot)) = probe::shown_spot(ui.ctx(), seen) else {
         rows::heading(ui, "Light by light");
         rows::note(ui, "The shading model did not evaluate the reflection model.");
         return;
@@ -48,7 +37,7 @@ pub(super) fn lights(
     if spot.lights.is_empty() {
         rows::note(ui, "No light is switched on, so there is no light here.");
     }
-    let unfolded = probe::shown_light(spot, choice).map(|lit| lit.light.index);
+    let unfolded = probe::shown_light(ui.ctx(), spot).map(|lit| lit.light.index);
     let lights = spot.brightest();
     for lit in lights.iter().take(MOST) {
         let open = unfolded == Some(lit.light.index);
@@ -136,11 +125,8 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
     }
     rows::vectors(ui, &seen.model, &[("N", spot.normal), ("V", spot.view)]);
     if spot.is_mirrored() {
-        rows::note(
-            ui,
-            "The normal faces away from the observer: V is the direction to the observer, mirrored in the \
-             surface.",
-        );
+        let text = "The normal faces away from the observer: V is the direction to the observer, mirrored in the surface.";
+        rows::note(ui, text);
     }
 }
 
@@ -210,8 +196,7 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
             }
             continue;
         }
-        let found = written(ui, line, &name);
-        clicked = clicked.or(found);
+        clicked = clicked.or(written(ui, line, &name));
     }
     if let Some(symbol) = clicked {
         origin(ui, &symbol, &lines);
@@ -221,12 +206,12 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     let sum = lit.sum(explanation.terms);
     match &lit.integral {
         Some(integral) => {
-            rows::equation(ui, Term::Total, &sum, true, name);
+            rows::equation(ui, Term::Total, &sum, true, &name);
             rows::inset(ui, |ui| rows::measured(ui, "=", lit.contribution, integral.error, true));
         }
         None => {
             let product = format!("{sum} × {}", rows::formula(lit.arriving));
-            rows::equation(ui, Term::Total, &product, true, name);
+            rows::equation(ui, Term::Total, &product, true, &name);
             rows::inset(ui, |ui| drop(rows::light(ui, "=", lit.contribution, true)));
         }
     }
@@ -244,7 +229,7 @@ pub(super) fn meaning(model: &Model, symbol: &str) -> Option<String> {
 }
 
 /// A line of the equation: symbolic, with numbers, and the value. Returns the symbol of a clicked number.
-pub(super) fn written(ui: &mut Ui, line: &Line, name: &dyn Fn(&str) -> Option<String>) -> Option<String> {
+pub(super) fn written(ui: &mut Ui, line: &Line, name: Name<'_>) -> Option<String> {
     let bare = !line.text.contains('=');
     let head = if bare { format!("{} =", line.defines()) } else { line.text.clone() };
     if !bare {
@@ -315,17 +300,17 @@ fn arriving(ui: &mut Ui, lit: &Lit) {
         let factor = lit.factors.iter().find(|f| maths::same_symbol(f.symbol, symbol));
         factor.map(|f| f.meaning.to_owned()).or_else(|| maths::meaning(symbol).map(str::to_owned))
     };
-    rows::equation(ui, Term::Total, equation, false, name);
+    rows::equation(ui, Term::Total, equation, false, &name);
     for factor in lit.factors.iter().filter(|factor| !factor.from.is_empty()) {
         rows::note(ui, &format!("{} for {}", factor.meaning, factor.givens(rows::short)));
         let steps = factor.steps(rows::DIGITS);
         for step in &steps {
             let line = format!("{} = {} = {}", step.text, step.numbers, of_value(&step.value, rows::DIGITS));
-            rows::equation(ui, Term::Total, &line, true, name);
+            rows::equation(ui, Term::Total, &line, true, &name);
         }
         if steps.is_empty() {
             let line = format!("{} = {}", factor.symbol, rows::formula(factor.value));
-            rows::equation(ui, Term::Total, &line, true, name);
+            rows::equation(ui, Term::Total, &line, true, &name);
         }
     }
     let factors: Vec<_> = lit.factors.iter().map(|factor| rows::short_or_triple(factor.value)).collect();

@@ -4,26 +4,18 @@
 //! It is calculated in a thread when the explanation, the point or the lights have changed. Most lobes are ready within
 //! a millisecond and appear in the same frame; an interpreted model takes longer, and frames do not wait for it.
 
-use std::{
-    collections::BTreeMap,
-    sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
-        mpsc::{self, Receiver, RecvTimeoutError},
-    },
-    thread,
-    time::Duration,
-};
+use std::{collections::BTreeMap, time::Duration};
 
-use bevy_egui::egui::{Align2, Context, Id, Rect, Ui, pos2};
-use glam::Vec3;
+use bevy_egui::egui::containers::menu::MenuButton;
 
 use super::{
-    probe::{self, Choice, Explained},
+    probe::{self, Explained},
     room::Room,
     rows,
     surface::{self, LightLobe, tint},
 };
 use crate::{
+    caught::catch,
     channel::Legend,
     curves::{
         Lobe,
@@ -33,12 +25,14 @@ use crate::{
     explain::{Lit, Seen, Spot},
     optics::TermSelection,
     panel::{
-        channels, command, keys, segmented,
-        state::{Action, LobeChoice, LobeScale, Pin, Session},
-        theme,
+        channels, command,
+        kept::{Background, Same},
+        keys,
+        prelude::*,
+        segmented,
+        state::{LobeChoice, LobeScale, Pin},
     },
     progress::Progress,
-    registry::Registry,
 };
 
 /// Distance below which lobes belong to the same point, in metres.
@@ -55,35 +49,18 @@ const LEGEND: f32 = 320.0;
 /// Lobes as drawn.
 #[derive(Debug)]
 pub struct Lobes {
-    question: Question,
     /// The explained point.
     pub position: Vec3,
     /// The lobes, the brightest light first; or why there are none.
     pub lobes: Result<Vec<LightLobe>, String>,
 }
 
-/// Inputs of the lobes. A change of any other input produces a new explanation.
-#[derive(Clone, Debug)]
-struct Question {
-    explained: Arc<Explained>,
-    spot: usize,
-    lights: Vec<usize>,
-}
-
-impl PartialEq for Question {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.explained, &other.explained)
-            && (self.spot, &self.lights) == (other.spot, &other.lights)
-    }
-}
+/// Inputs of the lobes: the explanation, the point and the lights. A change of any other input produces a new
+/// explanation.
+type Question = (Same<Explained>, usize, Vec<usize>);
 
 /// Lobes of one view, and their calculation.
-#[derive(Default)]
-struct Work {
-    shown: Option<Arc<Lobes>>,
-    running: Option<(Question, Receiver<Vec<LightLobe>>)>,
-    calculations: u64,
-}
+type Work = Background<Question, Arc<Lobes>>;
 
 #[derive(Default)]
 struct Works {
@@ -95,46 +72,40 @@ struct Works {
 /// Looks up the name of a light as in the scene list.
 type Name<'a> = &'a dyn Fn(usize) -> String;
 
-type Shared = Arc<Mutex<Works>>;
-
-fn lock(works: &Shared) -> MutexGuard<'_, Works> {
-    works.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn shared(ctx: &Context) -> Shared {
-    ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("lobes of the explained point")).clone())
+fn with<R>(ctx: &Context, of: impl FnOnce(&mut Works) -> R) -> R {
+    kept::shared(ctx, of)
 }
 
 /// Number of lobe calculations so far.
 #[must_use]
 pub fn lobe_calculations(ctx: &Context) -> u64 {
-    lock(&shared(ctx)).views.values().map(|work| work.calculations).sum()
+    with(ctx, |works| works.views.values().map(|work| work.calculations).sum())
 }
 
 /// True while lobes are being calculated; meanwhile the previous ones stay visible.
 #[must_use]
 pub fn lobes_are_due(ctx: &Context) -> bool {
-    lock(&shared(ctx)).views.values().any(|work| work.running.is_some())
+    with(ctx, |works| works.views.values().any(Work::is_busy))
 }
 
 /// The most recently drawn lobes of the explained view.
 #[must_use]
 pub fn lobes_shown(ctx: &Context) -> Option<Arc<Lobes>> {
     let view = probe::explained(ctx).map(|explained| explained.view);
-    let shared = shared(ctx);
-    let works = lock(&shared);
-    let work = view.and_then(|view| works.views.get(&view)).or(works.views.values().next());
-    work?.shown.clone()
+    with(ctx, |works| {
+        let work = view.and_then(|view| works.views.get(&view)).or(works.views.values().next());
+        Some(work?.shown.as_ref()?.1.clone())
+    })
 }
 
 /// The most recently drawn lobes of the given view.
 #[must_use]
 pub fn lobes_shown_in(ctx: &Context, view: usize) -> Option<Arc<Lobes>> {
-    lock(&shared(ctx)).views.get(&view)?.shown.clone()
+    with(ctx, |works| Some(works.views.get(&view)?.shown.as_ref()?.1.clone()))
 }
 
 /// The lights whose lobes are shown, the brightest first, and the number of lobes without the limit [`MOST`].
-fn lights(spot: &Spot, choice: Choice, all: bool) -> Result<(Vec<&Lit>, usize), String> {
+fn lights<'s>(ctx: &Context, spot: &'s Spot, all: bool) -> Result<(Vec<&'s Lit>, usize), String> {
     let reason = |lit: &Lit| match () {
         () if lit.leading().is_none() => Some("Ambient light has no direction, and so no lobe.".to_owned()),
         () if lit.is_behind() => {
@@ -143,7 +114,7 @@ fn lights(spot: &Spot, choice: Choice, all: bool) -> Result<(Vec<&Lit>, usize), 
         () => None,
     };
     if !all {
-        let lit = probe::shown_light(spot, choice).ok_or("Unfold a light to see its lobe.")?;
+        let lit = probe::shown_light(ctx, spot).ok_or("Unfold a light to see its lobe.")?;
         return reason(lit).map_or(Ok((vec![lit], 1)), Err);
     }
     let mut found = spot.brightest();
@@ -168,76 +139,36 @@ impl Works {
     }
 }
 
-impl Work {
-    /// The lobes or, while they are calculated, the previous lobes if they belong to the same point.
-    fn answer(
-        &mut self,
-        ctx: &Context,
-        question: &Question,
-        seen: &Seen,
-        spot: &Spot,
-        name: Name<'_>,
-    ) -> Option<Arc<Lobes>> {
-        let fits = |work: &Self| work.shown.clone().filter(|shown| shown.question == *question);
-        // A running calculation may answer an older question.
-        for _ in 0..2 {
-            if fits(self).is_some() {
-                break;
-            }
-            let new = self.running.is_none();
-            let (asked, receiver) = self
-                .running
-                .get_or_insert_with(|| (question.clone(), start(ctx, question, seen, spot, name)));
-            self.calculations += u64::from(new);
-            let lobes = match receiver.recv_timeout(if new { PATIENCE } else { Duration::ZERO }) {
-                Err(RecvTimeoutError::Timeout) => break,
-                Err(RecvTimeoutError::Disconnected) => {
-                    Err("No lobe: an internal error while the model was asked.".to_owned())
-                }
-                Ok(lobes) => Ok(lobes),
-            };
-            let position = place(asked).unwrap_or_default();
-            self.shown = Some(Arc::new(Lobes { question: asked.clone(), position, lobes }));
-            self.running = None;
-        }
-        let is_same = |shown: &Arc<Lobes>| shown.position.distance(spot.position) < SAME;
-        let old = || self.shown.clone().filter(is_same);
-        fits(self).or_else(old)
-    }
-}
-
-/// Position of the point that a question refers to.
-fn place(question: &Question) -> Option<Vec3> {
-    let seen = question.explained.explanation.seen.as_ref()?;
-    Some(probe::spots(seen).get(question.spot)?.position)
-}
-
-/// Starts the calculation of lobes.
-fn start(
+/// The lobes or, while they are calculated, the previous lobes if they belong to the same point.
+fn answer(
+    work: &mut Work,
     ctx: &Context,
     question: &Question,
     seen: &Seen,
     spot: &Spot,
     name: Name<'_>,
-) -> Receiver<Vec<LightLobe>> {
-    let (sender, receiver) = mpsc::channel();
-    let terms = question.explained.explanation.terms;
-    let (surface, frame, ctx) = (seen.model.surface.0.clone(), spot.frame, ctx.clone());
-    let of = |index: &usize| {
-        let lit = spot.lights.iter().find(|lit| lit.light.index == *index)?;
-        Some((*index, name(*index), lit.leading()?.l, lit.integral.is_some()))
-    };
-    let lights: Vec<_> = question.lights.iter().filter_map(of).collect();
-    thread::spawn(move || {
-        let lobe = |(light, name, l, extends)| {
+) -> Option<Arc<Lobes>> {
+    let (Same(explained), _, lights) = question;
+    work.ask(ctx, question, PATIENCE, || {
+        let terms = explained.explanation.terms;
+        let (surface, frame, position) = (seen.model.surface.0.clone(), spot.frame, spot.position);
+        let of = |index: &usize| {
+            let lit = spot.lights.iter().find(|lit| lit.light.index == *index)?;
+            Some((*index, name(*index), lit.leading()?.l, lit.integral.is_some()))
+        };
+        let lights: Vec<_> = lights.iter().filter_map(of).collect();
+        let lobe = move |(light, name, l, extends)| {
             let lobe = Lobe::new(&*surface, l, &frame, terms, &Progress::NONE).ok()?;
             Some(LightLobe { light, name, l, extends, rims: surface::rims(&lobe), lobe })
         };
-        // The receiver is gone once the window is closed.
-        drop(sender.send(lights.into_iter().filter_map(lobe).collect()));
-        ctx.request_repaint();
+        Some(move || {
+            let lobes = catch(|| lights.into_iter().filter_map(lobe).collect());
+            let lobes = lobes.map_err(|_| "No lobe: an internal error while the model was asked.".to_owned());
+            Arc::new(Lobes { position, lobes })
+        })
     });
-    receiver
+    let (asked, shown) = work.shown.as_ref()?;
+    (asked == question || shown.position.distance(spot.position) < SAME).then(|| shown.clone())
 }
 
 /// Paints the lobes of an explained point into the picture, marking their area as occupied, and their legend. Returns
@@ -252,55 +183,53 @@ pub(super) fn paint(
 ) -> Option<Rect> {
     let LobeChoice { scale: wanted, all } = session.view.lobe;
     if wanted == LobeScale::Off {
-        lock(&shared(ui.ctx())).kept = None;
+        with(ui.ctx(), |works| works.kept = None);
         return None;
     }
     let seen = explained.explanation.seen.as_ref()?;
-    let choice = probe::choice(ui.ctx());
-    let number = probe::shown_spot(seen, choice);
-    let spot = *probe::spots(seen).get(number)?;
+    let (number, spot) = probe::shown_spot(ui.ctx(), seen)?;
     let terms = explained.explanation.terms;
     let found = match &seen.model.trouble {
         Some(_) => Err("The CPU cannot run this model: there is no lobe.".to_owned()),
         None if terms == TermSelection::Ambient => {
             Err("The ambient term has no lobe: it answers light from all directions.".to_owned())
         }
-        None => lights(spot, choice, all),
+        None => lights(ui.ctx(), spot, all),
     };
     let (lights, count) = match found {
         Ok(found) => found,
-        Err(why) => return plate(ui, rect, Legend { title: why, scale: None, colours: Vec::new() }),
+        Err(why) => return plate(ui, rect, sentence(&why)),
     };
-    let question = Question {
-        explained: explained.clone(),
-        spot: number,
-        lights: lights.iter().map(|lit| lit.light.index).collect(),
-    };
-    let shared = shared(ui.ctx());
-    let mut works = lock(&shared);
-    // Drops the lobes of views that no longer show the point.
-    works.views.retain(|view, _| probe::explained_in(ui.ctx(), *view).is_some());
-    let work = works.views.entry(explained.view).or_default();
-    let shown = work.answer(ui.ctx(), &question, seen, spot, name);
-    let scale = shown.as_ref().and_then(|shown| shown.lobes.as_ref().ok());
-    let before = works.kept;
-    let scale = scale.map(|lobes| works.scale(lobes, wanted, session.view.pinned));
-    if works.views.len() > 1 && works.kept != before {
-        // The other views adopt the new scale in the next frame.
-        ui.ctx().request_repaint();
-    }
-    drop(works);
-    let calculating =
-        || Legend { title: "Lobe: calculating…".to_owned(), scale: None, colours: Vec::new() };
-    let Some(shown) = shown else { return plate(ui, rect, calculating()) };
+    let lights = lights.iter().map(|lit| lit.light.index).collect();
+    let question = (Same(explained.clone()), number, lights);
+    let (shown, scale) = with(ui.ctx(), |works| {
+        // Drops the lobes of views that no longer show the point.
+        works.views.retain(|view, _| probe::explained_in(ui.ctx(), *view).is_some());
+        let work = works.views.entry(explained.view).or_default();
+        let shown = answer(work, ui.ctx(), &question, seen, spot, name);
+        let lobes = shown.as_ref().and_then(|shown| shown.lobes.as_ref().ok());
+        let before = works.kept;
+        let scale = lobes.map(|lobes| works.scale(lobes, wanted, session.view.pinned));
+        if works.views.len() > 1 && works.kept != before {
+            // The other views adopt the new scale in the next frame.
+            ui.ctx().request_repaint();
+        }
+        (shown, scale)
+    });
+    let Some(shown) = shown else { return plate(ui, rect, sentence("Lobe: calculating…")) };
     match (&shown.lobes, scale) {
-        (Err(why), _) => plate(ui, rect, Legend { title: why.clone(), scale: None, colours: Vec::new() }),
-        (Ok(_), None) => plate(ui, rect, calculating()),
+        (Err(why), _) => plate(ui, rect, sentence(why)),
+        (Ok(_), None) => None,
         (Ok(lobes), Some(scale)) => {
             surface::paint(ui, rect, session, shown.position, lobes, &scale, room);
             plate(ui, rect, legend(lobes, count, &scale, terms))
         }
     }
+}
+
+/// A legend that only says something.
+fn sentence(text: &str) -> Legend {
+    Legend { title: text.to_owned(), scale: None, colours: Vec::new() }
 }
 
 /// Addition to the legend of a light with extent.
@@ -309,12 +238,11 @@ const OF_EXTENT: &str = "Light with extent: from the direction\nthat gives most"
 /// Legend of the lobes.
 fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection) -> Legend {
     let number = |v: f64| rows::short(v as f32);
-    let mut lines = vec![match (terms, scale.log) {
-        (TermSelection::All, false) => "Lobe: BRDF f in sr⁻¹".to_owned(),
-        (TermSelection::All, true) => "Lobe: BRDF f in sr⁻¹, logarithmic".to_owned(),
-        (terms, false) => format!("Lobe: {} term of f in sr⁻¹", terms.id()),
-        (terms, true) => format!("Lobe: {} term of f in sr⁻¹, logarithmic", terms.id()),
-    }];
+    let what = match terms {
+        TermSelection::All => "BRDF f".to_owned(),
+        terms => format!("{} term of f", terms.id()),
+    };
+    let mut lines = vec![format!("Lobe: {what} in sr⁻¹{}", if scale.log { ", logarithmic" } else { "" })];
     let white = (scale.to - std::f64::consts::FRAC_1_PI).abs() < 1e-9;
     lines.push(match scale.log {
         false if white => {
@@ -365,21 +293,15 @@ fn plate(ui: &Ui, rect: Rect, legend: Legend) -> Option<Rect> {
 }
 
 /// The button of the choices.
-pub(super) fn button(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+pub(super) fn button(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
     let now = session.view.lobe;
-    let word = match now.scale {
-        LobeScale::Off => "off",
-        LobeScale::Linear => "linear",
-        LobeScale::Logarithmic => "logarithmic",
-    };
-    let shown = format!("Lobe: {word}");
+    let shown = format!("Lobe: {}", now.scale.id());
     let width = segmented::segment_width(ui, "Lobe: logarithmic");
-    let button = bevy_egui::egui::Button::new(&shown).min_size(bevy_egui::egui::vec2(width, 0.0));
-    let (response, _) = bevy_egui::egui::containers::menu::MenuButton::from_button(button)
+    let button = Button::new(&shown).min_size(vec2(width, 0.0));
+    let (response, _) = MenuButton::from_button(button)
         .ui(ui, |ui| command::show::entries(ui, command::LOBE, session, registry, actions));
     let key = keys::word(ui.ctx(), "next_lobe");
-    response.on_hover_text(format!(
-        "The lobe of the reflection model in the picture: as a surface over the point, f towards all viewers. {key} goes \
-         on to the next.",
-    ));
+    let help = "The lobe of the reflection model in the picture: as a surface over the point, f towards all viewers.";
+    response.on_hover_text(format!("{help} {key} goes on to the next."));
 }

@@ -4,24 +4,16 @@
 //! The numbers are those of [`explain`](crate::explain), which traces the CPU renderer. They are recalculated when the
 //! pixel, the scene, the camera or the view changes, and only while the panel is open.
 
-use std::sync::Arc;
-
-use bevy_egui::egui::{
-    self, Align, Button, Id, Layout, Rect, RichText, ScrollArea, Ui, UiBuilder, pos2, vec2,
-};
-
 use super::{
-    Panel, PanelContext, Place, icon, is_panel, keys, knob,
+    keys, knob,
+    prelude::*,
     segmented::segmented,
-    state::{Action, EXPLAIN_TAB, Pin, Session, Severity, ThemeChoice, ViewChange},
-    theme::{self, Palette},
+    state::{EXPLAIN_TAB, Effect, Pin, ThemeChoice},
 };
 use crate::{
-    document::Selection,
     explain::{Explanation, Lamp, Seen, Sight, sentence},
     optics::TermSelection,
-    registry::Registry,
-    scene::{limits::Limits, variant::LETTERS},
+    scene::limits::Limits,
     text::listed,
 };
 
@@ -64,23 +56,18 @@ impl Panel for Explain {
     is_panel!(EXPLAIN_TAB, "Explain", Place::Bottom);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
+        let (session, registry) = (context.session(), context.registry());
         let Some(explained) = probe::explained(ui.ctx()) else {
             ui.add_space(8.0);
-            ui.add(
-                egui::Label::new(
-                    RichText::new(format!(
-                        "Point at the picture: this panel says why the pixel has its colour, number by number. {} pins \
-                         the pixel under the pointer, or the middle of the picture.",
-                        keys::word(ui.ctx(), "explain"),
-                    ))
-                    .color(Palette::here(ui).weak),
-                )
-                .wrap(),
+            let key = keys::word(ui.ctx(), "explain");
+            let text = format!(
+                "Point at the picture: this panel says why the pixel has its colour, number by number. {key} pins the \
+                 pixel under the pointer, or the middle of the picture.",
             );
+            ui.add(Label::new(RichText::new(text).color(Palette::here(ui).weak)).wrap());
             return;
         };
-        header(ui, session, registry, &explained, actions);
+        header(ui, &explained, context);
         let name = |light: usize| session.name_of(Selection::Light(light), registry);
         // A hidden point has no pixel.
         let subject = match explained.sight {
@@ -94,9 +81,9 @@ impl Panel for Explain {
             // Readable from the back of the room.
             text = text.size(SENTENCE * theme::scale_here(ui));
         }
-        ui.add(egui::Label::new(text).wrap().selectable(true));
+        ui.add(Label::new(text).wrap().selectable(true));
         for (severity, text) in remarks(&explained, session, registry) {
-            remark(ui, severity, &text);
+            icon::remark(ui, [16.0, 18.0], severity, Label::new(text).wrap().selectable(true));
         }
         if level == Level::Sentence {
             return;
@@ -108,19 +95,14 @@ impl Panel for Explain {
                 sides.sort_by_key(|side| side.view);
                 beside::beside(ui, sides, session, registry);
             }
-            None => columns(ui, &explained, session, registry, actions),
+            None => columns(ui, &explained, context),
         }
     }
 }
 
 /// The pixel, its code, and the buttons.
-fn header(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    explained: &Explained,
-    actions: &mut Vec<Action>,
-) {
+fn header(ui: &mut Ui, explained: &Explained, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let Explanation { pixel, size, .. } = explained.explanation;
     let (pinned, fov) = (session.view.pinned.is_some(), session.document.view_angle());
     ui.horizontal(|ui| {
@@ -136,7 +118,7 @@ fn header(
                 let mut other = pixel;
                 other[i] = value as u32;
                 let pin = Pin::of_pixel(explained.view, other, size, fov);
-                actions.push(Action::View(ViewChange::Pin(Some(pin))));
+                context.act(Action::View(ViewChange::Pin(Some(pin))));
             }
         }
         let view = match session.document.variants.len() {
@@ -147,9 +129,8 @@ fn header(
         let [r, g, b] = code;
         ui.label(theme::strong(ui, format!("red {r}, green {g}, blue {b}")));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if ui.button("Copy").on_hover_text("Copy the explanation as text, with all digits").clicked() {
-                actions.push(Action::Copy(explained.explanation.to_text()));
-            }
+            let button = ui.button("Copy").on_hover_text("Copy the explanation as text, with all digits");
+            context.on_click(&button, || Action::Do(Effect::CopyText(explained.explanation.to_text())));
             let key = keys::word(ui.ctx(), "explain");
             let pin = ui.add(Button::selectable(pinned, "Pin")).on_hover_text(if pinned {
                 format!("Let go of the point ({key} or Esc): the pointer is followed again")
@@ -161,9 +142,9 @@ fn header(
             });
             if pin.clicked() {
                 let this = Pin::of_pixel(explained.view, pixel, size, fov);
-                actions.push(Action::View(ViewChange::Pin(Some(this).filter(|_| !pinned))));
+                context.act(Action::View(ViewChange::Pin(Some(this).filter(|_| !pinned))));
             }
-            lobe::button(ui, session, registry, actions);
+            lobe::button(ui, context);
             levels(ui);
             if !session.document.variants.is_empty() {
                 beside_button(ui, explained.view);
@@ -203,132 +184,88 @@ fn levels(ui: &mut Ui) {
 /// Remarks shown before the numbers.
 fn remarks(explained: &Explained, session: &Session, registry: &Registry) -> Vec<(Severity, String)> {
     let explanation = &explained.explanation;
-    let mut all = Vec::new();
     let unseen = unseen(explained, session, registry);
-    all.extend(unseen.map(|text| (Severity::Info, text)));
+    let mut all: Vec<_> = unseen.into_iter().map(|text| (Severity::Info, text)).collect();
+    let mut say = |severity, text: &str| all.push((severity, text.to_owned()));
     if session.facts.compiling {
-        all.push((
-            Severity::Info,
-            "Compiling: until the shader is ready, the picture shows what was there before. The numbers are those of the \
-             model that is chosen."
-                .to_owned(),
-        ));
+        let text = "Compiling: until the shader is ready, the picture shows what was there before. The numbers are those of \
+                    the model that is chosen.";
+        say(Severity::Info, text);
     }
+    let not = "This is not the explanation of the picture:";
     if !explained.ignored.is_empty() {
         let files: Vec<_> = explained.ignored.iter().map(String::as_str).collect();
-        all.push((
-            Severity::Warning,
-            format!(
-                "This is not the explanation of the picture: it is that of the CPU renderer, which ignores the edited {}.",
-                listed(&files, "and")
-            ),
-        ));
+        let files = listed(&files, "and");
+        let why = format!("{not} it is that of the CPU renderer, which ignores the edited {files}.");
+        say(Severity::Warning, &why);
     }
-    let trouble = explanation.seen.as_ref().and_then(|seen| seen.model.trouble.as_ref());
-    if let Some(trouble) = trouble {
-        all.push((
-            Severity::Warning,
-            format!(
-                "This is not the explanation of the picture: the CPU cannot run this model, so the numbers are not its \
-                 own: {trouble}."
-            ),
-        ));
+    if let Some(trouble) = explanation.seen.as_ref().and_then(|seen| seen.model.trouble.as_ref()) {
+        let why = format!("{not} the CPU cannot run this model, so the numbers are not its own: {trouble}.");
+        say(Severity::Warning, &why);
     }
-    if explanation.seen.is_none() && session.view.theme == ThemeChoice::Light {
-        all.push((
-            Severity::Info,
-            "The window with the light theme has a light surround here; pictures that are rendered have this background."
-                .to_owned(),
-        ));
+    if explanation.seen.is_none() && session.settings.theme == ThemeChoice::Light {
+        let text = "The window with the light theme has a light surround here; pictures that are rendered have this background.";
+        say(Severity::Info, text);
     }
     if explanation.terms != TermSelection::All {
-        all.push((Severity::Info, format!("Only the {} term is shown.", explanation.terms.id())));
+        say(Severity::Info, &format!("Only the {} term is shown.", explanation.terms.id()));
     }
-    let light = explanation.steps.light;
-    if light.is_nan()
-        || explanation.seen.as_ref().is_some_and(|seen| seen.spots.iter().any(|s| s.is_replaced()))
-    {
-        all.push((
-            Severity::Warning,
-            "Some light here is not a number, or infinite; it counts as 0, or as ±10³⁰.".to_owned(),
-        ));
+    let mut spots = explanation.seen.iter().flat_map(|seen| &seen.spots);
+    if explanation.steps.light.is_nan() || spots.any(|spot| spot.is_replaced()) {
+        let text = "Some light here is not a number, or infinite; it counts as 0, or as ±10³⁰.";
+        say(Severity::Warning, text);
     }
     all
 }
 
 /// Why the pinned point cannot be seen, if so.
 fn unseen(explained: &Explained, session: &Session, registry: &Registry) -> Option<String> {
-    match explained.sight {
-        None | Some(Sight::Clear) => None,
-        Some(Sight::Outside) => {
-            Some("The pinned point is outside the picture: this is its light all the same.".to_owned())
+    let so = match explained.sight? {
+        Sight::Clear => return None,
+        Sight::Outside => "is outside the picture".to_owned(),
+        Sight::Away => {
+            let why = "The pinned point faces away from here: this is its light all the same, for a V that is mirrored in \
+                       the surface.";
+            return Some(why.to_owned());
         }
-        Some(Sight::Away) => Some(
-            "The pinned point faces away from here: this is its light all the same, for a V that is mirrored in the \
-             surface."
-                .to_owned(),
-        ),
-        Some(Sight::Behind(i)) => {
+        Sight::Behind(i) => {
             let own = explained.explanation.seen.as_ref().is_some_and(|seen| seen.object.index == i);
             let name = match own {
                 true => "its own object".to_owned(),
                 false => session.name_of(Selection::Object(i), registry),
             };
-            Some(format!("The pinned point is hidden here by {name}: this is its light all the same."))
+            format!("is hidden here by {name}")
         }
-    }
-}
-
-fn remark(ui: &mut Ui, severity: Severity, text: &str) {
-    let palette = Palette::here(ui);
-    ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        let (sign, _) = ui.allocate_exact_size(vec2(16.0, 18.0), egui::Sense::hover());
-        icon::severity(ui.painter(), sign.center(), 5.5, severity, &palette);
-        ui.add(egui::Label::new(text).wrap().selectable(true));
-    });
+    };
+    Some(format!("The pinned point {so}: this is its light all the same."))
 }
 
 /// A part of the explanation: relative width, and the function that shows it.
 type Part<'a> = (f32, Box<dyn FnOnce(&mut Ui) + 'a>);
 
 /// The explanation in columns that follow the light: from the surface and the lights to the display.
-fn columns(
-    ui: &mut Ui,
-    explained: &Arc<Explained>,
-    session: &Session,
-    registry: &Registry,
-    actions: &mut Vec<Action>,
-) {
-    let explanation = &explained.explanation;
-    let choice = probe::choice(ui.ctx());
+fn columns(ui: &mut Ui, explained: &Arc<Explained>, context: &mut PanelContext<'_>) {
+    let (session, registry, explanation) = (context.session(), context.registry(), &explained.explanation);
     let name = |light: usize| session.name_of(Selection::Light(light), registry);
-    let end: Part = (
-        0.28,
-        Box::new(|ui| {
-            display::display(ui, explanation);
-            if explanation.seen.is_some() {
-                ui.add_space(8.0);
-                what_if::what_if(ui, explained, session, registry, actions);
-            }
-        }),
-    );
-    let parts: Vec<Part> = match &explanation.seen {
-        Some(seen) => vec![
-            (0.3, Box::new(|ui| surface(ui, seen, explained.sight, session, registry))),
-            (
-                0.42,
-                Box::new(move |ui| {
-                    lights::lights(ui, explanation, seen, choice, &name);
-                    hemisphere::hemisphere(ui, explained, seen, choice, registry);
-                }),
-            ),
-            end,
-        ],
-        None => match &explanation.lamp {
-            Some(lamp) => vec![(0.36, Box::new(|ui| seen_light(ui, lamp, &name))), end],
-            None => vec![(0.36, Box::new(background)), end],
-        },
+    let end = |ui: &mut Ui| {
+        display::display(ui, explanation);
+        if explanation.seen.is_some() {
+            ui.add_space(8.0);
+            what_if::what_if(ui, explained, context);
+        }
+    };
+    let end: Part = (0.28, Box::new(end));
+    let parts: Vec<Part> = match (&explanation.seen, &explanation.lamp) {
+        (Some(seen), _) => {
+            let surface = |ui: &mut Ui| surface(ui, seen, explained.sight, session, registry);
+            let lights = move |ui: &mut Ui| {
+                lights::lights(ui, explanation, seen, &name);
+                hemisphere::hemisphere(ui, explained, seen, registry);
+            };
+            vec![(0.3, Box::new(surface)), (0.42, Box::new(lights)), end]
+        }
+        (None, Some(lamp)) => vec![(0.36, Box::new(|ui| seen_light(ui, lamp, &name))), end],
+        (None, None) => vec![(0.36, Box::new(background)), end],
     };
     side_by_side(ui, parts);
 }
@@ -346,7 +283,7 @@ fn side_by_side(ui: &mut Ui, parts: Vec<Part>) {
         let left = room.left() + left;
         let place = Rect::from_min_max(pos2(left, room.top()), pos2(left + width, room.bottom()));
         if i > 0 {
-            let line = egui::Stroke::new(1.0, Palette::here(ui).line);
+            let line = Stroke::new(1.0, Palette::here(ui).line);
             ui.painter().vline(left - 0.5 * GAP, room.y_range(), line);
         }
         let mut column = ui.new_child(UiBuilder::new().max_rect(place).id_salt(("column", i)));
@@ -417,21 +354,16 @@ fn seen_light(ui: &mut Ui, lamp: &Lamp, name: &dyn Fn(usize) -> String) {
     for light in &lamp.lights {
         rows::heading(ui, &name(light.index));
     }
-    ui.add(
-        egui::Label::new("No object is at the centre of this pixel: the light itself is seen there.").wrap(),
-    );
+    let text = "No object is at the centre of this pixel: the light itself is seen there.";
+    ui.add(Label::new(text).wrap());
     rows::step(ui, "L, cd/m²", lamp.radiance, None);
 }
 
 fn background(ui: &mut Ui) {
     rows::heading(ui, "Background");
-    ui.add(
-        egui::Label::new(
-            "There is no object at the centre of this pixel. The background is not light of the scene: lights and \
-             exposure do not change it, tone mapping does.",
-        )
-        .wrap(),
-    );
+    let text = "There is no object at the centre of this pixel. The background is not light of the scene: lights and \
+                exposure do not change it, tone mapping does.";
+    ui.add(Label::new(text).wrap());
 }
 
 #[cfg(test)]

@@ -1,36 +1,38 @@
 //! The vectors of a surface that a symbol refers to: `N` to one, `θ_i` to the two that enclose the angle.
 
-use bevy_egui::egui::Context;
-
 use crate::{
     explain::Model,
     panel::{
         linked::{Domain, lit_in},
         maths::{definition, has_symbol, same_symbol},
+        prelude::*,
     },
 };
 
 /// Letters of the drawn vectors.
 const LETTERS: [&str; 5] = ["N", "L", "V", "H", "R"];
 
-/// Angles, and cosines of angles, each with its two vectors.
-const ANGLES: [(&str, [&str; 2]); 10] = [
-    ("θ_i", ["N", "L"]),
-    ("μ_i", ["N", "L"]),
-    ("μ_l", ["N", "L"]),
-    ("μ_0", ["N", "L"]),
-    ("θ_r", ["N", "V"]),
-    ("θ_o", ["N", "V"]),
-    ("μ_o", ["N", "V"]),
-    ("μ_v", ["N", "V"]),
-    ("θ_h", ["N", "H"]),
-    ("θ_d", ["H", "L"]),
+/// Symbols of angles and of their cosines, with the two vectors that enclose the angle.
+const ANGLES: [(&[&str], [&str; 2]); 4] = [
+    (&["θ_i", "μ_i", "μ_l", "μ_0"], ["N", "L"]),
+    (&["θ_r", "θ_o", "μ_o", "μ_v"], ["N", "V"]),
+    (&["θ_h"], ["N", "H"]),
+    (&["θ_d"], ["H", "L"]),
 ];
 
 /// Symbols of the angle between two vectors.
 pub(super) fn angles(a: &str, b: &str) -> impl Iterator<Item = &'static str> {
     let is = move |pair: [&str; 2]| pair == [a, b] || pair == [b, a];
-    ANGLES.into_iter().filter(move |(_, pair)| is(*pair)).map(|(symbol, _)| symbol)
+    ANGLES.into_iter().filter(move |(_, pair)| is(*pair)).flat_map(|(symbols, _)| symbols).copied()
+}
+
+/// Symbols of the angles that a vector encloses with others.
+fn angles_at(letter: &str) -> impl Iterator<Item = &'static str> {
+    ANGLES
+        .into_iter()
+        .filter(move |(_, pair)| pair.contains(&letter))
+        .flat_map(|(symbols, _)| symbols)
+        .copied()
 }
 
 /// True if the equation of a model uses a letter for a quantity of the model, and thus not for a vector.
@@ -48,9 +50,7 @@ pub(super) fn belongs(model: &Model, letter: &str) -> bool {
     }
     // The microfacet distribution is a function of the half vector.
     let distribution = |symbol: &str| letter == "H" && (symbol == "D" || symbol.starts_with("D_"));
-    let angle = |symbol: &str| {
-        ANGLES.iter().any(|(angle, pair)| pair.contains(&letter) && same_symbol(symbol, angle))
-    };
+    let angle = |symbol: &str| angles_at(letter).any(|angle| same_symbol(symbol, angle));
     let is = |symbol: &str| same_symbol(symbol, letter) || angle(symbol) || distribution(symbol);
     has_symbol(equation, is)
 }
@@ -64,8 +64,7 @@ pub(super) fn symbols<'l>(model: &Model, letters: &[&'l str]) -> Vec<&'l str> {
 pub(super) fn lit(ctx: &Context, model: &Model) -> Vec<&'static str> {
     let symbols = lit_in(ctx, Domain::Surface);
     let named = |symbol: &str| symbols.iter().any(|lit| same_symbol(lit, symbol)) && !is_own(model, symbol);
-    let between = |letter: &str| ANGLES.iter().any(|(angle, pair)| pair.contains(&letter) && named(angle));
-    LETTERS.into_iter().filter(|letter| named(letter) || between(letter)).collect()
+    LETTERS.into_iter().filter(|letter| named(letter) || angles_at(letter).any(named)).collect()
 }
 
 /// True if exactly these vectors are highlighted.

@@ -1,11 +1,10 @@
 //! The point at which the equation was evaluated: the polygon, the vertices with their weights, or the point of the
 //! pixel.
 
-use bevy_egui::egui::{Grid, Ui};
-use glam::Vec3;
+use bevy_egui::egui::Grid;
 
 use super::rows;
-use crate::{explain::Seen, panel::theme, shading::Stage};
+use crate::{explain::Seen, panel::prelude::*, shading::Stage};
 
 /// Shows the point of the pixel, or the pinned one, and how the shading model uses it.
 pub(super) fn point(ui: &mut Ui, seen: &Seen, pinned: bool) {
@@ -48,8 +47,7 @@ fn is_along(a: Vec3, b: Vec3) -> bool {
 /// Shows the colours of the vertices with their weights.
 fn vertices(ui: &mut Ui, seen: &Seen) {
     rows::heading(ui, "Interpolated between the vertices");
-    let id = ui.id().with("weights");
-    Grid::new(id).num_columns(3).spacing([8.0, 3.0]).show(ui, |ui| {
+    Grid::new(ui.id().with("weights")).num_columns(3).spacing([8.0, 3.0]).show(ui, |ui| {
         for corner in &seen.corners {
             ui.label(theme::small(ui, format!("vertex {}", corner.vertex)));
             ui.label(format!("{} ×", rows::short(corner.weight))).on_hover_text(rows::all(corner.weight));

@@ -1,11 +1,6 @@
 //! The explained pixel, and its explanation, which is calculated only while it is visible and something has changed.
 
-use std::{
-    collections::{HashMap, HashSet},
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
-};
-
-use bevy_egui::egui::{Context, Id, Pos2, Rect, Vec2, pos2, vec2};
+use std::collections::{HashMap, HashSet};
 
 use super::{
     held::{Held, Holding},
@@ -16,14 +11,9 @@ use crate::{
     explain::{Explainer, Explanation, Influence, Knob, Line, Lit, Model, Seen, Sight, Spot},
     library::status::Reloaded,
     optics::TermSelection,
-    panel::{
-        is_in_sight, keys,
-        marks::Lens,
-        state::{Action, LessonCommand, PictureArea, Pin, Session, ViewChange},
-    },
+    panel::{is_in_sight, keys, marks::Lens, prelude::*, state::Pin},
     reference::{Settings, ignored_edits},
-    registry::Registry,
-    scene::{Observer, Scene, observer::ViewAngle},
+    scene::Observer,
 };
 
 /// Tolerance for the centre of the pinned pixel to show the held point, in metres.
@@ -142,28 +132,22 @@ struct Probe {
     influences: Option<(u64, Arc<Vec<Influence>>)>,
 }
 
-type Shared = Arc<Mutex<Probe>>;
-
-fn shared(ctx: &Context) -> Shared {
-    ctx.data_mut(|d| d.get_temp_mut_or_default::<Shared>(Id::new("explained pixel")).clone())
-}
-
-fn lock(probe: &Shared) -> MutexGuard<'_, Probe> {
-    probe.lock().unwrap_or_else(PoisonError::into_inner)
+fn with<R>(ctx: &Context, of: impl FnOnce(&mut Probe) -> R) -> R {
+    kept::shared(ctx, of)
 }
 
 /// The current explanation; `None` if there is none or the panel is closed.
 #[must_use]
 pub fn explained(ctx: &Context) -> Option<Arc<Explained>> {
-    lock(&shared(ctx)).answer.clone()
+    with(ctx, |probe| probe.answer.clone())
 }
 
 /// The explanation of the same point in another view, if both are shown side by side.
 pub(super) fn other(ctx: &Context) -> Option<Arc<Explained>> {
-    let shared = shared(ctx);
-    let probe = lock(&shared);
-    let own = probe.answer.as_ref()?.view;
-    probe.beside.iter().find(|e| probe.choice.beside && e.view == beside_of(own)).cloned()
+    with(ctx, |probe| {
+        let own = probe.answer.as_ref()?.view;
+        probe.beside.iter().find(|e| probe.choice.beside && e.view == beside_of(own)).cloned()
+    })
 }
 
 /// The view that is explained beside the given one.
@@ -173,172 +157,135 @@ fn beside_of(view: usize) -> usize {
 
 /// The current explanation for a view: of the explained pixel, or of the same point if the view is beside it.
 pub(super) fn explained_in(ctx: &Context, view: usize) -> Option<Arc<Explained>> {
-    let shared = shared(ctx);
-    let probe = lock(&shared);
-    probe.answer.iter().chain(&probe.beside).find(|explained| explained.view == view).cloned()
+    with(ctx, |probe| probe.answer.iter().chain(&probe.beside).find(|e| e.view == view).cloned())
 }
 
 /// Number of explanations calculated so far.
 #[must_use]
 pub fn calculations(ctx: &Context) -> u64 {
-    lock(&shared(ctx)).calculations
+    with(ctx, |probe| probe.calculations)
 }
 
 /// True while the pointer is at the explained pixel.
 pub(super) fn is_hovered(ctx: &Context) -> bool {
-    lock(&shared(ctx)).hovered
+    with(ctx, |probe| probe.hovered)
 }
 
 pub(super) fn choice(ctx: &Context) -> Choice {
-    lock(&shared(ctx)).choice
+    with(ctx, |probe| probe.choice)
 }
 
 /// True once per frame. Guards toggles, since egui may lay out a frame twice with the same click.
 pub(super) fn once(ctx: &Context) -> bool {
     let frame = ctx.cumulative_frame_nr() + 1;
-    std::mem::replace(&mut lock(&shared(ctx)).turned, frame) != frame
+    with(ctx, |probe| std::mem::replace(&mut probe.turned, frame)) != frame
 }
 
 pub(super) fn choose(ctx: &Context, choice: Choice) {
-    lock(&shared(ctx)).choice = choice;
+    with(ctx, |probe| probe.choice = choice);
     ctx.request_repaint();
 }
 
 /// Equation lines for a light of the current explanation, calculated once per explanation.
 pub(super) fn lines(ctx: &Context, lit: &Lit, model: &Model) -> Arc<Vec<Line>> {
-    let shared = shared(ctx);
-    let mut probe = lock(&shared);
-    let probe = &mut *probe;
-    if probe.lines.0 != probe.calculations {
-        probe.lines = (probe.calculations, HashMap::new());
-    }
-    // An explanation keeps its address for as long as it is shown.
-    let lines = || Arc::new(lit.rounded_lines(model, rows::DIGITS));
-    probe.lines.1.entry(std::ptr::from_ref(lit).addr()).or_insert_with(lines).clone()
+    with(ctx, |probe| {
+        if probe.lines.0 != probe.calculations {
+            probe.lines = (probe.calculations, HashMap::new());
+        }
+        // An explanation keeps its address for as long as it is shown.
+        let lines = || Arc::new(lit.rounded_lines(model, rows::DIGITS));
+        probe.lines.1.entry(std::ptr::from_ref(lit).addr()).or_insert_with(lines).clone()
+    })
 }
 
 /// True if a quantity is unfolded.
 pub(super) fn unfolds(ctx: &Context, quantity: &str) -> bool {
-    lock(&shared(ctx)).unfolded.contains(quantity)
+    with(ctx, |probe| probe.unfolded.contains(quantity))
 }
 
-/// Unfolds or folds a quantity.
-pub(super) fn unfold(ctx: &Context, quantity: &str, open: bool) {
-    let shared = shared(ctx);
-    let unfolded = &mut lock(&shared).unfolded;
-    if open {
-        unfolded.insert(quantity.to_owned());
-    } else {
-        unfolded.remove(quantity);
-    }
+/// Unfolds a quantity, or folds it.
+pub(super) fn turn(ctx: &Context, quantity: &str) {
+    with(ctx, |probe| probe.unfolded.remove(quantity) || probe.unfolded.insert(quantity.to_owned()));
     ctx.request_repaint();
 }
 
 /// Shows all factors, unfolds a quantity, and scrolls to it.
 pub(super) fn seek(ctx: &Context, quantity: &str) {
-    unfold(ctx, quantity, true);
-    let shared = shared(ctx);
-    let mut probe = lock(&shared);
-    probe.sought = Some(quantity.to_owned());
-    probe.choice.level = Level::Factors;
+    with(ctx, |probe| {
+        probe.unfolded.insert(quantity.to_owned());
+        probe.sought = Some(quantity.to_owned());
+        probe.choice.level = Level::Factors;
+    });
+    ctx.request_repaint();
 }
 
 /// True once for the quantity to scroll to.
 pub(super) fn is_sought(ctx: &Context, quantity: &str) -> bool {
-    let shared = shared(ctx);
-    let mut probe = lock(&shared);
-    let found = probe.sought.as_deref() == Some(quantity);
-    if found {
-        probe.sought = None;
-    }
-    found
+    with(ctx, |probe| probe.sought.take_if(|sought| *sought == quantity)).is_some()
 }
 
 /// Display code of the pixel before its numbers were changed in the panel.
 pub(super) fn before(ctx: &Context) -> Option<[u8; 3]> {
-    let shared = shared(ctx);
-    let probe = lock(&shared);
-    let pin = probe.pin?;
-    probe.before.filter(|(of, _)| *of == pin).map(|(_, code)| code)
+    with(ctx, |probe| probe.before.filter(|(of, _)| Some(*of) == probe.pin).map(|(_, code)| code))
 }
 
 /// Keeps the current display code of the pixel before a change, unless an earlier one is kept.
 pub(super) fn keep_before(ctx: &Context) {
-    let shared = shared(ctx);
-    let mut probe = lock(&shared);
-    let (Some(pin), Some(code)) = (probe.pin, probe.answer.as_ref().map(|a| a.explanation.code())) else {
-        return;
-    };
-    if probe.before.is_none_or(|(of, _)| of != pin) {
-        probe.before = Some((pin, code));
-    }
+    with(ctx, |probe| {
+        let now = probe.pin.zip(probe.answer.as_ref().map(|answer| answer.explanation.code()));
+        probe.before = probe.before.filter(|(of, _)| now.is_none_or(|(pin, _)| *of == pin)).or(now);
+    });
 }
 
 /// Forgets the display code from before the changes.
 pub(super) fn forget_before(ctx: &Context) {
-    lock(&shared(ctx)).before = None;
+    with(ctx, |probe| probe.before = None);
 }
 
 /// The listed numbers of a pixel: those that changed it most when it was chosen, so that a number keeps its row while
 /// it is changed.
 pub(super) fn ranking(ctx: &Context, all: &[Influence], most: usize) -> Vec<Knob> {
-    let shared = shared(ctx);
-    let mut probe = lock(&shared);
-    let Some(pin) = probe.pin else { return Vec::new() };
-    match &probe.ranking {
-        Some((of, known)) if *of == pin && known.iter().all(|k| all.iter().any(|i| i.knob == *k)) => {
-            known.clone()
-        }
-        _ => {
+    with(ctx, |probe| {
+        let Some(pin) = probe.pin else { return Vec::new() };
+        let there = |knob: &Knob| all.iter().any(|influence| influence.knob == *knob);
+        let known = probe.ranking.take().filter(|(of, known)| *of == pin && known.iter().all(there));
+        let (_, order) = probe.ranking.insert(known.unwrap_or_else(|| {
             let moves = all.iter().filter(|influence| influence.derivative() != glam::Vec3::ZERO);
-            let order: Vec<_> = moves.take(most).map(|influence| influence.knob.clone()).collect();
-            probe.ranking = Some((pin, order.clone()));
-            order
-        }
-    }
+            (pin, moves.take(most).map(|influence| influence.knob.clone()).collect())
+        }));
+        order.clone()
+    })
 }
 
 /// The numbers of the scene that change the pixel most, calculated once per explanation.
 pub(super) fn influences(ctx: &Context, registry: &Registry) -> Arc<Vec<Influence>> {
-    let shared = shared(ctx);
-    let mut probe = lock(&shared);
-    let probe = &mut *probe;
-    if let Some((of, known)) = &probe.influences
-        && *of == probe.calculations
-    {
-        return known.clone();
-    }
-    // A hidden point has no pixel that could be redrawn with other numbers.
-    let answer = probe.answer.clone().filter(|a| a.sight.is_none_or(|sight| sight == Sight::Clear));
-    let scene = answer.as_ref().and_then(|a| probe.scenes.iter().find(|(_, view, _)| *view == a.view));
-    let found = match (&answer, scene) {
-        (Some(answer), Some((.., scene))) => {
+    with(ctx, |probe| {
+        if let Some((_, known)) = probe.influences.as_ref().filter(|(of, _)| *of == probe.calculations) {
+            return known.clone();
+        }
+        // A hidden point has no pixel that could be redrawn with other numbers.
+        let answer = probe.answer.as_ref().filter(|a| a.sight.is_none_or(|sight| sight == Sight::Clear));
+        let found = answer.and_then(|answer| {
+            let (.., scene) = probe.scenes.iter().find(|(_, view, _)| *view == answer.view)?;
             let Explanation { pixel, size: [width, height], terms, .. } = answer.explanation;
             let settings = Settings { width, height, samples: 1, terms };
-            probe.explainer.influences(scene, registry, &settings, pixel).unwrap_or_default()
-        }
-        _ => Vec::new(),
-    };
-    let found = Arc::new(found);
-    probe.influences = Some((probe.calculations, found.clone()));
-    found
+            probe.explainer.influences(scene, registry, &settings, pixel).ok()
+        });
+        let found = Arc::new(found.unwrap_or_default());
+        probe.influences = Some((probe.calculations, found.clone()));
+        found
+    })
 }
 
 /// Applies a function to the scene of an explained view.
 pub(super) fn with_scene<T>(ctx: &Context, view: usize, of: impl FnOnce(&Scene) -> T) -> Option<T> {
-    let shared = shared(ctx);
-    let probe = lock(&shared);
-    probe.scenes.iter().find(|(_, known, _)| *known == view).map(|(.., scene)| of(scene))
+    with(ctx, |probe| probe.scenes.iter().find(|(_, known, _)| *known == view).map(|(.., scene)| of(scene)))
 }
 
 /// Rectangle of a view, in points.
 fn rect_of(area: &PictureArea, view: usize) -> Option<Rect> {
     let cell = area.cells.iter().find(|cell| cell.view == view).or(area.cells.first());
     Some(cell.map_or(area.rect, |cell| cell.rect)).filter(|rect| rect.is_finite() && rect.is_positive())
-}
-
-fn field_of_view(session: &Session) -> ViewAngle {
-    session.document.view_angle()
 }
 
 /// Size of a picture in pixels, as the window draws it, and its top left corner.
@@ -363,7 +310,7 @@ fn pointed(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Pin> 
     let place = (at.to_vec2() * ctx.pixels_per_point() - corner.to_vec2()).floor();
     let inside = |v: f32, side: u32| v >= 0.0 && v < side as f32;
     (inside(place.x, size[0]) && inside(place.y, size[1]))
-        .then(|| Pin::of_pixel(view, [place.x as u32, place.y as u32], size, field_of_view(session)))
+        .then(|| Pin::of_pixel(view, [place.x as u32, place.y as u32], size, session.document.view_angle()))
 }
 
 /// Position of the explained point in the rectangle of a picture, possibly outside it; `None` behind the camera.
@@ -379,10 +326,8 @@ pub(super) fn place(session: &Session, rect: Rect, explained: &Explained) -> Opt
 /// Completes the pin action with the pixel under the pointer, if there is one and nothing is pinned.
 pub fn aimed(ctx: &Context, session: &Session, area: &PictureArea, action: Action) -> Action {
     let lets_go = session.view.pinned.is_some();
-    match pointed(ctx, session, area).filter(|_| action == Action::Pin && !lets_go) {
-        Some(pin) => Action::View(ViewChange::Pin(Some(pin))),
-        None => action,
-    }
+    let pin = pointed(ctx, session, area).filter(|_| action == Action::Pin && !lets_go);
+    pin.map_or(action, |pin| Action::View(ViewChange::Pin(Some(pin))))
 }
 
 /// Pins the pixel clicked with Alt held, or unpins it.
@@ -397,7 +342,7 @@ pub fn clicked(ctx: &Context, session: &Session, area: &PictureArea) -> Option<A
     let near = |pinned: &Pin| {
         let Some(rect) = rect_of(area, pin.view) else { return false };
         let (size, _) = pixels(ctx, rect);
-        let pixel = |pin: &Pin| pin.pixel(size, field_of_view(session));
+        let pixel = |pin: &Pin| pin.pixel(size, session.document.view_angle());
         let now = match answer.as_ref().filter(|answer| answer.sight.is_some()) {
             Some(answer) if answer.sight == Some(Sight::Outside) => return false,
             Some(answer) => answer.explanation.pixel,
@@ -421,55 +366,49 @@ pub fn on_escape(ctx: &Context, session: &Session, area: &PictureArea) -> Option
 /// changed. A pin holds the point of the object that it has hit; if that object is gone, returns the action that unpins
 /// it.
 pub fn update(ctx: &Context, session: &Session, area: &PictureArea, registry: &Registry) -> Option<Action> {
-    let shared = shared(ctx);
-    if !session.shows_vectors() && !session.needs_probe() {
-        let mut probe = lock(&shared);
-        probe.hovered = false;
-        probe.forget();
-        return None;
-    }
-    let pointed = pointed(ctx, session, area).filter(|_| session.explains());
-    let mut probe = lock(&shared);
-    let probe = &mut *probe;
-    probe.hovered = pointed.is_some();
-    probe.pointed = pointed.or(probe.pointed);
-    let beside = probe.choice.beside && !session.document.variants.is_empty();
-    let Some(mut question) = probe.question(ctx, session, area, beside) else {
-        probe.forget();
-        return None;
-    };
-    probe.pin = Some(question.pin);
-    if probe.asked.as_ref() == Some(&question) {
-        return None;
-    }
-    // The kept code is for changed numbers, not for a changed camera.
-    if probe.asked.as_ref().is_some_and(|asked| asked.observer != question.observer) {
-        probe.before = None;
-    }
-    let gone = |held: Held| {
-        let object = session.document.object(held.object);
-        !object.is_some_and(|i| session.document.objects[i].visible)
-    };
-    if question.held.is_some_and(gone) {
-        probe.forget();
-        return Some(Action::View(ViewChange::Pin(None)));
-    }
-    probe.answer = probe.explain(&question, question.views[0], session, registry).map(Arc::new);
-    let seen = probe.answer.as_ref().and_then(|answer| answer.explanation.seen.as_ref());
-    if let Some(seen) = seen.filter(|_| question.held.is_none())
-        && let Some(()) = probe.holding.hold(session, seen)
-    {
-        question.held = probe.holding.now(session);
-    }
-    probe.beside.clear();
-    if question.held.is_some() || beside {
-        for shown in &question.views[1..] {
+    let wanted = session.shows_vectors() || session.needs_probe();
+    let pointed = if wanted && session.explains() { pointed(ctx, session, area) } else { None };
+    with(ctx, |probe| {
+        probe.hovered = pointed.is_some();
+        probe.pointed = pointed.or(probe.pointed);
+        let beside = probe.choice.beside && !session.document.variants.is_empty();
+        let question = if wanted { probe.question(ctx, session, area, beside) } else { None };
+        let Some(mut question) = question else {
+            probe.forget();
+            return None;
+        };
+        probe.pin = Some(question.pin);
+        if probe.asked.as_ref() == Some(&question) {
+            return None;
+        }
+        // The kept code is for changed numbers, not for a changed camera.
+        if probe.asked.as_ref().is_some_and(|asked| asked.observer != question.observer) {
+            probe.before = None;
+        }
+        let gone = |held: Held| {
+            let object = session.document.object(held.object);
+            !object.is_some_and(|i| session.document.objects[i].visible)
+        };
+        if question.held.is_some_and(gone) {
+            probe.forget();
+            return Some(Action::View(ViewChange::Pin(None)));
+        }
+        probe.answer = probe.explain(&question, question.views[0], session, registry).map(Arc::new);
+        let seen = probe.answer.as_ref().and_then(|answer| answer.explanation.seen.as_ref());
+        if let Some(seen) = seen.filter(|_| question.held.is_none())
+            && let Some(()) = probe.holding.hold(session, seen)
+        {
+            question.held = probe.holding.now(session);
+        }
+        probe.beside.clear();
+        let others = if question.held.is_some() || beside { &question.views[1..] } else { &[] };
+        for shown in others {
             let explained = probe.explain(&question, *shown, session, registry);
             probe.beside.extend(explained.map(Arc::new));
         }
-    }
-    probe.asked = Some(question);
-    None
+        probe.asked = Some(question);
+        None
+    })
 }
 
 impl Probe {
@@ -551,7 +490,7 @@ impl Probe {
         let Shown { view, size, terms } = shown;
         let settings = Settings { width: size[0], height: size[1], samples: 1, terms };
         let ignored = || ignored_edits(registry, scene).into_iter().collect();
-        let pixel = question.pin.pixel(size, field_of_view(session));
+        let pixel = question.pin.pixel(size, session.document.view_angle());
         let mut of_pixel = || explainer.pixel(scene, registry, &settings, pixel).ok();
         let Some(Held { object, anchor, .. }) = question.held else {
             return Some(Explained { view, explanation: of_pixel()?, sight: None, ignored: ignored() });
@@ -577,14 +516,16 @@ pub(super) fn spots(seen: &Seen) -> Vec<&Spot> {
     seen.spots.iter().chain(&seen.per_pixel).collect()
 }
 
-/// Index of the shown point: the chosen one, otherwise the one with the largest weight.
-pub(super) fn shown_spot(seen: &Seen, choice: Choice) -> usize {
-    choice.spot.filter(|i| *i < spots(seen).len()).or(seen.main_spot()).unwrap_or(0)
+/// The shown point and its index: the chosen one, otherwise the one with the largest weight.
+pub(super) fn shown_spot<'s>(ctx: &Context, seen: &'s Seen) -> Option<(usize, &'s Spot)> {
+    let spots = spots(seen);
+    let i = choice(ctx).spot.filter(|i| *i < spots.len()).or(seen.main_spot()).unwrap_or(0);
+    Some((i, *spots.get(i)?))
 }
 
 /// The light whose block is unfolded, at a point.
-pub(super) fn shown_light(spot: &Spot, choice: Choice) -> Option<&Lit> {
-    match choice.light {
+pub(super) fn shown_light<'s>(ctx: &Context, spot: &'s Spot) -> Option<&'s Lit> {
+    match choice(ctx).light {
         Unfolded::None => None,
         Unfolded::Light(i) => spot.lights.iter().find(|lit| lit.light.index == i),
         Unfolded::Brightest => spot.brightest().first().copied(),

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use bevy_egui::egui::{Pos2, Rect, Vec2};
+use crate::panel::prelude::*;
 
 /// Side of a cell, in points.
 const CELL: f32 = 6.0;

@@ -1,11 +1,5 @@
 //! Rows of an explanation: numbers rounded to three digits, with all digits in the tooltip, and colours with samples.
 
-use bevy_egui::egui::{
-    self, Color32, Label, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, WidgetType,
-    vec2,
-};
-use glam::Vec3;
-
 use super::pairs;
 use crate::{
     explain::{
@@ -14,9 +8,10 @@ use crate::{
     panel::{
         linked::{self, linked},
         maths::{self, Sizes},
-        theme::{self, Palette},
+        prelude::*,
     },
     reflection::Term,
+    text::superscript,
 };
 
 /// Number of digits shown.
@@ -53,33 +48,11 @@ pub(super) fn short_or_triple(v: Vec3) -> String {
 /// Powers of ten with superscript digits.
 fn raised(text: &str) -> String {
     let mut power = false;
-    let raise = |c: char| match c {
-        '−' => '⁻',
-        '0' => '⁰',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '4' => '⁴',
-        '5' => '⁵',
-        '6' => '⁶',
-        '7' => '⁷',
-        '8' => '⁸',
-        '9' => '⁹',
-        c => c,
+    let raise = |c: char| {
+        power = c == '^' || power && !",) ".contains(c);
+        (c != '^').then(|| if power { superscript(c) } else { c })
     };
-    text.chars()
-        .filter_map(|c| match c {
-            '^' => {
-                power = true;
-                None
-            }
-            ',' | ')' | ' ' => {
-                power = false;
-                Some(c)
-            }
-            c => Some(if power { raise(c) } else { c }),
-        })
-        .collect()
+    text.chars().filter_map(raise).collect()
 }
 
 /// One number, or three if they differ, in the notation of equations.
@@ -113,11 +86,10 @@ pub(super) fn note(ui: &mut Ui, text: &str) -> Response {
 
 /// A colour sample for the given display code.
 pub(super) fn chip(ui: &mut Ui, [r, g, b]: [u8; 3], size: Vec2) -> Response {
-    let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    let stroke = Stroke::new(1.0, palette.weak);
+    let stroke = Stroke::new(1.0, Palette::here(ui).weak);
     ui.painter().rect(rect, 3.0, Color32::from_rgb(r, g, b), stroke, StrokeKind::Inside);
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, format!("colour {r}, {g}, {b}")));
+    theme::says(&response, WidgetType::Label, format!("colour {r}, {g}, {b}"));
     response
 }
 
@@ -148,7 +120,7 @@ fn linked_value(
     ui: &mut Ui,
     symbol: &str,
     symbols: &[&str],
-    lit: impl FnOnce(&egui::Context) -> bool,
+    lit: impl FnOnce(&Context) -> bool,
     shown: &str,
     all: &str,
 ) -> Response {
@@ -156,8 +128,7 @@ fn linked_value(
         let row = ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             maths::symbol(ui, symbol, SYMBOL * theme::scale_here(ui));
-            let shown = text(ui, format!("= {shown}"));
-            ui.add(Label::new(shown).selectable(true));
+            ui.add(Label::new(text(ui, format!("= {shown}"))).selectable(true));
         });
         row.response
     });
@@ -175,7 +146,7 @@ pub(super) fn vectors(ui: &mut Ui, model: &Model, all: &[(&str, Vec3)]) {
             for (symbol, v) in line {
                 let left = ui.cursor().left();
                 let symbols = pairs::symbols(model, &[symbol]);
-                let lit = |ctx: &egui::Context| pairs::lit(ctx, model).contains(symbol);
+                let lit = |ctx: &Context| pairs::lit(ctx, model).contains(symbol);
                 linked_value(ui, symbol, &symbols, lit, &short_triple(*v), &rounded_triple(*v, ALL));
                 ui.add_space((left + width - ui.cursor().left()).max(8.0));
             }
@@ -183,17 +154,23 @@ pub(super) fn vectors(ui: &mut Ui, model: &Model, all: &[(&str, Vec3)]) {
     }
 }
 
-/// A name and a value.
-pub(super) fn named(ui: &mut Ui, name: &str, shown: &str, all: &str) -> Response {
+/// A line of a name, a sample of light and a value, each as far as there is one.
+fn line(ui: &mut Ui, name: RichText, light: Option<Vec3>, shown: RichText) -> Response {
     let row = ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         if !name.is_empty() {
-            ui.label(theme::small(ui, name));
+            ui.label(name);
         }
-        let shown = text(ui, shown);
+        light.into_iter().for_each(|light| sample(ui, light));
         ui.add(Label::new(shown).selectable(true));
     });
-    row.response.on_hover_text(all)
+    row.response
+}
+
+/// A name and a value.
+pub(super) fn named(ui: &mut Ui, name: &str, shown: &str, all: &str) -> Response {
+    let (name, shown) = (theme::small(ui, name), text(ui, shown));
+    line(ui, name, None, shown).on_hover_text(all)
 }
 
 /// A name and three numbers.
@@ -218,14 +195,8 @@ fn all_within(v: Vec3, error: Option<Vec3>) -> String {
 
 /// A step of the conversion to the display code, with its result and the standard error, if any.
 pub(super) fn step(ui: &mut Ui, what: &str, v: Vec3, error: Option<Vec3>) {
-    let row = ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        ui.label(theme::small(ui, format!("{what}:")));
-        sample(ui, v);
-        let shown = text(ui, short_within(v, error));
-        ui.add(Label::new(shown).selectable(true));
-    });
-    row.response.on_hover_text(all_within(v, error));
+    let (name, shown) = (theme::small(ui, format!("{what}:")), text(ui, short_within(v, error)));
+    line(ui, name, Some(v), shown).on_hover_text(all_within(v, error));
 }
 
 /// Sets a line spacing smaller than that of widgets.
@@ -241,50 +212,30 @@ pub(super) fn light(ui: &mut Ui, before: &str, v: Vec3, bold: bool) -> Response 
 
 /// A label and a colour, rounded to the digits that a standard error justifies.
 pub(super) fn estimate(ui: &mut Ui, before: &str, v: Vec3, error: Option<Vec3>, bold: bool) -> Response {
-    let row = ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        if !before.is_empty() {
-            let before = text(ui, before);
-            ui.label(before);
-        }
-        sample(ui, v);
-        let shown = short_within(v, error);
-        let shown = if bold { theme::strong(ui, shown) } else { text(ui, shown) };
-        ui.add(Label::new(shown).selectable(true));
-    });
-    row.response.on_hover_text(all_within(v, error))
+    let (name, shown) = (text(ui, before), value_text(ui, short_within(v, error), bold));
+    line(ui, name, Some(v), shown).on_hover_text(all_within(v, error))
 }
 
 /// A label and a colour with its standard error, rounded to the digits that the error justifies.
 pub(super) fn measured(ui: &mut Ui, before: &str, v: Vec3, error: Vec3, bold: bool) {
-    let row = ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        let before = text(ui, before);
-        ui.label(before);
-        sample(ui, v);
-        let shown = raised(&explain::measured(v, error));
-        let shown = if bold { theme::strong(ui, shown) } else { text(ui, shown) };
-        ui.add(Label::new(shown).selectable(true).wrap());
-    });
-    row.response.on_hover_text("The integral and its standard error, from sixteen parts of the samples");
+    let (name, shown) = (text(ui, before), value_text(ui, raised(&explain::measured(v, error)), bold));
+    let tip = "The integral and its standard error, from sixteen parts of the samples";
+    line(ui, name, Some(v), shown).on_hover_text(tip);
 }
 
+fn value_text(ui: &Ui, shown: String, bold: bool) -> RichText {
+    if bold { theme::strong(ui, shown) } else { text(ui, shown) }
+}
+
+/// Looks up the meaning of a symbol.
+pub(super) type Name<'a> = &'a dyn Fn(&str) -> Option<String>;
+
 /// An equation, symbolic or with numbers, over the remaining width.
-pub(super) fn equation(
-    ui: &mut Ui,
-    term: Term,
-    line: &str,
-    indent: bool,
-    name: impl Fn(&str) -> Option<String>,
-) {
+pub(super) fn equation(ui: &mut Ui, term: Term, line: &str, indent: bool, name: Name<'_>) {
     let sizes = Sizes { column: true, even: true };
     let line = &braced(line);
-    ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = 0.0;
-        if indent {
-            ui.add_space(INDENT);
-        }
-        ui.vertical(|ui| maths::equation_of(ui, &[(term, line)], sizes, name));
+    indented(ui, if indent { INDENT } else { 0.0 }, |ui| {
+        maths::equation_of(ui, &[(term, line)], sizes, name)
     });
 }
 
@@ -293,27 +244,28 @@ pub(super) fn calculation(
     ui: &mut Ui,
     numbers: &str,
     symbols: &[Option<String>],
-    name: impl Fn(&str) -> Option<String>,
+    name: Name<'_>,
 ) -> Option<String> {
-    let mut clicked = None;
-    ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = 0.0;
-        ui.add_space(INDENT);
-        ui.vertical(|ui| clicked = maths::calculation(ui, &format!("= {numbers}"), symbols, name));
-    });
-    clicked
+    indented(ui, INDENT, |ui| maths::calculation(ui, &format!("= {numbers}"), symbols, name))
 }
 
 /// Indents what follows from the line above.
 pub(super) fn inset(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
-    ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = 0.0;
-        ui.add_space(INDENT);
-        ui.vertical(|ui| {
-            ui.spacing_mut().item_spacing.x = 8.0;
-            add(ui);
-        });
+    indented(ui, INDENT, |ui| {
+        ui.spacing_mut().item_spacing.x = 8.0;
+        add(ui);
     });
+}
+
+fn indented<R>(ui: &mut Ui, by: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let row = ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        if by > 0.0 {
+            ui.add_space(by);
+        }
+        ui.vertical(add).inner
+    });
+    row.inner
 }
 
 /// A number with all digits.
@@ -326,10 +278,20 @@ pub(super) fn spoken(v: Vec3) -> String {
     if v.x == v.y && v.y == v.z { number(v.x) } else { triple(v) }
 }
 
+/// The background and the triangle of a clickable row that unfolds.
+pub(super) fn fold_row(ui: &mut Ui, rect: Rect, id: Id, says: &str, open: bool) -> Response {
+    let under = ui.painter().add(Shape::Noop);
+    let response = icon::fold(ui, rect, id, says, open);
+    if theme::is_hot(&response) {
+        ui.painter().set(under, Shape::rect_filled(rect, 3.0, Palette::here(ui).hovered));
+    }
+    response
+}
+
 /// A clickable row, with a triangle that shows if it is unfolded.
 pub(super) fn fold(
     ui: &mut Ui,
-    id: egui::Id,
+    id: Id,
     (name, kind): (&str, &str),
     open: bool,
     (v, error): (Vec3, Option<Vec3>),
@@ -337,33 +299,19 @@ pub(super) fn fold(
     let palette = Palette::here(ui);
     let height = 24.0 * theme::scale_here(ui).max(1.0);
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
-    let response = ui.interact(rect, id, Sense::click());
-    response.widget_info(|| {
-        WidgetInfo::selected(WidgetType::CollapsingHeader, true, open, format!("{name}: {}", spoken(v)))
-    });
-    if response.hovered() || response.has_focus() {
-        ui.painter().rect_filled(rect, 3.0, palette.hovered);
-    }
-    let sign = egui::Rect::from_center_size(rect.left_center() + vec2(8.0, 0.0), vec2(8.0, 8.0));
-    let openness = if open { 1.0 } else { 0.0 };
-    egui::collapsing_header::paint_default_icon(ui, openness, &response.clone().with_new_rect(sign));
-    let mut inner = ui.new_child(
-        egui::UiBuilder::new()
-            .max_rect(rect.with_min_x(rect.left() + 20.0))
-            .layout(egui::Layout::right_to_left(egui::Align::Center)),
-    );
+    let response = fold_row(ui, rect, id, &format!("{name}: {}", spoken(v)), open);
+    let inside = UiBuilder::new().max_rect(rect.with_min_x(rect.left() + 20.0));
+    let mut inner = ui.new_child(inside.layout(Layout::right_to_left(Align::Center)));
     inner.spacing_mut().item_spacing.x = 6.0;
-    let shown = theme::strong(&inner, short_within(v, error));
-    inner.label(shown);
+    inner.label(theme::strong(&inner, short_within(v, error)));
     sample(&mut inner, v);
-    let font = egui::FontId::new(egui::TextStyle::Body.resolve(ui.style()).size, theme::semibold());
     let room = (inner.available_width() - 4.0).max(0.0);
-    let title = theme::elided(ui, name, font, palette.text, room);
-    let at = egui::pos2(rect.left() + 20.0, rect.center().y - 0.5 * title.size().y);
+    let title = theme::elided(ui, name, theme::bold(ui), palette.text, room);
+    let at = pos2(rect.left() + 20.0, rect.center().y - 0.5 * title.size().y);
     let end = at.x + title.size().x + 6.0;
     ui.painter().galley(at, title, palette.text);
-    let kind = theme::elided(ui, kind, egui::TextStyle::Small, palette.weak, rect.left() + 20.0 + room - end);
-    let at = egui::pos2(end, rect.center().y - 0.5 * kind.size().y);
+    let kind = theme::elided(ui, kind, TextStyle::Small, palette.weak, rect.left() + 20.0 + room - end);
+    let at = pos2(end, rect.center().y - 0.5 * kind.size().y);
     ui.painter().galley(at, kind, palette.weak);
     response.on_hover_text(all_within(v, error))
 }

@@ -1,12 +1,10 @@
 //! The command that views the pinned point from the side.
 
-use bevy_egui::egui::Context;
-use glam::Vec3;
-
 use super::probe;
 use crate::panel::{
     keys,
-    state::{Action, Session, Severity, Steer},
+    prelude::*,
+    state::{Effect, Steer},
 };
 
 /// Sine of the angle below which two vectors span no usable plane.
@@ -18,9 +16,8 @@ fn side(ctx: &Context, session: &Session) -> Option<Steer> {
     session.view.pinned?;
     let explained = probe::explained(ctx)?;
     let seen = explained.explanation.seen.as_ref()?;
-    let choice = probe::choice(ctx);
-    let spot = *probe::spots(seen).get(probe::shown_spot(seen, choice))?;
-    let l = probe::shown_light(spot, choice).and_then(|lit| Some(lit.leading()?.l));
+    let (_, spot) = probe::shown_spot(ctx, seen)?;
+    let l = probe::shown_light(ctx, spot).and_then(|lit| Some(lit.leading()?.l));
     let (up, right) = (session.facts.camera * Vec3::Y, session.facts.camera * Vec3::X);
     let ways = l.into_iter().chain([spot.view, up, right]).map(|other| spot.normal.cross(other));
     let way = ways.into_iter().find(|way| way.is_finite() && way.length() > APART)?;
@@ -35,7 +32,7 @@ pub fn has_sides(ctx: &Context, session: &Session) -> bool {
 /// Completes the action that views from the side with the pinned point.
 pub fn placed(ctx: &Context, session: &Session, action: Action) -> Action {
     match (action, side(ctx, session)) {
-        (Action::LookFromSide, Some(steer)) => Action::Steer(steer),
+        (Action::LookFromSide, Some(steer)) => Action::Do(Effect::Steer(steer)),
         (Action::LookFromSide, None) => {
             let key = keys::word(ctx, "explain");
             let why = format!(

@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 
-use bevy_egui::egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Stroke, Ui};
-use glam::Vec3;
+use bevy_egui::egui::{Mesh, Painter};
 
 use super::room::Room;
 use crate::{
@@ -15,7 +14,7 @@ use crate::{
     optics::viridis::viridis,
     panel::{
         marks::{Ink, Lens, OUTLINE},
-        state::Session,
+        prelude::*,
     },
 };
 
@@ -116,7 +115,8 @@ pub(super) fn paint(
     room: &mut Room,
 ) {
     let lens = Lens::of(session, rect);
-    let colour = |i: usize, length: f32| if lobes.len() == 1 { viridis(length) } else { own_colour(i) };
+    let own = |i: usize| Vec3::from(tint(i).map(|c| f32::from(c) / 255.0));
+    let colour = |i: usize, length: f32| if lobes.len() == 1 { viridis(length) } else { own(i) };
     let all: Vec<_> = lobes
         .iter()
         .enumerate()
@@ -145,7 +145,7 @@ pub(super) fn paint(
     painter.add(Shape::mesh(mesh));
     for (i, light) in lobes.iter().enumerate() {
         let lobe = &all[i];
-        let line = if lobes.len() == 1 { Color32::WHITE } else { swatch(own_colour(i)) };
+        let line = if lobes.len() == 1 { Color32::WHITE } else { own_colour(i) };
         let seen = |k: u32| lobe.outside[k as usize];
         for (edge, sides) in &light.rims {
             let around = match sides {
@@ -170,21 +170,17 @@ fn directions(painter: &Painter, lens: Lens, from: Vec3, lobes: &[LightLobe]) {
     for (i, light) in lobes.iter().enumerate() {
         let end = from + light.l * lens.metres(from, LENGTH);
         for run in lens.path(&[from, end]) {
-            ink.stroke(run, 1.5, swatch(own_colour(i)));
+            ink.stroke(run, 1.5, own_colour(i));
         }
         if let Some(end) = lens.project(end) {
-            ink.disc(end, 3.0, swatch(own_colour(i)));
+            ink.disc(end, 3.0, own_colour(i));
         }
     }
     ink.paint(painter);
 }
 
 /// The colour of the lobe of a light among several.
-fn own_colour(i: usize) -> Vec3 {
-    Vec3::from(tint(i).map(|c| f32::from(c) / 255.0))
-}
-
-fn swatch(colour: Vec3) -> Color32 {
-    let [r, g, b] = (255.0 * colour).to_array().map(|c| c.round() as u8);
+fn own_colour(i: usize) -> Color32 {
+    let [r, g, b] = tint(i);
     Color32::from_rgb(r, g, b)
 }

@@ -1,8 +1,5 @@
 //! The vectors of the explained point in the picture, and its polygon or vertices.
 
-use bevy_egui::egui::{Color32, FontId, Pos2, Rect, Stroke, Ui, Vec2, vec2};
-use glam::Vec3;
-
 use super::{
     lobe, pairs, probe,
     room::{self, Room},
@@ -10,15 +7,12 @@ use super::{
     surface::LENGTH,
 };
 use crate::{
-    document::Selection,
     explain::{Lit, Model, Place, Seen, Spot},
     panel::{
         is_in_sight, linked,
         marks::{Ink, Lens, OUTLINE},
-        state::Session,
-        theme,
+        prelude::*,
     },
-    registry::Registry,
     shading::Stage,
 };
 
@@ -114,11 +108,9 @@ struct Drawing {
 
 impl Drawing {
     fn seen(&mut self, ui: &Ui, seen: &Seen) {
-        let choice = probe::choice(ui.ctx());
-        let spots = probe::spots(seen);
-        let Some(spot) = spots.get(probe::shown_spot(seen, choice)) else { return };
+        let Some((_, spot)) = probe::shown_spot(ui.ctx(), seen) else { return };
         self.polygon(seen, spot);
-        let lit = probe::shown_light(spot, choice);
+        let lit = probe::shown_light(ui.ctx(), spot);
         let lens = self.ink.lens();
         let Some(origin) = lens.project(spot.position) else { return };
         let reach = lens.metres(spot.position, LENGTH);
@@ -137,17 +129,13 @@ impl Drawing {
     /// The polygon, or the triangle between the vertices, with their weights.
     fn polygon(&mut self, seen: &Seen, spot: &Spot) {
         let lens = self.ink.lens();
-        let corners = |points: &[Vec3]| {
-            let mut line = points.to_vec();
-            line.extend(points.first());
-            line
-        };
         let triangle = seen.corners.map(|corner| corner.position);
-        let (line, faint) = match seen.shading.stage {
-            Stage::Polygon => (corners(&seen.outline), false),
-            Stage::Vertex => (corners(&triangle), false),
-            Stage::Pixel => (corners(&seen.outline), true),
+        let (points, faint) = match seen.shading.stage {
+            Stage::Polygon => (&seen.outline[..], false),
+            Stage::Vertex => (&triangle[..], false),
+            Stage::Pixel => (&seen.outline[..], true),
         };
+        let line: Vec<_> = points.iter().chain(points.first()).copied().collect();
         let colour = if faint { WHITE.gamma_multiply(0.45) } else { WHITE };
         for run in lens.path(&line) {
             self.ink.stroke(run, if faint { 1.0 } else { 1.5 }, colour);
@@ -157,21 +145,15 @@ impl Drawing {
         }
         let places = triangle.map(|p| lens.project(p));
         // A small triangle has no room for them; the panel shows them too.
-        let apart = |i: usize| match (places[i], places[(i + 1) % 3]) {
-            (Some(a), Some(b)) => a.distance(b) >= ROOMY,
-            _ => false,
-        };
-        let roomy = (0..3).all(apart);
+        let side = |i: usize| places[i].zip(places[(i + 1) % 3]);
+        let roomy = (0..3).all(|i| side(i).is_some_and(|(a, b)| a.distance(b) >= ROOMY));
         let middle = places.iter().flatten().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2()) / 3.0;
         for (corner, at) in seen.corners.iter().zip(places) {
             let Some(at) = at else { continue };
             let radius = if roomy { 5.0 } else { 3.0 };
             let this = matches!(spot.place, Place::Vertex { vertex, .. } if vertex == corner.vertex);
-            self.ink.disc(
-                at,
-                if this { radius } else { 0.7 * radius },
-                theme::swatch(corner.colour.clamp(Vec3::ZERO, Vec3::ONE)),
-            );
+            let colour = theme::swatch(corner.colour.clamp(Vec3::ZERO, Vec3::ONE));
+            self.ink.disc(at, if this { radius } else { 0.7 * radius }, colour);
             let out = (at.to_vec2() - middle).normalized();
             if roomy {
                 self.words.push((at + out * 20.0, rows::short(corner.weight), WHITE, Vec::new()));
@@ -250,11 +232,9 @@ impl Drawing {
             let angle = a.angle_between(b);
             let ends = [a, b].map(|way| lens.project(spot.position + way * reach));
             let origin = lens.project(spot.position);
-            let apart = match (origin, ends) {
-                (Some(o), [Some(a), Some(b)]) => {
-                    (a - o).length() > 2.0 * END_ON && (b - o).length() > 2.0 * END_ON
-                }
-                _ => false,
+            let apart = match origin {
+                Some(o) => ends.iter().all(|end| end.is_some_and(|end| (end - o).length() > 2.0 * END_ON)),
+                None => false,
             };
             if !apart || !angle.is_finite() || !(0.03..3.1).contains(&angle) {
                 continue;

@@ -116,14 +116,8 @@ fn arrows(
         let beyond =
             Some(arrow(clear.map(|clear| clear.towards(way)))).filter(|(_, end)| inside.contains(*end));
         let (line, end) = beyond.unwrap_or_else(|| arrow(None));
-        all.push(Placed {
-            handle: SORT.handle(axis),
-            lines: vec![line],
-            far: Vec::new(),
-            end,
-            radius: LETTER_RADIUS,
-            point,
-        });
+        let placed = Placed::new(SORT.handle(axis), end, LETTER_RADIUS, point);
+        all.push(Placed { lines: vec![line], ..placed });
     }
     all.push(plane::disc(at, origin, arm, clear, &all));
     all

@@ -19,10 +19,7 @@ pub(super) static SORT: Sort = Sort {
         let tip = at + direction * (length + lens.metres(at, DISC + 4.0));
         Placed::disc(SORT.handle(0), tip, lens).into_iter().collect()
     },
-    value: |target, _| match target.body {
-        Body::Light(light, _) => light.direction.map(Dragged::Direction),
-        Body::Object(..) => None,
-    },
+    value: |target, _| target.light()?.direction.map(Dragged::Direction),
     drag: |grasp, pull| {
         let p = grasp.pulled(pull.lens, pull.pointer)?;
         if !pull.snap {

@@ -129,6 +129,5 @@ fn at_end(handle: Handle, at: Vec3, middle: Pos2, arm: Vec3, way: Vec3, lens: &L
     let apart = points.max(NEAREST.min(most));
     let end = middle + apart * seen;
     let stem = (apart > points + DISC).then(|| vec![middle + points * seen, end]);
-    let lines = stem.into_iter().collect();
-    Some(Placed { handle, lines, far: Vec::new(), end, radius: DISC + 2.0, point })
+    Some(Placed { lines: stem.into_iter().collect(), ..Placed::new(handle, end, DISC + 2.0, point) })
 }

@@ -17,7 +17,7 @@ use glam::Vec3;
 use crate::{light::LightEntry, panel::marks::Lens, parameter::Parameter, scene::SceneSize};
 use grasp::{Dragged, Grasp, Pull};
 use paint::Brush;
-use shape::{Around, Body, Placed, Target};
+use shape::{Around, Placed, Target};
 
 pub(super) use show::handles;
 
@@ -95,8 +95,7 @@ impl Sort {
     /// The values that handles for parameters of lights share.
     const OF_PARAMETER: Self = Self {
         value: |target, handle| {
-            let Body::Light(light, _) = target.body else { return None };
-            Some(Dragged::Parameter(light.parameters.number(target.parameter(handle)?)))
+            Some(Dragged::Parameter(target.light()?.parameters.number(target.parameter(handle)?)))
         },
         ..Self::PLAIN
     };

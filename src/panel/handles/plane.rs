@@ -37,13 +37,6 @@ pub(super) fn disc(at: Vec3, origin: Pos2, arm: f32, clear: Option<Extent>, arro
     let nearest = |corner: &Vec2| ways.iter().map(|way| way.dot(*corner)).fold(-1.0, f32::max);
     let free = corners.iter().find(|corner| nearest(corner) < 0.87);
     let corner = free.copied().unwrap_or(corners[0]);
-    Placed {
-        handle: SORT.handle(0),
-        lines: Vec::new(),
-        far: Vec::new(),
-        end: origin
-            + corner * (ASIDE * arm / ARM).max(DISC + clear.map_or(GAP, |clear| clear.towards(corner))),
-        radius: DISC,
-        point: at,
-    }
+    let aside = (ASIDE * arm / ARM).max(DISC + clear.map_or(GAP, |clear| clear.towards(corner)));
+    Placed::new(SORT.handle(0), origin + corner * aside, DISC, at)
 }

@@ -34,10 +34,7 @@ pub(super) static SORT: Sort = Sort {
         let radius = extent.map_or(part * RING, around);
         (0..3).map(|axis| ring(target.at, axis, radius, lens).beyond(*middle, *extent)).collect()
     },
-    value: |target, _| match target.body {
-        Body::Object(object, _) => Some(Dragged::Rotation(object.rotation, 0.0)),
-        Body::Light(..) => None,
-    },
+    value: |target, _| Some(Dragged::Rotation(target.object()?.rotation, 0.0)),
     drag: |grasp, pull| {
         let axis = Vec3::AXES[grasp.handle.which];
         let by = grasp.turned_about(pull.lens, pull.pointer, axis)?;
@@ -94,12 +91,6 @@ fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
     };
     let best = best(true).or_else(|| best(false)).unwrap_or(middle);
     let end = best + (best - middle).normalized() * LETTER;
-    Placed {
-        handle: SORT.handle(axis),
-        lines,
-        far,
-        end,
-        radius: LETTER_RADIUS,
-        point: at + length * sides[0],
-    }
+    let point = at + length * sides[0];
+    Placed { lines, far, ..Placed::new(SORT.handle(axis), end, LETTER_RADIUS, point) }
 }

@@ -78,6 +78,16 @@ impl<'a> Target<'a> {
         }
     }
 
+    /// The object, if it is one.
+    pub(super) fn object(&self) -> Option<&'a Object> {
+        if let Body::Object(object, _) = self.body { Some(object) } else { None }
+    }
+
+    /// The light, if it is one.
+    pub(super) fn light(&self) -> Option<&'a Light> {
+        if let Body::Light(light, _) = self.body { Some(light) } else { None }
+    }
+
     /// The parameter that a handle changes.
     pub(super) fn parameter(&self, handle: Handle) -> Option<&'static Parameter> {
         let Body::Light(_, entry) = self.body else { return None };
@@ -107,10 +117,14 @@ pub(super) struct Placed {
 }
 
 impl Placed {
+    /// A handle without lines.
+    pub(super) fn new(handle: Handle, end: Pos2, radius: f32, point: Vec3) -> Self {
+        Self { handle, lines: Vec::new(), far: Vec::new(), end, radius, point }
+    }
+
     /// A disc at a point of the room; none if that is not seen.
     pub(super) fn disc(handle: Handle, point: Vec3, lens: &Lens) -> Option<Self> {
-        let end = lens.project(point)?;
-        Some(Self { handle, lines: Vec::new(), far: Vec::new(), end, radius: DISC, point })
+        Some(Self::new(handle, lens.project(point)?, DISC, point))
     }
 
     /// Distance of a position from the handle, 0 if it is on the handle; `None` if it is out of reach.

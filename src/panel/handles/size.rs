@@ -30,10 +30,7 @@ pub(super) static SORT: Sort = Sort {
         let radius = OUTWARD * object.size * half.max_element();
         size(target.at, *middle, radius, *extent, lens).into_iter().collect()
     },
-    value: |target, _| match target.body {
-        Body::Object(object, _) => Some(Dragged::Size(object.size)),
-        Body::Light(..) => None,
-    },
+    value: |target, _| Some(Dragged::Size(target.object()?.size)),
     drag: |grasp, pull| {
         let [right, up, _] = pull.lens.axes();
         // Distances from the centre, so that the grabbed point does not matter.
@@ -57,13 +54,6 @@ fn size(at: Vec3, middle: Pos2, radius: f32, clear: Option<Extent>, lens: &Lens)
     let most = edge[0].min(edge[1]).max(GAP + DISC);
     let points = (radius / lens.metres(at, 1.0)).max(NEAREST).min(most);
     let end = middle + points * way;
-    let line = vec![middle + clear.min(points) * way, end];
-    Some(Placed {
-        handle: SORT.handle(0),
-        lines: vec![line],
-        far: Vec::new(),
-        end,
-        radius: DISC + 2.0,
-        point: at,
-    })
+    let lines = vec![vec![middle + clear.min(points) * way, end]];
+    Some(Placed { lines, ..Placed::new(SORT.handle(0), end, DISC + 2.0, at) })
 }

@@ -1,60 +1,49 @@
 //! The properties of a light.
 
-use bevy_egui::egui::{self, Align, Layout, Ui};
-
-use glam::Vec3;
-
 use super::part::{header, knob_of, section, type_knob, vector};
 use crate::{
-    document::{Edit, Selection},
     light::LightEntry,
     optics::temperature,
     panel::{
         knob::{self, Caption},
         linked::{self, Domain},
         maths,
+        prelude::*,
         segmented::{segment_width, segmented},
-        state::{Action, Session},
-        theme,
+        state::{Effect, Pick},
     },
     parameter::Value,
     reflection::{EquationPart, Term},
-    registry::Registry,
-    scene::{Light, Part, limits},
+    scene::{Light, limits},
 };
 
-pub(super) fn light(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    i: usize,
-    actions: &mut Vec<Action>,
-) {
+pub(super) fn light(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let Some(light) = session.document.lights.get(i) else { return };
     let part = Part::Light(i);
-    header(ui, session, registry, Selection::Light(i), light.name.as_deref(), actions);
+    header(ui, Selection::Light(i), light.name.as_deref(), context);
     section(ui, "Light", true, |ui| {
         linked::within(ui, Domain::Light, |ui| {
             let types = registry.lights().iter().map(|l| l.declaration);
             let types = types.map(|d| [d.id, d.name, d.summary]);
             if let Some(id) = type_knob(ui, types, &light.light_type) {
-                actions.push(Action::Edit(Edit::set(part, Light::light_type, id.to_owned())));
+                context.edit(Edit::set(part, Light::light_type, id.to_owned()));
             }
             let Some(entry) = registry.light(&light.light_type) else {
                 ui.label("This light type is unknown; choose another one.");
                 return;
             };
             equation(ui, entry);
-            actions.extend(brightness(ui, part, light, entry).map(Action::Edit));
-            actions.extend(light_colour(ui, part, light).map(Action::Edit));
+            context.edits(brightness(ui, part, light, entry));
+            context.edits(light_colour(ui, part, light));
             for p in entry.parameters {
                 if let Value::File(file) = light.parameters.get(p)
                     && knob::file_knob(ui, p, &file)
                 {
-                    actions.push(Action::FileDialog(Selection::Light(i), p));
+                    context.act(Action::Do(Effect::Pick(Pick::File(Selection::Light(i), p))));
                 }
                 if let Some(v) = knob_of(ui, p.name, p, entry.parameters, &light.parameters) {
-                    actions.push(Action::Edit(Edit::parameter(part, p.name, v)));
+                    context.edit(Edit::parameter(part, p.name, v));
                 }
             }
         })
@@ -64,7 +53,7 @@ pub(super) fn light(
             let room = session.document.scene_size;
             let mut knob = |field, value: Option<Vec3>, help| {
                 let edit = value.and_then(|value| vector(ui, part, field, help, value, room));
-                actions.extend(edit.map(Action::Edit));
+                context.edits(edit);
             };
             let help = "Position of the light; y is up, the origin is a corner of the room.";
             knob(Light::position, light.position, help);
@@ -78,10 +67,9 @@ pub(super) fn light(
 fn equation(ui: &mut Ui, entry: &LightEntry) {
     let d = entry.declaration;
     if !d.summary.is_empty() {
-        ui.add(egui::Label::new(theme::small(ui, d.summary)).wrap());
+        ui.add(Label::new(theme::small(ui, d.summary)).wrap());
     }
-    let part = [EquationPart { term: Term::Total, text: d.equation }];
-    maths::equation(ui, &part, |symbol| match symbol {
+    maths::equation(ui, &[EquationPart { term: Term::Total, text: d.equation }], |symbol| match symbol {
         "I" => Some("the intensity of the light".to_owned()),
         other => {
             let own = entry.parameters.iter().find(|p| maths::same_symbol(p.symbol, other));
@@ -124,16 +112,15 @@ fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Opt
     let mut other_unit = None;
     let units = [[d.unit, word], ["lm", "lumen"]];
     let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, usize::from(as_flux), &units);
-    let out = if as_flux {
+    let (salt, field, caption, value, default, limits) = if as_flux {
         let caption = Caption { symbol: "Φ", ..Caption::of(&Light::luminous_flux, unit_help("lm")) };
         let default = limits::significant(default * solid_angle, 3);
-        let limits = limits::luminous_flux(d);
-        knob::number_knob_beside(ui, "flux", &caption, flux, Some(default), &limits, beside)
-            .map(|v| Edit::set(part, Light::luminous_flux, v as f32))
+        ("flux", Light::luminous_flux, caption, flux, default, limits::luminous_flux(d))
     } else {
-        knob::number_knob_beside(ui, "intensity", &caption, intensity, Some(default), &limits, beside)
-            .map(|v| Edit::set(part, Light::intensity, v as f32))
+        ("intensity", Light::intensity, caption, intensity, default, limits)
     };
+    let out = knob::number_knob_beside(ui, salt, &caption, value, Some(default), &limits, beside)
+        .map(|v| Edit::set(part, field, v as f32));
     match other_unit {
         Some(0) => Some(Edit::set(part, Light::intensity, limits::significant(intensity, 6) as f32)),
         Some(_) => Some(Edit::set(part, Light::luminous_flux, flux as f32)),
@@ -163,17 +150,13 @@ fn light_colour(ui: &mut Ui, part: Part, light: &Light) -> Option<Edit> {
                 "The temperature of a black body that glows in this colour. It is as bright as white light."
             });
         };
-        match segmented(ui, "Colour by", &choices, Some(chosen), tip) {
-            Some(0) => out = Some(Edit::set(part, Light::colour, light.rgb8())),
-            Some(_) => {
-                out = Some(Edit::set(
-                    part,
-                    Light::colour_temperature,
-                    temperature::nearest_temperature(light.colour),
-                ))
+        out = segmented(ui, "Colour by", &choices, Some(chosen), tip).map(|i| match i {
+            0 => Edit::set(part, Light::colour, light.rgb8()),
+            _ => {
+                let nearest = temperature::nearest_temperature(light.colour);
+                Edit::set(part, Light::colour_temperature, nearest)
             }
-            None => {}
-        }
+        });
         if light.colour_temperature.is_some() {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.add_space(22.0);

@@ -1,43 +1,34 @@
 //! The knobs of a material, in the groups of its model; all of them, or only those that differ from their defaults.
 
-use bevy_egui::egui::{
-    Align, Button, CollapsingHeader, FontId, Id, Layout, RichText, TextFormat, TextStyle, Ui, text::LayoutJob,
-};
+use bevy_egui::egui::{CollapsingHeader, TextFormat, text::LayoutJob};
 
 use super::{measured::measured, object::Shown, part::knob_of, variant::marked};
 use crate::{
-    document::Edit,
-    panel::{
-        knob,
-        lesson::point,
-        state::{Action, ViewChange},
-        theme::{self, Palette},
-    },
+    panel::{knob, lesson::point, prelude::*},
     parameter::Parameter,
     reflection::{ModelEntry, ungrouped},
     scene::Key,
     shading::ShadingEntry,
-    text::plural,
 };
 
 impl Shown<'_> {
     /// The knobs of the parameters of the model, and the parameters that it does not use.
-    pub(super) fn material(&self, ui: &mut Ui, edits: &mut Vec<Edit>, actions: &mut Vec<Action>) {
+    pub(super) fn material(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let Self { session, registry, part, object, model } = *self;
         let Some(model) = model else {
             ui.label(theme::small(ui, "The parameters come back with the model."));
             return;
         };
         if let Some(values) = measured(ui, registry, model, object) {
-            edits.push(Edit::materials(part, values, "Measured material"));
+            context.edit(Edit::materials(part, values, "Measured material"));
         }
         let listed = self.listed(ui, model);
-        self.filter(ui, model, actions);
+        self.filter(ui, model, context);
         let mut knob = |ui: &mut Ui, p: &'static Parameter| {
-            let value = marked(ui, session, Key::Material(p.name), actions, |ui| {
+            let value = marked(ui, Key::Material(p.name), context, |ui| {
                 knob_of(ui, p.name, p, model.parameters, &object.material)
             });
-            edits.extend(value.map(|v| Edit::material(part, p.name, v)));
+            context.edits(value.map(|v| Edit::material(part, p.name, v)));
         };
         for p in ungrouped(model.groups, model.parameters).filter(|p| listed.contains(&p.name)) {
             knob(ui, p);
@@ -62,7 +53,7 @@ impl Shown<'_> {
         }
         let shading = registry.shading_model(session.scene().shading_model_of(object));
         if let Some(shading) = shading {
-            self.shading(ui, model, shading, edits);
+            self.shading(ui, model, shading, context);
         }
         self.readouts(ui, model);
         self.unused(ui, model, shading);
@@ -110,7 +101,7 @@ impl Shown<'_> {
     }
 
     /// The switch between all parameters and those that differ, for models with groups: they have many.
-    fn filter(&self, ui: &mut Ui, model: &ModelEntry, actions: &mut Vec<Action>) {
+    fn filter(&self, ui: &mut Ui, model: &ModelEntry, context: &mut PanelContext<'_>) {
         if model.groups.is_empty() {
             return;
         }
@@ -121,9 +112,8 @@ impl Shown<'_> {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let text = RichText::new("Only changed").text_style(TextStyle::Small);
                 let help = "Show the knobs of those parameters alone that differ from their defaults";
-                if ui.add(Button::new(text).selected(on)).on_hover_text(help).clicked() {
-                    actions.push(Action::View(ViewChange::OnlyChanged(!on)));
-                }
+                let button = ui.add(Button::new(text).selected(on)).on_hover_text(help);
+                context.on_click(&button, || Action::View(ViewChange::OnlyChanged(!on)));
             });
         });
     }
@@ -137,8 +127,7 @@ fn heading(ui: &Ui, name: &str, changed: usize) -> LayoutJob {
     let small = TextStyle::Small.resolve(ui.style());
     job.append(name, 0.0, TextFormat::simple(body, palette.text));
     if changed > 0 {
-        let text = format!("{changed} changed");
-        job.append(&text, 8.0, TextFormat::simple(small, palette.weak));
+        job.append(&format!("{changed} changed"), 8.0, TextFormat::simple(small, palette.weak));
     }
     job
 }

@@ -1,17 +1,14 @@
 //! The chooser of materials: measured ones and, where a model has some, those of artists.
 
-use bevy_egui::egui::{self, Sense, Ui, vec2};
-
 use crate::{
     panel::{
         chooser,
         knob::{self, Caption},
         maths,
-        theme::{self, Palette},
+        prelude::*,
     },
     parameter::Value,
     reflection::{Measured, ModelEntry, preset},
-    registry::Registry,
     scene::{
         Object,
         examples::{Look, looks},
@@ -86,14 +83,6 @@ impl Offer {
         }
     }
 
-    fn heading(self) -> &'static str {
-        match self {
-            Self::Look(_) => "For artists",
-            Self::Measured(m) if m.metal => "Metals and semiconductors",
-            Self::Measured(_) => "Dielectrics",
-        }
-    }
-
     /// The words by which it is found.
     fn words(self) -> String {
         match self {
@@ -111,23 +100,23 @@ impl Offer {
     }
 
     fn entry(self, current: bool) -> chooser::Entry<'static> {
-        let (note, swatch) = match self {
-            Self::Look(_) => (String::new(), None),
-            Self::Measured(m) => {
-                (m.f0.to_array().map(|v| format!("{v:.2}")).join("  "), Some(theme::swatch(m.f0)))
-            }
-        };
-        let (heading, name) = (self.heading(), self.name());
-        chooser::Entry { heading, name, note, swatch, current, ..chooser::Entry::default() }
+        let entry = chooser::Entry { name: self.name(), current, ..chooser::Entry::default() };
+        match self {
+            Self::Look(_) => chooser::Entry { heading: "For artists", ..entry },
+            Self::Measured(m) => chooser::Entry {
+                heading: if m.metal { "Metals and semiconductors" } else { "Dielectrics" },
+                note: m.f0.to_array().map(|v| format!("{v:.2}")).join("  "),
+                swatch: Some(theme::swatch(m.f0)),
+                ..entry
+            },
+        }
     }
 
     /// The tooltip.
     fn about(self, ui: &mut Ui) {
+        ui.label(theme::strong(ui, self.name()));
         match self {
-            Self::Look(look) => {
-                ui.label(theme::strong(ui, &look.name));
-                ui.label(&look.description);
-            }
+            Self::Look(look) => _ = ui.label(&look.description),
             Self::Measured(m) => measurement(ui, m),
         }
     }
@@ -135,8 +124,6 @@ impl Offer {
 
 /// The measured values of a material, and their source.
 fn measurement(ui: &mut Ui, material: &Measured) {
-    let palette = Palette::here(ui);
-    ui.label(theme::strong(ui, material.name));
     egui::Grid::new("measurement").num_columns(5).spacing(vec2(14.0, 3.0)).show(ui, |ui| {
         ui.label("");
         for wavelength in ["630 nm", "532 nm", "465 nm"] {
@@ -148,17 +135,13 @@ fn measurement(ui: &mut Ui, material: &Measured) {
             maths::symbol(ui, symbol, 15.0);
             for v in values {
                 // The k of glass and water is about 10⁻⁸.
-                let text = if v > 0.0 && v < 5e-4 {
-                    format!("{v:.0e}").replace('-', "−")
-                } else {
-                    format!("{v:.3}")
-                };
-                ui.label(text);
+                let tiny = v > 0.0 && v < 5e-4;
+                ui.label(if tiny { format!("{v:.0e}").replace('-', "−") } else { format!("{v:.3}") });
             }
             if symbol == "F_0" {
                 let (rect, _) = ui.allocate_exact_size(vec2(30.0, 16.0), Sense::hover());
-                let stroke = egui::Stroke::new(1.0, palette.weak);
-                ui.painter().rect(rect, 3.0, theme::swatch(material.f0), stroke, egui::StrokeKind::Inside);
+                let stroke = Stroke::new(1.0, Palette::here(ui).weak);
+                ui.painter().rect(rect, 3.0, theme::swatch(material.f0), stroke, StrokeKind::Inside);
             }
             ui.end_row();
         }

@@ -1,9 +1,6 @@
 //! The properties of the selected part of the scene, at the right.
 
-use bevy_egui::egui::{ScrollArea, Ui};
-
-use super::{Panel, PanelContext, Place, is_panel};
-use crate::document::Selection;
+use super::prelude::*;
 use {light::light, object::object, observer::observer, room::room};
 
 mod light;
@@ -24,19 +21,19 @@ impl Panel for Inspector {
     is_panel!("inspector", "Properties", Place::Right);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
+        let part = context.session().selection;
         // Each part has fields of its own: what is typed about one must not turn up in another.
-        ui.push_id(session.selection, |ui| {
+        ui.push_id(part, |ui| {
             // The scroll bar floats over a margin, so that nothing moves when it comes.
             ui.spacing_mut().scroll.floating_allocated_width = 0.0;
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_max_width(ui.available_width() - 8.0);
-                variant::variant(ui, session, registry, actions);
-                match session.selection {
-                    Selection::Room => room(ui, session, registry, actions),
-                    Selection::Observer => observer(ui, session, actions),
-                    Selection::Light(i) => light(ui, session, registry, i, actions),
-                    Selection::Object(i) => object(ui, session, registry, i, actions),
+                variant::variant(ui, context);
+                match part {
+                    Selection::Room => room(ui, context),
+                    Selection::Observer => observer(ui, context),
+                    Selection::Light(i) => light(ui, i, context),
+                    Selection::Object(i) => object(ui, i, context),
                 }
                 ui.add_space(16.0);
             });

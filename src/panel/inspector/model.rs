@@ -1,28 +1,24 @@
 //! The reflection model of an object: its name, its equation, the stage that evaluates it.
 
-use bevy_egui::egui::{self, Sense, TextStyle, Ui, vec2};
-
 use crate::{
     optics::TermSelection,
     panel::{
-        chooser, icon, keys,
+        chooser, keys,
         lesson::point,
         maths,
+        prelude::*,
         segmented::{segment_width, segmented},
         shader,
-        state::{Action, SHADER_TAB, Session, Severity, ViewChange},
-        theme::{self, Palette},
+        state::SHADER_TAB,
     },
     reflection::ModelEntry,
-    registry::Registry,
     shading::ShadingEntry,
 };
 
 /// The name of a model; the whole story is the tooltip.
 pub(super) fn model_name(ui: &mut Ui, model: &ModelEntry) {
-    let palette = Palette::here(ui);
     let name = model.declaration.name;
-    let name = theme::elided(ui, name, TextStyle::Heading, palette.text, ui.available_width());
+    let name = theme::elided(ui, name, TextStyle::Heading, Palette::here(ui).text, ui.available_width());
     ui.label(name).on_hover_ui(|ui| about(ui, model));
 }
 
@@ -30,7 +26,7 @@ pub(super) fn model_name(ui: &mut Ui, model: &ModelEntry) {
 pub(super) fn model_author(ui: &mut Ui, model: &ModelEntry) {
     let author = model.declaration.author;
     if !author.is_empty() {
-        ui.add(egui::Label::new(theme::small(ui, author)).wrap()).on_hover_ui(|ui| about(ui, model));
+        ui.add(Label::new(theme::small(ui, author)).wrap()).on_hover_ui(|ui| about(ui, model));
     }
 }
 
@@ -40,26 +36,18 @@ fn about(ui: &mut Ui, model: &ModelEntry) {
 }
 
 /// The replacement for a model that is missing: its file is gone, or never worked.
-pub(super) fn missing_model(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    id: &str,
-    actions: &mut Vec<Action>,
-) {
-    let palette = Palette::here(ui);
+pub(super) fn missing_model(ui: &mut Ui, id: &str, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        let (sign, _) = ui.allocate_exact_size(vec2(16.0, 20.0), Sense::hover());
-        icon::severity(ui.painter(), sign.center(), 6.0, Severity::Error, &palette);
+        icon::sign(ui, [16.0, 20.0], 6.0, Severity::Error);
         ui.vertical(|ui| {
-            ui.add(egui::Label::new(shader::missing_model(session, registry, id)).wrap().selectable(true));
+            ui.add(Label::new(shader::missing_model(session, registry, id)).wrap().selectable(true));
             ui.horizontal_wrapped(|ui| {
-                if ui.button("Choose another model").clicked() {
-                    actions.push(Action::View(ViewChange::Chooser(true)));
-                }
+                let button = ui.button("Choose another model");
+                context.on_click(&button, || Action::View(ViewChange::Chooser(true)));
                 if !session.shaders.troubles.is_empty() && ui.button("Show the error").clicked() {
-                    actions.push(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
+                    context.act(Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));
                 }
             });
         });
@@ -94,15 +82,10 @@ pub(in crate::panel) fn meaning(model: &ModelEntry, symbol: &str) -> Option<Stri
 }
 
 /// The choice of the term that the picture shows, where there is one: among those of the equation above it.
-pub(super) fn terms(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    model: &ModelEntry,
-    actions: &mut Vec<Action>,
-) {
+pub(super) fn terms(ui: &mut Ui, model: &ModelEntry, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let written: Vec<_> = model.declaration.equation.iter().filter_map(|p| p.term.alone()).collect();
-    let mut options = session.offered_terms(registry);
+    let mut options = session.offered_terms(context.registry());
     options.retain(|t| written.is_empty() || *t == TermSelection::All || written.contains(t));
     if options.len() == 2 {
         // One term is the whole equation.
@@ -132,7 +115,7 @@ pub(super) fn terms(
             ui.label(theme::small(ui, format!("key {key} goes through them")));
         };
         if let Some(i) = segmented(ui, "Terms", &names, chosen, tip) {
-            actions.push(Action::View(ViewChange::Terms(options[i])));
+            context.act(Action::View(ViewChange::Terms(options[i])));
         }
     });
     point::button(ui, "terms", row.response.rect);
@@ -142,10 +125,9 @@ pub(super) fn terms(
 /// The stage that evaluates the model: a picture and the words.
 pub(in crate::panel) fn stage(ui: &mut Ui, shading: &ShadingEntry) {
     let d = shading.declaration;
-    let palette = Palette::here(ui);
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(48.0, 42.0), Sense::hover());
-        icon::stage(ui.painter(), rect, d.stage, &palette);
+        icon::stage(ui.painter(), rect, d.stage, &Palette::here(ui));
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 1.0;
             ui.label(theme::strong(ui, format!("computed {}", d.stage.phrase())));

@@ -1,50 +1,39 @@
 //! The properties of an object.
 
-use bevy_egui::egui::{Align, Layout, Ui};
-
 use super::{
     model::{equation, missing_model, model_author, model_name, stage, terms},
     part::{header, knob_of, number, section, type_knob, vector},
     variant::marked,
 };
 use crate::{
-    document::{Edit, Selection},
     panel::{
         knob::{self, Caption},
         linked::{self, Domain},
         model_override,
-        state::{Action, Session},
-        theme,
+        prelude::*,
+        state::{Effect, Pick},
     },
     parameter::Value,
     reflection::ModelEntry,
-    registry::Registry,
-    scene::{Object, Part, Variant, limits},
+    scene::{Object, Variant, limits},
     shading::ShadingEntry,
 };
 
-pub(super) fn object(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    i: usize,
-    actions: &mut Vec<Action>,
-) {
+pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let Some(object) = session.scene().objects.get(i) else { return };
-    header(ui, session, registry, Selection::Object(i), object.name.as_deref(), actions);
+    header(ui, Selection::Object(i), object.name.as_deref(), context);
     let model = registry.model(session.scene().model_of(object));
     let shown = Shown { session, registry, part: Part::Object(i), object, model };
-    let mut edits = Vec::new();
-    shown.files(ui, i, actions);
-    section(ui, "Reflection", true, |ui| shown.reflection(ui, &mut edits, actions));
-    section(ui, "Material", true, |ui| shown.material(ui, &mut edits, actions));
+    shown.files(ui, i, context);
+    section(ui, "Reflection", true, |ui| shown.reflection(ui, context));
+    section(ui, "Material", true, |ui| shown.material(ui, context));
     section(ui, "Shape and position", true, |ui| {
-        linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, &mut edits, actions));
+        linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, context));
     });
-    actions.extend(edits.into_iter().map(Action::Edit));
 }
 
-/// The object that is shown, and its surroundings. The methods show it, and add edits of it.
+/// The object that is shown, and its surroundings.
 pub(super) struct Shown<'a> {
     pub(super) session: &'a Session,
     pub(super) registry: &'a Registry,
@@ -55,12 +44,12 @@ pub(super) struct Shown<'a> {
 
 impl Shown<'_> {
     /// The model with its equation and terms, and the stage that evaluates it.
-    fn reflection(&self, ui: &mut Ui, edits: &mut Vec<Edit>, actions: &mut Vec<Action>) {
+    fn reflection(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let Self { session, registry, part, object, model } = *self;
         ui.horizontal(|ui| {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let chosen = model_override::control(ui, session, registry, object);
-                edits.extend(chosen.map(|(field, id)| Edit::put(part, field, id)));
+                context.edits(chosen.map(|(field, id)| Edit::put(part, field, id)));
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     if let Some(model) = model {
                         model_name(ui, model);
@@ -72,9 +61,9 @@ impl Shown<'_> {
             Some(model) => {
                 model_author(ui, model);
                 equation(ui, model);
-                terms(ui, session, registry, model, actions);
+                terms(ui, model, context);
             }
-            None => missing_model(ui, session, registry, session.scene().model_of(object), actions),
+            None => missing_model(ui, session.scene().model_of(object), context),
         }
         if let Some(shading) = registry.shading_model(session.scene().shading_model_of(object)) {
             stage(ui, shading);
@@ -87,7 +76,7 @@ impl Shown<'_> {
         ui: &mut Ui,
         model: &ModelEntry,
         shading: &ShadingEntry,
-        edits: &mut Vec<Edit>,
+        context: &mut PanelContext<'_>,
     ) {
         let Self { part, object, .. } = *self;
         let own: Vec<_> = shading.parameters.iter().filter(|p| model.parameter(p.name).is_none()).collect();
@@ -97,74 +86,62 @@ impl Shown<'_> {
         ui.add_space(4.0);
         ui.label(theme::small(ui, format!("{} shading", shading.declaration.name)));
         for p in own {
-            if let Some(v) = knob_of(ui, p.name, p, shading.parameters, &object.material) {
-                edits.push(Edit::material(part, p.name, v));
-            }
+            let value = knob_of(ui, p.name, p, shading.parameters, &object.material);
+            context.edits(value.map(|v| Edit::material(part, p.name, v)));
         }
     }
 
     /// The object type, its size and its place.
-    fn geometry(&self, ui: &mut Ui, edits: &mut Vec<Edit>, actions: &mut Vec<Action>) {
+    fn geometry(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let Self { session, registry, part, object, .. } = *self;
         let types = registry.shapes().iter().map(|s| s.declaration);
         if let Some(id) = type_knob(ui, types.map(|d| [d.id, d.name, d.summary]), &object.object_type) {
-            edits.push(Edit::set(part, Object::object_type, id.to_owned()));
+            context.edit(Edit::set(part, Object::object_type, id.to_owned()));
         }
-        self.shape(ui, edits);
+        self.shape(ui, context);
         let room = session.document.scene_size;
         let sizes = [object.size, Object::default().size];
-        edits.extend(number(
-            ui,
-            part,
-            Object::size,
-            "The largest extent.",
-            sizes,
-            &limits::object_size(room),
-        ));
+        let limits = limits::object_size(room);
+        context.edits(number(ui, part, Object::size, "The largest extent.", sizes, &limits));
         let help = "Position of the centre; y is up, the origin is a corner of the room.";
-        edits.extend(vector(ui, part, Object::position, help, object.position, room));
+        context.edits(vector(ui, part, Object::position, help, object.position, room));
         let help = "Turned about x first, then y, then z of the room.";
-        edits.extend(vector(ui, part, Object::rotation, help, object.rotation, room));
+        context.edits(vector(ui, part, Object::rotation, help, object.rotation, room));
         if let Some(shape) = registry.shape(&object.object_type) {
             let d = shape.declaration;
             let caption = Caption::new("tessellation", "", d.tessellation_help);
             let value = f64::from(shape.tessellation(object.tessellation));
             let default = f64::from(d.default_tessellation);
-            if let Some(v) = marked(ui, session, Variant::tessellation, actions, |ui| {
+            let chosen = marked(ui, Variant::tessellation, context, |ui| {
                 let limits = limits::tessellation(d);
                 knob::number_knob(ui, "tessellation", &caption, value, Some(default), &limits)
-            }) {
-                edits.push(Edit::put(
-                    part,
-                    Object::tessellation,
-                    Some(v as u32).filter(|n| *n != d.default_tessellation),
-                ));
-            }
+            });
+            let number = |v: f64| Some(v as u32).filter(|n| *n != d.default_tessellation);
+            context.edits(chosen.map(|v| Edit::put(part, Object::tessellation, number(v))));
         }
     }
 
     /// The files that make the object what it is.
-    fn files(&self, ui: &mut Ui, i: usize, actions: &mut Vec<Action>) {
+    fn files(&self, ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
         let Self { registry, object, .. } = *self;
         let Some(shape) = registry.shape(&object.object_type) else { return };
         for p in shape.parameters {
             if let Value::File(file) = object.shape.get(p)
                 && linked::within(ui, Domain::Shape, |ui| knob::file_knob(ui, p, &file))
             {
-                actions.push(Action::FileDialog(Selection::Object(i), p));
+                context.act(Action::Do(Effect::Pick(Pick::File(Selection::Object(i), p))));
             }
         }
     }
 
     /// The knobs of the parameters of the object type; its files have theirs above.
-    fn shape(&self, ui: &mut Ui, edits: &mut Vec<Edit>) {
+    fn shape(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let Self { registry, part, object, .. } = *self;
         let Some(shape) = registry.shape(&object.object_type) else { return };
         for p in shape.parameters {
             let salt = format!("shape {}", p.name);
-            if let Some(v) = knob_of(ui, &salt, p, shape.parameters, &object.shape) {
-                edits.push(Edit::parameter(part, p.name, v));
-            }
+            let value = knob_of(ui, &salt, p, shape.parameters, &object.shape);
+            context.edits(value.map(|v| Edit::parameter(part, p.name, v)));
         }
     }
 

@@ -1,18 +1,13 @@
 //! The properties of the observer.
 
-use bevy_egui::egui::{Button, RichText, Ui};
-
 use super::part::{number, section, vector};
 use crate::{
-    panel::{
-        keys,
-        state::{Action, Session},
-        theme,
-    },
-    scene::{Observer, Part},
+    panel::{keys, prelude::*, state::Effect},
+    scene::Observer,
 };
 
-pub(super) fn observer(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+pub(super) fn observer(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let o = session.document.observer;
     ui.label(RichText::new("Observer").heading());
     ui.label(theme::small(ui, "The camera of the scene"));
@@ -27,12 +22,11 @@ pub(super) fn observer(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>
         let field = Observer::field_of_view;
         let angles = [o.field_of_view, Observer::default().field_of_view];
         let angle = number(ui, part, field, help, angles, &field.limits());
-        actions.extend([position, direction, angle].into_iter().flatten().map(Action::Edit));
+        context.edits([position, direction, angle].into_iter().flatten());
         ui.horizontal_wrapped(|ui| {
             let tip = keys::hint(ui.ctx(), "Move the camera to the observer", "home");
-            if ui.button("View as observer").on_hover_text(tip).clicked() {
-                actions.push(Action::HomeView);
-            }
+            let button = ui.button("View as observer").on_hover_text(tip);
+            context.on_click(&button, || Action::Do(Effect::HomeView));
             let problem = session.observer_problem();
             if ui
                 .add_enabled(problem.is_none(), Button::new("Set observer to this view"))
@@ -40,7 +34,7 @@ pub(super) fn observer(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>
                 .on_disabled_hover_text(problem.unwrap_or_default())
                 .clicked()
             {
-                actions.push(Action::ObserverFromView);
+                context.act(Action::Do(Effect::ObserverFromView));
             }
         });
     });

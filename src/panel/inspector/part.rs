@@ -1,23 +1,19 @@
 //! Widgets that all parts of the scene share: headings, groups, text fields, knobs for positions and directions.
 
-use bevy_egui::egui::{self, CollapsingHeader, Key, RichText, TextEdit, Ui};
-use glam::Vec3;
+use bevy_egui::egui::{CollapsingHeader, TextEdit};
 
 use crate::{
-    document::{Edit, Selection},
     panel::{
-        icon::{self, Icon},
         keys,
         knob::{self, Caption},
         lesson::point,
-        state::{Action, Session},
-        theme::{self, Palette},
+        prelude::*,
+        state::Effect,
     },
     parameter::{Parameter, Value, Values},
     reflection::usage,
-    registry::Registry,
     scene::{
-        Field, Light, Part, SceneSize,
+        Field, Light, SceneSize,
         field::Kind,
         limits::{self, Limits},
     },
@@ -27,8 +23,7 @@ use crate::{
 pub(super) fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
     ui.add_space(4.0);
     let line = ui.available_rect_before_wrap();
-    let palette = Palette::here(ui);
-    ui.painter().hline(line.x_range(), line.top(), egui::Stroke::new(1.0, palette.line));
+    ui.painter().hline(line.x_range(), line.top(), Stroke::new(1.0, Palette::here(ui).line));
     ui.add_space(4.0);
     let heading = theme::strong(ui, title);
     ui.scope(|ui| {
@@ -43,34 +38,25 @@ pub(super) fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mu
 }
 
 /// The name of a part, and buttons that focus, duplicate and delete it.
-pub(super) fn header(
-    ui: &mut Ui,
-    session: &Session,
-    registry: &Registry,
-    part: Selection,
-    own: Option<&str>,
-    actions: &mut Vec<Action>,
-) {
-    let name = session.name_of(part, registry);
+pub(super) fn header(ui: &mut Ui, part: Selection, own: Option<&str>, context: &mut PanelContext<'_>) {
+    let name = context.session().name_of(part, context.registry());
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let width = ui.available_width() - 76.0;
-        let rename = move |text: String| Action::Edit(Edit::set(part.into(), Light::name, text));
-        text_field(ui, "name", "Name", own.unwrap_or_default(), &name, width, Text::Heading, |text| {
-            actions.push(rename(text))
+        let own = own.unwrap_or_default();
+        text_field(ui, "name", "Name", own, &name, width, Text::Heading, |text| {
+            context.edit(Edit::set(part.into(), Light::name, text));
         });
         // At the right edge, and for the Tab key in this order.
         let buttons = 3.0 * icon::SIZE + 2.0 * ui.spacing().item_spacing.x;
         ui.add_space(ui.available_width() - buttons);
         let look = keys::hint(ui.ctx(), &format!("Look at {name} "), "focus");
-        if icon::button(ui, Icon::Target, &look).clicked() {
-            actions.push(Action::FocusSelection);
-        }
+        context.on_click(&icon::button(ui, Icon::Target, &look), || Action::Do(Effect::FocusSelection));
         if icon::button(ui, Icon::Duplicate, &format!("Duplicate {name}")).clicked() {
-            actions.push(Action::Duplicate(part));
+            context.act(Action::Duplicate(part));
         }
         if icon::button(ui, Icon::Bin, &format!("Delete {name}")).clicked() {
-            actions.push(Action::Remove(part));
+            context.act(Action::Remove(part));
         }
     });
     ui.add_space(4.0);
@@ -104,26 +90,19 @@ pub(super) fn text_field(
     let mut text: String = ui.data(|d| d.get_temp(draft_id)).unwrap_or_else(|| value.to_owned());
     let focused = ui.memory(|m| m.has_focus(id));
     // A stroke of another width would move what stands below.
-    let stroke = egui::Stroke::new(1.0, if focused { palette.accent } else { palette.line });
+    let stroke = Stroke::new(1.0, if focused { palette.accent } else { palette.line });
+    let frame = egui::Frame::new().fill(palette.field).stroke(stroke).corner_radius(4.0);
     let (edit, style) = match kind {
-        Text::Heading => (TextEdit::singleline(&mut text), egui::TextStyle::Heading),
-        Text::Name => (TextEdit::singleline(&mut text), egui::TextStyle::Body),
-        Text::Sentences => {
-            (TextEdit::multiline(&mut text).desired_rows(2).return_key(None), egui::TextStyle::Body)
-        }
+        Text::Heading => (TextEdit::singleline(&mut text), TextStyle::Heading),
+        Text::Name => (TextEdit::singleline(&mut text), TextStyle::Body),
+        Text::Sentences => (TextEdit::multiline(&mut text).desired_rows(2).return_key(None), TextStyle::Body),
     };
     let edit = edit
         .id(id)
         .font(style.clone())
         .hint_text(RichText::new(hint).text_style(style))
         .desired_width(width - 14.0)
-        .frame(
-            egui::Frame::new()
-                .fill(palette.field)
-                .stroke(stroke)
-                .corner_radius(4.0)
-                .inner_margin(egui::Margin::symmetric(6, 3)),
-        );
+        .frame(frame.inner_margin(egui::Margin::symmetric(6, 3)));
     let response = ui.add(edit);
     theme::names_field(&response, label, [value, &text, hint]);
     if kind == Text::Sentences && response.has_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {

@@ -1,36 +1,31 @@
 //! The properties of the room and of the display.
 
-use bevy_egui::egui::{self, Ui};
-
 use super::{
     part::{Text, number, section, text_field},
     variant::marked,
 };
 use crate::{
-    document::Edit,
     optics::{colour::Encoding, tone::ToneMapping},
     panel::{
         knob::{self, Caption},
-        state::{Action, Session},
-        theme,
+        prelude::*,
     },
-    registry::Registry,
-    scene::{Display, Part, Scene, SceneSize, Variant},
-    text::plural,
+    scene::{Display, SceneSize, Variant},
 };
 
-pub(super) fn room(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+pub(super) fn room(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let width = ui.available_width();
     let s = session.scene();
     let name = s.name.as_deref().unwrap_or_default();
     text_field(ui, "scene name", "Name of the scene", name, "Untitled scene", width, Text::Heading, |text| {
-        actions.push(Action::Edit(Edit::set(Part::Scene, Scene::name, text)));
+        context.edit(Edit::set(Part::Scene, Scene::name, text));
     });
     ui.add_space(4.0);
     let description = s.description.as_deref().unwrap_or_default();
     let (label, hint) = ("What the scene shows", "What the scene shows, in a sentence or two");
     text_field(ui, "description", label, description, hint, width, Text::Sentences, |text| {
-        actions.push(Action::Edit(Edit::set(Part::Scene, Scene::description, text)));
+        context.edit(Edit::set(Part::Scene, Scene::description, text));
     });
     ui.add_space(6.0);
     section(ui, "Room", true, |ui| {
@@ -39,50 +34,47 @@ pub(super) fn room(ui: &mut Ui, session: &Session, registry: &Registry, actions:
         let limits = [0, 1, 2].map(|axis| session.document.dimension_limits(axis, registry));
         let caption = Caption::new("size", "m", help);
         if let Some(c) = knob::vector_knob(ui, "size", &caption, size.corner(), &limits) {
-            actions.push(Action::Edit(Edit::from(SceneSize { width: c.x, height: c.y, depth: c.z })));
+            context.edit(Edit::from(SceneSize { width: c.x, height: c.y, depth: c.z }));
         }
     });
-    section(ui, "Display", true, |ui| display(ui, session, actions));
+    section(ui, "Display", true, |ui| display(ui, context));
     let objects = s.objects.len();
     let own = s.objects.iter().filter(|o| o.reflection_model.is_some() || o.shading_model.is_some()).count();
     ui.add_space(8.0);
     let text = format!("{} · {}", plural(s.lights.len(), "light"), plural(objects, "object"));
     let text = if own > 0 { format!("{text}, {own} with an override of model or shading") } else { text };
-    ui.add(egui::Label::new(theme::small(ui, text)).wrap());
+    ui.add(Label::new(theme::small(ui, text)).wrap());
 }
 
 /// Exposure, tone mapping and encoding, which a view may override.
-fn display(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let d = session.scene().display;
+fn display(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let d = context.session().scene().display;
     let help = "Each EV doubles the brightness of the picture, as a stop of a camera does.";
     let limits = Display::exposure.limits();
-    let edit = marked(ui, session, Variant::exposure, actions, |ui| {
+    let edit = marked(ui, Variant::exposure, context, |ui| {
         number(ui, Part::Display, Display::exposure, help, [d.exposure, 0.0], &limits)
     });
-    actions.extend(edit.map(Action::Edit));
+    context.edits(edit);
     let options: Vec<_> = ToneMapping::ALL.iter().map(|t| [t.name(), t.author(), t.summary()]).collect();
     let chosen = ToneMapping::ALL.iter().position(|t| *t == d.tone_mapping).unwrap_or(0);
     let help = "How light brighter than the display can show is brought into its range. None: it is cut off, and values stay comparable.";
     let caption = Caption::of(&Display::tone_mapping, help);
-    if let Some(i) = marked(ui, session, Variant::tone_mapping, actions, |ui| {
+    if let Some(i) = marked(ui, Variant::tone_mapping, context, |ui| {
         knob::choice_with_help(ui, "tone mapping", &caption, chosen, &options)
     }) {
         let edit = Edit::set(Part::Display, Display::tone_mapping, ToneMapping::ALL[i]);
-        actions.push(Action::Edit(edit));
+        context.edit(edit);
     }
-    let names: Vec<_> = Encoding::ALL
-        .iter()
-        .map(|e| match e {
-            Encoding::Srgb => "sRGB",
-            Encoding::Off => "off (gamma-naive)",
-        })
-        .collect();
+    let names = Encoding::ALL.map(|encoding| match encoding {
+        Encoding::Srgb => "sRGB",
+        Encoding::Off => "off (gamma-naive)",
+    });
     let chosen = Encoding::ALL.iter().position(|e| *e == d.encoding).unwrap_or(0);
     let help = "sRGB: colours are decoded to linear light, the picture is encoded for the display. Off: neither; deliberately wrong, for comparison.";
     let caption = Caption::of(&Variant::encoding, help);
-    if let Some(i) = marked(ui, session, Variant::encoding, actions, |ui| {
+    if let Some(i) = marked(ui, Variant::encoding, context, |ui| {
         knob::choice_knob(ui, "encoding", &caption, chosen, &names)
     }) {
-        actions.push(Action::Edit(Edit::set(Part::Display, Display::encoding, Encoding::ALL[i])));
+        context.edit(Edit::set(Part::Display, Display::encoding, Encoding::ALL[i]));
     }
 }

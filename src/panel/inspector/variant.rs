@@ -1,25 +1,16 @@
 //! Overrides of the active view of a comparison: a list at the top, and marks beside the knobs.
 
-use bevy_egui::egui::{
-    Align, Color32, CursorIcon, Id, Layout, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
-};
-
 use super::part::{Text, text_field};
 use crate::{
-    document::Edit,
-    panel::{
-        icon::{self, Icon},
-        state::{Action, CompareCommand, Session},
-        theme::{self, Palette},
-    },
+    panel::prelude::*,
     reflection::usage::unused,
-    registry::Registry,
-    scene::{Key, Part, Scene, Variant, field::Kind, part::Fields as _, variant::LETTERS},
-    text::{listed, plural},
+    scene::{Key, Variant, field::Kind, part::Fields as _},
+    text::listed,
 };
 
 /// Says which view is shown here, and what it overrides. Nothing where the scene has no variants.
-pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+pub(super) fn variant(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     if session.document.variants.is_empty() {
         return;
     }
@@ -38,14 +29,14 @@ pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actio
     let (used, unused): (Vec<_>, Vec<_>) = overridden(&merged, registry).into_iter().partition(used);
     let (same, differing): (Vec<_>, Vec<_>) =
         used.into_iter().partition(|(.., key)| is_as_a(session, &merged, *key, registry));
-    title(ui, (view, variant), if differing.is_empty() { "as A" } else { "differs from A in" }, actions);
+    title(ui, (view, variant), if differing.is_empty() { "as A" } else { "differs from A in" }, context);
     let palette = Palette::here(ui);
     let own = overridden(variant, registry);
     let mut list = |ui: &mut Ui, all: Vec<Row>, ink: [Color32; 2]| {
         for (name, value, key) in all {
             // What it has from the view that it is based on is that view's to change.
             let mine = own.iter().any(|(.., known)| *known == key);
-            row(ui, (&name, &value), ink, mine.then_some(key), (view, variant), actions);
+            row(ui, (&name, &value), ink, mine.then_some(key), (view, variant), context);
         }
     };
     list(ui, differing, [palette.text, palette.accent]);
@@ -62,17 +53,15 @@ pub(super) fn variant(ui: &mut Ui, session: &Session, registry: &Registry, actio
     if let Some(name) = &variant.based_on {
         ui.label(theme::small(ui, format!("The rest is inherited from “{name}”.")));
     }
-    ui.label(theme::small(
-        ui,
-        format!(
-            "Model, shading, material, terms and display are changed in {letter} alone, for all objects."
-        ),
-    ));
+    let text = format!(
+        "Model, shading, material, terms and display are changed in {letter} alone, for all objects."
+    );
+    ui.label(theme::small(ui, text));
     ui.add_space(4.0);
 }
 
 /// The letter of a view, what is said of it, and its name.
-fn title(ui: &mut Ui, (view, variant): (usize, &Variant), says: &str, actions: &mut Vec<Action>) {
+fn title(ui: &mut Ui, (view, variant): (usize, &Variant), says: &str, context: &mut PanelContext<'_>) {
     let letter = LETTERS[view];
     ui.horizontal(|ui| {
         ui.label(theme::strong(ui, format!("View {letter}")));
@@ -82,7 +71,7 @@ fn title(ui: &mut Ui, (view, variant): (usize, &Variant), says: &str, actions: &
             let width = (ui.available_width() - 8.0).min(150.0);
             let label = format!("Name of view {letter}");
             text_field(ui, "view name", &label, name, "name", width, Text::Name, |text| {
-                actions.push(Action::Edit(Edit::set(Part::Variant(view - 1), Variant::name, text)));
+                context.edit(Edit::set(Part::Variant(view - 1), Variant::name, text));
             });
         });
     });
@@ -96,7 +85,7 @@ fn row(
     [ink, mark]: [Color32; 2],
     key: Option<Key>,
     (view, variant): (usize, &Variant),
-    actions: &mut Vec<Action>,
+    context: &mut PanelContext<'_>,
 ) {
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -106,7 +95,7 @@ fn row(
             if let Some(key) = key
                 && icon::button(ui, Icon::Reset, &help).clicked()
             {
-                actions.push(Action::Compare(CompareCommand::Reset(view, key)));
+                context.act(Action::Compare(CompareCommand::Reset(view, key)));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 if mine {
@@ -118,7 +107,7 @@ fn row(
                 let galley = theme::elided(ui, &text, TextStyle::Body, ink, room);
                 let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
                 ui.painter().galley(rect.min, galley, ink);
-                response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &text));
+                theme::says(&response, WidgetType::Label, &text);
             });
         });
     });
@@ -182,14 +171,14 @@ fn overridden(variant: &Variant, registry: &Registry) -> Vec<Row> {
 /// override back.
 pub(super) fn marked<T>(
     ui: &mut Ui,
-    session: &Session,
     key: impl Into<Key>,
-    actions: &mut Vec<Action>,
+    context: &mut PanelContext<'_>,
     add: impl FnOnce(&mut Ui) -> T,
 ) -> T {
     let top = ui.cursor().top();
     let out = add(ui);
     let key = key.into();
+    let session = context.session();
     if session.variant().is_none_or(|variant| variant.value(key).is_none()) {
         return out;
     }
@@ -199,18 +188,11 @@ pub(super) fn marked<T>(
     let clip = ui.clip_rect();
     ui.set_clip_rect(clip.with_min_x(clip.left().min(left)));
     let mark = ui.interact(rect, Id::new(("override", key)), Sense::click());
-    mark.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "Overridden: back to A"));
-    let palette = Palette::here(ui);
-    let width = if mark.hovered() { 4.0 } else { 3.0 };
-    ui.painter().vline(
-        left + 2.0,
-        rect.shrink2(vec2(0.0, 3.0)).y_range(),
-        Stroke::new(width, palette.accent),
-    );
+    theme::says(&mark, WidgetType::Button, "Overridden: back to A");
+    let stroke = Stroke::new(if mark.hovered() { 4.0 } else { 3.0 }, Palette::here(ui).accent);
+    ui.painter().vline(left + 2.0, rect.shrink2(vec2(0.0, 3.0)).y_range(), stroke);
     ui.set_clip_rect(clip);
-    if mark.clicked() {
-        actions.push(Action::Compare(CompareCommand::Reset(session.active(), key)));
-    }
+    context.on_click(&mark, || Action::Compare(CompareCommand::Reset(session.active(), key)));
     mark.on_hover_cursor(CursorIcon::PointingHand).on_hover_text("Set in this view alone. Click: back to A");
     out
 }

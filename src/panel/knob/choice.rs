@@ -2,8 +2,29 @@
 
 use bevy_egui::egui::{self, Id, Popup, PopupCloseBehavior, RectAlign, Response, Ui, WidgetInfo, WidgetType};
 
-use super::line::{CHOICE, Caption, Words, button, choice_width, explain, head, knob, tooltip};
-use crate::panel::{chooser, menu, theme};
+use super::{
+    Declared, Knob, flag_knob,
+    line::{CHOICE, Caption, Words, button, choice_width, explain, head, knob, tooltip},
+};
+use crate::{
+    panel::{chooser, menu, theme},
+    parameter::{Value, kind::choice::Choice},
+};
+
+impl Knob for Choice {
+    fn show(&self, ui: &mut Ui, of: &Declared, value: &Value) -> Option<Value> {
+        if let Some(on) = value.truth() {
+            // The name in files is a word, not a symbol of the equation.
+            let symbol = if of.parameter.symbol == of.parameter.name { "" } else { of.caption.symbol };
+            return flag_knob(ui, of.salt, &Caption { symbol, ..of.caption }, on).map(Value::flag);
+        }
+        let Value::Choice(id) = value else { return None };
+        let chosen = self.options.iter().position(|(option, _)| option == id).unwrap_or(0);
+        let names: Vec<_> = self.options.iter().map(|(_, name)| *name).collect();
+        let new = choice_knob(ui, of.salt, &of.caption, chosen, &names)?;
+        Some(Value::Choice(self.options[new].0.into()))
+    }
+}
 
 /// A choice among many options: label at the left; a button at the right opens `list`, which receives its own id, until
 /// that returns a value.

@@ -3,12 +3,25 @@
 use bevy_egui::egui::{self, Color32, Id, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
+    Declared, Knob,
     field::{complaint, field, text_field},
     line::{Caption, NUMBER, Words, explain, head, knob, tooltip, unit},
     picker::picker,
     vector::axis_letter,
 };
-use crate::{panel::theme::Palette, scene::limits::Limits, text::capitalised};
+use crate::{
+    panel::theme::Palette,
+    parameter::{Value, kind::colour::Colour},
+    scene::limits::Limits,
+    text::capitalised,
+};
+
+impl Knob for Colour {
+    fn show(&self, ui: &mut Ui, of: &Declared, value: &Value) -> Option<Value> {
+        let Value::Colour(rgb) = *value else { return None };
+        colour_knob(ui, of.salt, &of.caption, rgb, Some(self.default)).map(Value::Colour)
+    }
+}
 
 /// A knob for a colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.
 pub fn colour_knob(

@@ -2,12 +2,22 @@
 
 use bevy_egui::egui::{Ui, WidgetType};
 
-use super::line::{Caption, button, explain, tooltip};
+use super::{
+    Declared, Knob,
+    line::{Caption, button, explain, tooltip},
+};
 use crate::files::Shown as _;
 use crate::{
     panel::linked,
-    parameter::{NamedFile, Parameter},
+    parameter::{NamedFile, Parameter, Value, kind::file::File},
 };
+
+/// Another file is chosen in a dialog: see [`file_knob`].
+impl Knob for File {
+    fn show(&self, _: &mut Ui, _: &Declared, _: &Value) -> Option<Value> {
+        None
+    }
+}
 
 /// A file: label at the left, and at the right a button with the file name. Returns true if the user wants another
 /// file.

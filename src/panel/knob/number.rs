@@ -3,15 +3,31 @@
 use bevy_egui::egui::{self, CursorIcon, Sense, Stroke, TextStyle, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
+    Declared, Knob,
     field::{complaint, field},
     line::{Caption, NUMBER, Words, explain, head, knob, range, tooltip, unit},
     slider::slider,
 };
 use crate::{
     panel::{menu, theme::Palette},
+    parameter::{Value, kind::number::Number},
     scene::limits::{Limits, number},
     text::capitalised,
 };
+
+impl Knob for Number {
+    fn show(&self, ui: &mut Ui, of: &Declared, value: &Value) -> Option<Value> {
+        of_parameter(ui, of, value, self.default.into())
+    }
+}
+
+/// The knob of a parameter that is one number.
+pub(super) fn of_parameter(ui: &mut Ui, of: &Declared, value: &Value, default: f64) -> Option<Value> {
+    let kind = &of.parameter.kind;
+    let (now, limits) = (kind.number_of(value)?, kind.limits()?);
+    let new = number_knob(ui, of.salt, &of.caption, now, Some(default), &limits)?;
+    Some(kind.of_numbers([new; 3]))
+}
 
 /// The unit as a choice: each option has a sign and a name. As wide as a plain unit, which keeps fields aligned.
 /// Returns the index of a new choice.

@@ -6,14 +6,13 @@ use bevy_egui::egui::{
 use glam::Vec3;
 
 use super::{
-    field::{complaint, field, read, text_field},
-    line::{Caption, NUMBER, Words, explain, head, knob, tooltip, unit},
+    field::{complaint, field},
+    line::{Caption, knob, unit},
     slider::round_to,
 };
 use crate::{
     panel::theme::{self, Palette},
     scene::limits::{Limits, number},
-    text::capitalised,
 };
 
 /// The letter in front of a field; dragging it sideways changes the value.
@@ -60,7 +59,7 @@ const LEAST: f32 = 56.0;
 
 /// Three letters with one field each, and the unit at the end of the line. Returns the new value, and the first error
 /// with the value that is kept and the field.
-fn three_fields(
+pub(super) fn three_fields(
     ui: &mut Ui,
     id: Id,
     caption: &Caption,
@@ -137,46 +136,4 @@ pub fn vector_knob(
         ui.add_space(6.0);
         row.inner
     })
-}
-
-/// A knob for a number in red, green and blue: one field for all three, and one for each.
-pub fn triple_knob(
-    ui: &mut Ui,
-    salt: &str,
-    caption: &Caption,
-    value: [f32; 3],
-    default: [f32; 3],
-    limits: &Limits,
-) -> Option<[f32; 3]> {
-    let id = ui.make_persistent_id(salt);
-    let out = knob(ui, salt, caption, |ui| {
-        ui.spacing_mut().item_spacing.y = 2.0;
-        let plain = |v: f32| number(f64::from(v));
-        let list = |v: [f32; 3]| v.map(plain).join(", ");
-        let same = value[0] == value[1] && value[1] == value[2];
-        let (label, all) = head(ui, caption, Words::Leave(NUMBER), |ui| {
-            unit(ui, "");
-            let shown = if same { plain(value[0]) } else { String::new() };
-            let read = |text: &str| read(text, limits).map(|v| [v as f32; 3]);
-            let name = format!("{}: all three", caption.label);
-            text_field(ui, id.with("all"), &name, &shown, "all", 64.0, read)
-        });
-        let mut out = all.value;
-        let rule = format!("each {}. Default {}", limits.rule(), list(default));
-        explain(label, |ui| tooltip(ui, caption, &rule, ""));
-        let mut wrong = all.error.map(|e| (capitalised(&e), list(value), all.response));
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 4.0;
-            let bounds = [limits.clone(), limits.clone(), limits.clone()];
-            let (new, bad) = three_fields(ui, id, caption, ["R", "G", "B"], value.into(), &bounds);
-            out = new.map(Into::into).or(out);
-            wrong = wrong.take().or(bad.map(|(e, kept, field)| (e, number(kept), field)));
-        });
-        if let Some((error, kept, field)) = wrong {
-            complaint(ui, &field, &error, &kept);
-        }
-        ui.add_space(6.0);
-        out
-    });
-    out.filter(|v| *v != value)
 }

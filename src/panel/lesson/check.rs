@@ -1,15 +1,13 @@
 //! Checks whether the task of the current step is done, whenever something relevant has changed.
 
-use bevy_egui::egui::{Context, Id};
-
 use crate::{
-    document::{Revision, Selection},
+    document::Revision,
     lesson::{Situation, Task, WindowFacts},
     panel::{
         explain,
-        state::{Action, EXPLAIN_TAB, LessonCommand, PLOTS_TAB, Plots, Session, View},
+        prelude::*,
+        state::{EXPLAIN_TAB, PLOTS_TAB, Plots, View},
     },
-    registry::Registry,
 };
 
 /// Inputs of a condition.
@@ -23,6 +21,10 @@ struct Question {
     /// Number of explanations calculated so far.
     explained: u64,
 }
+
+/// The checks so far, and the result of the latest.
+#[derive(Clone, Debug, Default)]
+struct Checks(u64, Option<Checked>);
 
 /// The result of a check.
 #[derive(Clone, Debug)]
@@ -40,26 +42,22 @@ impl Question {
     }
 }
 
-fn memory() -> Id {
-    Id::new("condition of the lesson")
-}
-
 /// Number of checks so far.
 #[must_use]
 pub fn evaluations(ctx: &Context) -> u64 {
-    ctx.data(|d| d.get_temp(memory().with("count"))).unwrap_or(0)
+    kept::with(ctx, |checks: &mut Checks| checks.0)
 }
 
 /// Why the task is not done, once the learner has done something; immediately if the condition cannot be evaluated.
 pub(super) fn unmet(ctx: &Context) -> Option<String> {
-    ctx.data(|d| d.get_temp::<Checked>(memory()))?.unmet
+    kept::get::<Checks>(ctx).1?.unmet
 }
 
 /// Checks the condition. Returns the action that completes the task if it holds.
 pub(in crate::panel) fn update(ctx: &Context, session: &Session, registry: &Registry) -> Option<Action> {
     let open = session.lesson.as_ref()?;
     let Some(goal) = session.open_task().and_then(Task::goal) else {
-        ctx.data_mut(|d| d.remove::<Checked>(memory()));
+        kept::with(ctx, |checks: &mut Checks| checks.1 = None);
         return None;
     };
     let question = Question {
@@ -70,13 +68,12 @@ pub(in crate::panel) fn update(ctx: &Context, session: &Session, registry: &Regi
         plots: session.plots.clone(),
         explained: explain::calculations(ctx),
     };
-    let known: Option<Checked> = ctx.data(|d| d.get_temp(memory()));
+    let Checks(count, known) = kept::get(ctx);
     let entered = match known {
         Some(known) if known.question == question => return None,
         Some(known) if known.question.entry == question.entry => known.entered,
         _ => question.clone(),
     };
-    ctx.data_mut(|d| *d.get_temp_mut_or_default::<u64>(memory().with("count")) += 1);
     let explained = explain::explained(ctx);
     let situation = situation(session, registry, explained.as_deref());
     let holds = goal.until.holds(&situation);
@@ -85,7 +82,7 @@ pub(in crate::panel) fn update(ctx: &Context, session: &Session, registry: &Regi
     } else {
         goal.until.missing(&situation)
     };
-    ctx.data_mut(|d| d.insert_temp(memory(), Checked { question, entered, unmet }));
+    kept::set(ctx, Checks(count + 1, Some(Checked { question, entered, unmet })));
     holds.then_some(Action::Lesson(LessonCommand::Solved(open.step)))
 }
 

@@ -1,23 +1,16 @@
 //! The buttons at the lower end of a lesson, which stay in place while long text scrolls: previous and next.
 
-use bevy_egui::egui::{Button, Id, Label, RichText, Stroke, Ui, UiBuilder, WidgetInfo, WidgetType, vec2};
-
-use crate::panel::{
-    focus, keys,
-    state::{Action, LessonCommand, OpenLesson},
-    theme::{self, Palette},
-};
+use crate::panel::{focus, keys, prelude::*, state::OpenLesson};
 
 /// Height of a button, in points.
 const HEIGHT: f32 = 30.0;
 
 /// Shows the buttons.
 pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
-    let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     if open.asking {
         let text = "The task is not done. Skip it? The step then counts as not done.";
-        ui.add(Label::new(RichText::new(text).color(palette.warning)).wrap());
+        ui.add(Label::new(RichText::new(text).color(Palette::here(ui).warning)).wrap());
         ui.add_space(2.0);
     }
     let last = open.is_last();
@@ -28,20 +21,15 @@ pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) 
     };
     // The same widgets in all steps, so that Enter repeats.
     let buttons = |ui: &mut Ui| {
-        let gap = ui.spacing().item_spacing.x;
-        let width = 0.5 * (ui.available_width() - gap);
-        let size = vec2(width, HEIGHT * scale);
+        let size = vec2(0.5 * (ui.available_width() - ui.spacing().item_spacing.x), HEIGHT * scale);
         let before = ui.add_enabled(open.step > 0, Button::new("Previous").min_size(size));
         let back = keys::hint(ui.ctx(), "The step before, as it began", "previous_step");
         if before.on_hover_text(back).clicked() {
             actions.push(Action::Lesson(LessonCommand::Previous));
         }
-        let mut button = Button::new(theme::strong(ui, next)).min_size(size);
-        if open.is_done() || open.asking {
-            button = button.fill(palette.chosen).stroke(Stroke::new(1.0, palette.accent));
-        }
+        let button = theme::action_button(ui, next, open.is_done() || open.asking, size);
         let response = ui.push_id("next", |ui| ui.add(button)).inner;
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, next));
+        theme::says(&response, WidgetType::Button, next);
         focus::first(ui.ctx(), response.id);
         if response.on_hover_text(keys::hint(ui.ctx(), tip, "next_step")).clicked() {
             actions.push(Action::Lesson(LessonCommand::Next));

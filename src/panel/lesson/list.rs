@@ -1,16 +1,11 @@
 //! The menu of lessons: title, summary, duration and progress.
 
-use bevy_egui::egui::{
-    self, FontId, Rect, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, pos2, vec2,
-};
-
 use crate::{
     lesson::{Lesson, shipped::LESSONS},
     panel::{
-        icon::{self, Icon},
         maths,
-        state::{Action, LessonCommand, LessonSource, Past, Session},
-        theme::{self, Palette},
+        prelude::*,
+        state::{LessonSource, Past},
     },
 };
 
@@ -50,23 +45,18 @@ fn entry(ui: &mut Ui, i: usize, lesson: &Lesson, session: &Session) -> bool {
     let small = TextStyle::Small.resolve(ui.style());
     let facts = ui.painter().layout_no_wrap(facts(lesson.minutes, past), small, palette.weak);
     let width = ui.available_width() - SIGN - 12.0;
-    let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
     let title = format!("{}. {}", i + 1, lesson.title);
-    let title = theme::elided(ui, &title, font, palette.text, width - facts.size().x - 12.0);
+    let title = theme::elided(ui, &title, theme::bold(ui), palette.text, width - facts.size().x - 12.0);
     let mut job = maths::prose(ui, &lesson.summary, TextStyle::Small);
     job.wrap.max_width = width;
     let summary = ui.painter().layout_job(job);
     let below = title.size().y + 2.0;
     let height = below + summary.size().y + 10.0;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-    response.widget_info(|| {
-        let name = format!("Lesson: {}", lesson.title);
-        WidgetInfo::selected(WidgetType::Button, true, current, name)
-    });
-    if response.hovered() || response.has_focus() {
-        ui.painter().rect_filled(rect, 4.0, palette.hovered);
-    } else if current {
-        ui.painter().rect_filled(rect, 4.0, palette.chosen);
+    theme::says_chosen(&response, WidgetType::Button, current, format!("Lesson: {}", lesson.title));
+    let hot = theme::is_hot(&response);
+    if hot || current {
+        ui.painter().rect_filled(rect, 4.0, if hot { palette.hovered } else { palette.chosen });
     }
     let centre = pos2(rect.left() + 0.5 * SIGN, rect.top() + 5.0 + 0.5 * title.size().y);
     match past {
@@ -75,7 +65,7 @@ fn entry(ui: &mut Ui, i: usize, lesson: &Lesson, session: &Session) -> bool {
             icon::paint(ui.painter(), sign, Icon::Check, palette.accent);
         }
         Some(_) => _ = ui.painter().circle_filled(centre, 3.5, palette.accent),
-        None => _ = ui.painter().circle_stroke(centre, 3.5, egui::Stroke::new(1.2, palette.weak)),
+        None => _ = ui.painter().circle_stroke(centre, 3.5, Stroke::new(1.2, palette.weak)),
     }
     let at = pos2(rect.left() + SIGN, rect.top() + 5.0);
     let right = pos2(rect.right() - 8.0 - facts.size().x, at.y + title.size().y - facts.size().y);

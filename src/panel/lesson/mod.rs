@@ -2,17 +2,12 @@
 
 use std::path::Path;
 
-use bevy_egui::egui::{
-    self, Align, Context, Frame, Key, Label, Layout, Margin, Modifiers, Rect, ScrollArea, Sense, TextStyle,
-    Ui, WidgetInfo, WidgetType, pos2, vec2,
-};
+use bevy_egui::egui::{Frame, Margin, Modifiers};
 
 use super::{
-    Panel, PanelContext, Place, focus,
-    icon::{self, Icon},
-    is_panel,
-    state::{Action, LessonCommand, LessonSource, OpenLesson, Session, Severity, problem_of},
-    theme::{self, Palette},
+    focus,
+    prelude::*,
+    state::{LessonSource, OpenLesson, problem_of},
 };
 
 pub mod check;
@@ -50,12 +45,10 @@ fn lesson(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
     let scale = theme::scale_here(ui);
     let side = (12.0 * scale) as i8;
     let margin = Margin { left: side, right: side, top: 4, bottom: 6 };
-    let head =
-        egui::Panel::top("head of the lesson").frame(Frame::new().inner_margin(margin)).resizable(false);
-    head.show(ui, |ui| header(ui, session, open, actions));
-    let foot =
-        egui::Panel::bottom("foot of the lesson").frame(Frame::new().inner_margin(margin)).resizable(false);
-    foot.show(ui, |ui| footer::footer(ui, open, actions));
+    let edge = |panel: egui::Panel| panel.frame(Frame::new().inner_margin(margin)).resizable(false);
+    let (head, foot) = (egui::Panel::top("head of the lesson"), egui::Panel::bottom("foot of the lesson"));
+    edge(head).show(ui, |ui| header(ui, session, open, actions));
+    edge(foot).show(ui, |ui| footer::footer(ui, open, actions));
     let whole = ui.available_rect_before_wrap();
     let turned = pages(ui.ctx(), whole);
     Frame::new().inner_margin(Margin { left: side, right: 4, top: 6, bottom: 0 }).show(ui, |ui| {
@@ -102,12 +95,10 @@ fn pages(ctx: &Context, whole: Rect) -> f32 {
 
 /// The title, the number of the step, and the progress.
 fn header(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<Action>) {
-    let palette = Palette::here(ui);
     let count = open.lesson.steps.len();
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let own = session.own_title();
-            let says = format!("Leave the lesson: “{own}” comes back");
+            let says = format!("Leave the lesson: “{}” comes back", session.own_title());
             if icon::button(ui, Icon::Cross, &says).clicked() {
                 actions.push(Action::Lesson(LessonCommand::Leave));
             }
@@ -115,9 +106,8 @@ fn header(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
                 actions.push(Action::Lesson(LessonCommand::Again));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let font = TextStyle::Body.resolve(ui.style());
-                let font = egui::FontId::new(font.size, theme::semibold());
-                let title = theme::elided(ui, &open.lesson.title, font, palette.text, ui.available_width());
+                let (font, room) = (theme::bold(ui), ui.available_width());
+                let title = theme::elided(ui, &open.lesson.title, font, Palette::here(ui).text, room);
                 let cut = title.elided;
                 let label = ui.add(Label::new(title));
                 if cut {
@@ -128,10 +118,8 @@ fn header(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
     });
     ui.horizontal(|ui| {
         let words = format!("Step {} of {count}", open.step + 1);
-        let button =
-            ui.menu_button(egui::RichText::new(format!("{words} ▾")).small().color(palette.weak), |ui| {
-                steps(ui, open, actions);
-            });
+        let text = theme::small(ui, format!("{words} ▾"));
+        let button = ui.menu_button(text, |ui| steps(ui, open, actions));
         button.response.on_hover_text("Go to another step");
         bar(ui, open, &words);
     });
@@ -140,8 +128,7 @@ fn header(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
 /// The list of the steps.
 fn steps(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
     ui.set_max_width(360.0);
-    let most = ui.ctx().content_rect().height() - 120.0;
-    ScrollArea::vertical().max_height(most).show(ui, |ui| {
+    ScrollArea::vertical().max_height(ui.ctx().content_rect().height() - 120.0).show(ui, |ui| {
         for (i, step) in open.lesson.steps.iter().enumerate() {
             let done = if open.done.contains(&i) { "  ✓" } else { "" };
             let text = format!("{}. {}{done}", i + 1, step.title);
@@ -159,7 +146,7 @@ fn bar(ui: &mut Ui, open: &OpenLesson, says: &str) {
     let count = open.lesson.steps.len().max(1) as f32;
     let height = 4.0 * theme::scale_here(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::ProgressIndicator, true, says));
+    theme::says(&response, WidgetType::ProgressIndicator, says);
     let gap = if rect.width() / count > 8.0 { 3.0 } else { 1.0 };
     let width = (rect.width() - gap * (count - 1.0)) / count;
     for i in 0..open.lesson.steps.len() {
@@ -177,7 +164,7 @@ fn problems(ui: &mut Ui, open: &OpenLesson) {
     }
     let palette = Palette::here(ui);
     let frame = Frame::new().fill(palette.field).corner_radius(4.0).inner_margin(8.0);
-    frame.stroke(egui::Stroke::new(1.0, palette.error)).show(ui, |ui| {
+    frame.stroke(Stroke::new(1.0, palette.error)).show(ui, |ui| {
         ui.set_min_width(ui.available_width());
         ui.add(Label::new(theme::strong(ui, "The file has errors; this is the last good version.")).wrap());
         for problem in &open.problems {
@@ -187,12 +174,7 @@ fn problems(ui: &mut Ui, open: &OpenLesson) {
                 }
                 LessonSource::Shipped(_) => problem.to_string(),
             };
-            ui.horizontal_top(|ui| {
-                ui.spacing_mut().item_spacing.x = 6.0;
-                let (sign, _) = ui.allocate_exact_size(vec2(14.0, 18.0), Sense::hover());
-                icon::severity(ui.painter(), sign.center(), 5.5, Severity::Error, &palette);
-                ui.add(Label::new(text).wrap().selectable(true));
-            });
+            icon::remark(ui, [14.0, 18.0], Severity::Error, Label::new(text).wrap().selectable(true));
         }
     });
 }
@@ -200,8 +182,7 @@ fn problems(ui: &mut Ui, open: &OpenLesson) {
 /// The text and the task of the step.
 fn body(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
     let Some(step) = open.now() else { return };
-    let heading = egui::RichText::new(&step.title).heading();
-    ui.add(Label::new(heading).wrap());
+    ui.add(Label::new(RichText::new(&step.title).heading()).wrap());
     let unmet = check::unmet(ui.ctx());
     for block in &step.blocks {
         text::block(ui, block, |ui| {

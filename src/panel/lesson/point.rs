@@ -3,13 +3,9 @@
 //! The code that shows a control reports it by [`knob`], [`menu`], [`button`], [`tab`] or [`part`]; without a lesson
 //! that costs a look-up in egui's memory.
 
-use bevy_egui::egui::{Align, Context, Id, LayerId, Rect, Stroke, StrokeKind, Ui, WidgetRect};
+use bevy_egui::egui::{LayerId, WidgetRect};
 
-use crate::{
-    document::Selection,
-    lesson::Control,
-    panel::{state::Session, theme::Palette},
-};
+use crate::{lesson::Control, panel::prelude::*};
 
 /// Duration of the pulse of a new ring, in seconds, and the number of pulses.
 const MOMENT: f64 = 1.2;
@@ -32,24 +28,21 @@ struct Pointed {
     found: Vec<(Rect, Rect, LayerId)>,
 }
 
-fn memory() -> Id {
-    Id::new("controls of the lesson")
-}
+/// The knob that was asked for by name, and the pass after which it is not sought any more.
+#[derive(Clone, Default)]
+struct Sought(Option<(String, u64)>);
 
 /// Starts a frame.
 pub(in crate::panel) fn begin(ctx: &Context, session: &Session) {
     let pass = ctx.cumulative_pass_nr();
-    if ctx.data(|d| d.get_temp::<(String, u64)>(sought())).is_some_and(|(_, until)| pass > until) {
-        ctx.data_mut(|d| d.remove::<(String, u64)>(sought()));
-    }
+    kept::with(ctx, |Sought(sought)| _ = sought.take_if(|(_, until)| pass > *until));
     let named = session.lesson.as_ref().and_then(|open| Some((open.entries, open.now()?)));
     let Some((entry, step)) = named.filter(|(_, step)| !step.points.is_empty()) else {
-        ctx.data_mut(|d| d.remove::<Pointed>(memory()));
+        kept::set(ctx, Pointed::default());
         return;
     };
     let now = ctx.input(|input| input.time);
-    ctx.data_mut(|d| {
-        let pointed = d.get_temp_mut_or_default::<Pointed>(memory());
+    kept::with(ctx, |pointed: &mut Pointed| {
         if pointed.entry != entry || pointed.controls != step.points {
             *pointed = Pointed { controls: step.points.clone(), entry, since: now, ..Pointed::default() };
         }
@@ -59,8 +52,7 @@ pub(in crate::panel) fn begin(ctx: &Context, session: &Session) {
 
 /// Reports that a control is shown here.
 fn shown(ui: &Ui, rect: Rect, is: impl Fn(&Control) -> bool) {
-    let found = ui.data(|d| {
-        let pointed: Pointed = d.get_temp(memory())?;
+    let found = kept::with(ui.ctx(), |pointed: &mut Pointed| {
         let control = pointed.controls.iter().find(|control| is(control))?.clone();
         Some((pointed.revealed.contains(&control), control))
     });
@@ -69,12 +61,10 @@ fn shown(ui: &Ui, rect: Rect, is: impl Fn(&Control) -> bool) {
     if !revealed && !clip.contains_rect(rect) {
         ui.scroll_to_rect(rect, Some(Align::Center));
     }
-    ui.data_mut(|d| {
-        let pointed = d.get_temp_mut_or_default::<Pointed>(memory());
-        if !revealed {
-            pointed.revealed.push(control);
-        }
-        pointed.found.push((rect, clip, ui.layer_id()));
+    let place = (rect, clip, ui.layer_id());
+    kept::with(ui.ctx(), |pointed: &mut Pointed| {
+        pointed.revealed.extend(Some(control).filter(|_| !revealed));
+        pointed.found.push(place);
     });
 }
 
@@ -88,25 +78,19 @@ fn plain(name: &str) -> String {
     }
 }
 
-/// The knob that was asked for by name, and the pass after which it is not sought any more.
-fn sought() -> Id {
-    Id::new("knob that is sought")
-}
-
 /// Brings the knob of this name into sight, and gives it the focus.
 pub(in crate::panel) fn seek(ctx: &Context, name: &str) {
-    let until = ctx.cumulative_pass_nr() + PATIENCE;
-    ctx.data_mut(|d| d.insert_temp(sought(), (name.to_owned(), until)));
+    kept::set(ctx, Sought(Some((name.to_owned(), ctx.cumulative_pass_nr() + PATIENCE))));
     ctx.request_repaint();
 }
 
 /// True while a knob is sought: what is folded may hide it.
 pub(in crate::panel) fn seeks(ui: &Ui) -> bool {
-    ui.data(|d| d.get_temp::<(String, u64)>(sought())).is_some()
+    kept::with(ui.ctx(), |Sought(sought)| sought.is_some())
 }
 
 fn is_sought(ui: &Ui, name: &str) -> bool {
-    ui.data(|d| d.get_temp::<(String, u64)>(sought())).is_some_and(|(wanted, _)| wanted == name)
+    kept::with(ui.ctx(), |Sought(sought)| sought.as_ref().is_some_and(|(wanted, _)| wanted == name))
 }
 
 /// Gives the first widget of a knob the focus.
@@ -122,7 +106,7 @@ fn take_focus(ui: &Ui, rect: Rect) {
     if let Some(id) = first {
         ui.memory_mut(|m| m.request_focus(id));
     }
-    ui.data_mut(|d| d.remove::<(String, u64)>(sought()));
+    kept::set(ui.ctx(), Sought::default());
 }
 
 /// The knob of a parameter is shown here.
@@ -136,11 +120,8 @@ pub(in crate::panel) fn knob(ui: &Ui, name: &str, rect: Rect) {
 
 /// True if the step points at the knob of a parameter, or if it is sought, so that it must be in sight.
 pub(in crate::panel) fn at_knob(ui: &Ui, name: &str) -> bool {
-    if is_sought(ui, name) {
-        return true;
-    }
     let is = |control: &Control| matches!(control, Control::Knob(wanted) if plain(wanted) == plain(name));
-    ui.data(|d| d.get_temp::<Pointed>(memory())).is_some_and(|pointed| pointed.controls.iter().any(is))
+    is_sought(ui, name) || kept::with(ui.ctx(), |pointed: &mut Pointed| pointed.controls.iter().any(is))
 }
 
 /// Reports the button that opens the menu of this name.
@@ -160,11 +141,8 @@ pub(in crate::panel) fn tab(ui: &Ui, id: &str, rect: Rect) {
 
 /// Reports the row of a part of the scene.
 pub(in crate::panel) fn part(ui: &Ui, session: &Session, part: Selection, rect: Rect) {
-    shown(
-        ui,
-        rect,
-        |control| matches!(control, Control::Part(name) if name.find(&session.document) == Some(part)),
-    );
+    let document = &session.document;
+    shown(ui, rect, |control| matches!(control, Control::Part(name) if name.find(document) == Some(part)));
 }
 
 /// True if the step points at a part of the scene, so that the scene list must be visible.
@@ -175,7 +153,10 @@ pub(in crate::panel) fn at_part(session: &Session) -> bool {
 
 /// Paints the rings, once everything else is shown.
 pub(in crate::panel) fn show(ctx: &Context, palette: &Palette) {
-    let Some(pointed) = ctx.data(|d| d.get_temp::<Pointed>(memory())) else { return };
+    let pointed: Pointed = kept::get(ctx);
+    if pointed.controls.is_empty() {
+        return;
+    }
     let age = ctx.input(|input| input.time) - pointed.since;
     let swell = if age < MOMENT {
         ctx.request_repaint();

@@ -1,19 +1,9 @@
 //! The task of a step: a multiple-choice question, or something to do or find.
 
-use bevy_egui::egui::{
-    self, Align, Label, Layout, Rect, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, WidgetType, pos2,
-    vec2,
-};
-
 use super::text::{job, paragraph, spoken};
 use crate::{
     lesson::{AnswerChoice, Goal, Run, Task},
-    panel::{
-        icon::{self, Icon},
-        maths,
-        state::{Action, LessonCommand, OpenLesson},
-        theme::{self, Palette},
-    },
+    panel::{maths, prelude::*, state::OpenLesson},
 };
 
 /// Width of the bar at the left of a task, in points.
@@ -32,12 +22,9 @@ pub(super) fn task(
     let palette = Palette::here(ui);
     let scale = theme::scale_here(ui);
     ui.add_space(2.0);
-    let frame = egui::Frame::new().fill(palette.raised).corner_radius(6.0).inner_margin(egui::Margin {
-        left: (12.0 * scale) as i8,
-        right: (10.0 * scale) as i8,
-        top: (8.0 * scale) as i8,
-        bottom: (10.0 * scale) as i8,
-    });
+    let [left, right, top, bottom] = [12.0, 10.0, 8.0, 10.0].map(|points| (points * scale) as i8);
+    let margin = egui::Margin { left, right, top, bottom };
+    let frame = egui::Frame::new().fill(palette.raised).corner_radius(6.0).inner_margin(margin);
     let shown = frame.show(ui, |ui| {
         ui.set_min_width(ui.available_width());
         let name = match task {
@@ -59,11 +46,10 @@ pub(super) fn task(
 
 /// The kind of task, a check mark once it is done, and the number of attempts.
 fn heading(ui: &mut Ui, name: &str, open: &OpenLesson) {
-    let palette = Palette::here(ui);
     let tries = open.tries.get(&open.step).copied().unwrap_or(0);
     ui.horizontal(|ui| {
         let size = TextStyle::Body.resolve(ui.style()).size;
-        ui.label(theme::strong(ui, name).color(palette.accent));
+        ui.label(theme::strong(ui, name).color(Palette::here(ui).accent));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             if open.is_done() {
@@ -83,7 +69,7 @@ fn heading(ui: &mut Ui, name: &str, open: &OpenLesson) {
 fn check(ui: &mut Ui, size: f32) {
     let palette = Palette::here(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(1.25 * size, 1.25 * size), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, "done"));
+    theme::says(&response, WidgetType::Label, "done");
     ui.painter().circle_filled(rect.center(), 0.6 * size, palette.accent);
     icon::paint(ui.painter(), rect.shrink(0.28 * size), Icon::Check, palette.panel);
 }
@@ -147,20 +133,14 @@ fn answer(ui: &mut Ui, choice: &AnswerChoice, chosen: bool, known: bool) -> bool
     let galley = ui.painter().layout_job(text);
     let height = galley.size().y + 8.0 * scale;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-    response.widget_info(|| {
-        let verdict = match (known, choice.right) {
-            (false, _) => "",
-            (true, true) => ": right",
-            (true, false) => ": wrong",
-        };
-        WidgetInfo::selected(
-            WidgetType::RadioButton,
-            true,
-            chosen,
-            format!("{}{verdict}", spoken(&choice.text)),
-        )
-    });
-    let hot = response.hovered() || response.has_focus();
+    let verdict = match (known, choice.right) {
+        (false, _) => "",
+        (true, true) => ": right",
+        (true, false) => ": wrong",
+    };
+    let says = format!("{}{verdict}", spoken(&choice.text));
+    theme::says_chosen(&response, WidgetType::RadioButton, chosen, says);
+    let hot = theme::is_hot(&response);
     let wrong = known && !choice.right;
     let fill = match (wrong, chosen) {
         (true, _) => palette.panel.lerp_to_gamma(palette.error, if chosen { 0.25 } else { 0.1 }),
@@ -188,21 +168,19 @@ fn answer(ui: &mut Ui, choice: &AnswerChoice, chosen: bool, known: bool) -> bool
 }
 
 fn reach(ui: &mut Ui, open: &OpenLesson, goal: &Goal, unmet: Option<&str>, actions: &mut Vec<Action>) {
-    let palette = Palette::here(ui);
     paragraph(ui, &goal.text);
     if !open.is_done()
         && let Some(why) = unmet
     {
         let mut text = maths::prose(ui, &format!("Not yet: {why}."), TextStyle::Small);
-        text.sections.iter_mut().for_each(|section| section.format.color = palette.weak);
+        text.sections.iter_mut().for_each(|section| section.format.color = Palette::here(ui).weak);
         ui.add(Label::new(text).wrap());
     }
     let Some(hint) = &goal.hint else { return };
     if open.hint {
         paragraph(ui, hint);
     }
-    let words = if open.hint { "Hide the hint" } else { "Show a hint" };
-    if ui.button(words).clicked() {
+    if ui.button(if open.hint { "Hide the hint" } else { "Show a hint" }).clicked() {
         actions.push(Action::Lesson(LessonCommand::Hint));
     }
 }

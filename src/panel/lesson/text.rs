@@ -1,16 +1,15 @@
 //! The text of a step, typeset: prose with symbols, lists, equations.
 
 use bevy_egui::egui::{
-    Align, FontFamily, Label, Sense, TextStyle, Ui, UiBuilder, pos2,
+    FontFamily,
     text::{LayoutJob, LayoutSection},
-    vec2,
 };
 
 use crate::{
     lesson::{Block, Run, RunStyle},
     panel::{
         maths::{self, Sizes},
-        theme,
+        prelude::*,
     },
     reflection::Term,
 };
@@ -55,8 +54,7 @@ pub(super) fn spoken(runs: &[Run]) -> String {
 
 /// A paragraph.
 pub(super) fn paragraph(ui: &mut Ui, runs: &[Run]) {
-    let job = job(ui, runs, TextStyle::Body);
-    ui.add(Label::new(job).wrap());
+    ui.add(Label::new(job(ui, runs, TextStyle::Body)).wrap());
 }
 
 /// An equation, with one typeset line per line of the source.
@@ -80,13 +78,10 @@ fn item(ui: &mut Ui, number: Option<u64>, depth: usize, runs: &[Run]) {
     paragraph(&mut child, runs);
     let used = child.min_rect();
     let sign = number.map_or_else(|| "•".to_owned(), |number| format!("{number}."));
-    let galley =
-        ui.painter().layout_no_wrap(sign, TextStyle::Body.resolve(ui.style()), theme::Palette::here(ui).weak);
-    let at = pos2(
-        place.left() - 0.4 * size - galley.size().x,
-        used.top() + 0.5 * (LEADING * size - galley.size().y),
-    );
-    ui.painter().galley(at, galley, theme::Palette::here(ui).weak);
+    let colour = theme::Palette::here(ui).weak;
+    let galley = ui.painter().layout_no_wrap(sign, TextStyle::Body.resolve(ui.style()), colour);
+    let y = used.top() + 0.5 * (LEADING * size - galley.size().y);
+    ui.painter().galley(pos2(place.left() - 0.4 * size - galley.size().x, y), galley, colour);
     ui.allocate_exact_size(vec2(whole.width(), used.height()), Sense::hover());
 }
 

@@ -144,15 +144,11 @@ pub(super) fn places_shown(
 ) -> Vec<Option<Vec3>> {
     let mut all = places(scene, registry, lens, overlays);
     let held = ctx.data(|data| data.get_temp::<(usize, Vec3)>(held()));
-    if let Some((light, at)) = held.filter(|(light, _)| scene.lights.get(*light).is_some_and(has_no_position))
-    {
+    let moves = |light: usize| scene.lights.get(light).is_some_and(|light| light.position.is_none());
+    if let Some((light, at)) = held.filter(|(light, _)| moves(*light)) {
         all[light] = Some(at);
     }
     all
-}
-
-fn has_no_position(light: &Light) -> bool {
-    light.position.is_none()
 }
 
 /// The radius in metres of the mark of a light that is selected: of the sphere on which its cone ends.

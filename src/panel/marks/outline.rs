@@ -116,6 +116,20 @@ mod tests {
     }
 
     #[test]
+    fn a_light_spans_all_of_its_sizes() {
+        let registry = Registry::builtin();
+        let mut values = Values::default();
+        for (name, metres) in [("width", 0.6), ("height", 0.8), ("length", 2.4), ("radius", 0.5)] {
+            values.set(name, Value::Number(metres));
+        }
+        let spans = [("rectangle", 1.0), ("disc", 1.0), ("sphere", 1.0), ("cylinder", 2.6), ("point", 0.0)];
+        for (light_type, span) in spans {
+            let found = registry.light(light_type).expect("built in").span(&values);
+            assert!((found - span).abs() < 1e-6, "{light_type}: {found}");
+        }
+    }
+
+    #[test]
     fn light_without_end_and_light_of_a_point_have_no_outline() {
         let registry = Registry::builtin();
         for light_type in ["point", "spot", "ambient", "environment"] {

@@ -1,14 +1,14 @@
 //! Typeset atoms: base, index and power.
 
-use bevy_egui::egui::{self, Color32, FontId, Ui, Vec2, vec2};
-
-use crate::panel::theme;
-use crate::text::mathematics::{Atom, is_variable, parse};
+use crate::{
+    panel::prelude::*,
+    text::mathematics::{Atom, is_variable, parse},
+};
 
 /// A run of characters with its offset.
 #[derive(Clone)]
 pub(in crate::panel) struct Piece {
-    pub(in crate::panel) galley: std::sync::Arc<egui::Galley>,
+    pub(in crate::panel) galley: std::sync::Arc<Galley>,
     pub(in crate::panel) offset: Vec2,
 }
 
@@ -26,7 +26,7 @@ pub(in crate::panel) fn lay_out(ui: &Ui, atom: &Atom, size: f32, colour: Color32
         Atom::Upright { base, sub, sup } => (base, sub, sup, theme::maths()),
         Atom::Space => return Laid { pieces: Vec::new(), width: 0.28 * size },
     };
-    let baseline = |galley: &egui::Galley| {
+    let baseline = |galley: &Galley| {
         galley.rows.first().map_or(0.0, |row| row.row.glyphs.first().map_or(0.0, |g| g.pos.y))
     };
     let text = |text: &str, family: egui::FontFamily, size: f32| {
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn a_power_may_have_a_power() {
-        let ctx = egui::Context::default();
+        let ctx = Context::default();
         ctx.set_fonts(crate::lettering::fonts());
         for _ in 0..2 {
             let _ = ctx.run_ui(egui::RawInput::default(), |ui| {

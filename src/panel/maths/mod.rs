@@ -3,11 +3,9 @@
 //!
 //! The source format is that of [`EquationPart`]: `_x` is a subscript, `^x` a superscript, braces group.
 
-use bevy_egui::egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2};
-
 use super::{
     formula, linked,
-    theme::{self, Palette},
+    prelude::*,
     typeset::{Break, Set, Setter},
 };
 use crate::reflection::{EquationPart, Term};
@@ -34,8 +32,7 @@ pub fn paint_symbol(ui: &Ui, left_baseline: Pos2, symbol: &str, size: f32, colou
 pub fn symbol(ui: &mut Ui, symbol: &str, size: f32) -> Response {
     let width = symbol_width(ui, symbol, size);
     let (rect, response) = ui.allocate_exact_size(vec2(width, 1.3 * size), Sense::hover());
-    let at = pos2(rect.left(), rect.top() + 0.95 * size);
-    paint_symbol(ui, at, symbol, size, Palette::here(ui).text);
+    paint_symbol(ui, pos2(rect.left(), rect.top() + 0.95 * size), symbol, size, Palette::here(ui).text);
     response
 }
 
@@ -67,13 +64,12 @@ pub fn equation_of(
     sizes: Sizes,
     name: impl Fn(&str) -> Option<String>,
 ) -> Response {
-    let palette = Palette::here(ui);
     let width = ui.available_width();
     let (lines, height) = set(ui, parts, sizes, width);
 
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     let spoken: Vec<_> = parts.iter().map(|(_, text)| *text).collect();
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, spoken.join("; ")));
+    theme::says(&response, WidgetType::Label, spoken.join("; "));
     if !ui.is_rect_visible(rect) {
         return response;
     }
@@ -88,7 +84,7 @@ pub fn equation_of(
             }
             here.on_hover_text(meaning);
             if linked::is_lit(ui.ctx(), symbol) {
-                ui.painter().add(linked::ground(cell, &palette));
+                ui.painter().add(linked::ground(cell, &Palette::here(ui)));
             }
         }
         line.paint(ui, at, *colour);
@@ -108,7 +104,7 @@ pub(super) fn calculation(
     let width = ui.available_width();
     let (lines, height) = set(ui, &[(Term::Total, text)], Sizes { column: true, even: true }, width);
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, text.to_owned()));
+    theme::says(&response, WidgetType::Label, text);
     let mut clicked = None;
     let mut symbols = symbols.iter();
     for (line, baseline, colour) in &lines {
@@ -116,14 +112,9 @@ pub(super) fn calculation(
         for (corner, size) in line.numbers() {
             let Some(symbol) = symbols.next().and_then(Option::as_ref) else { continue };
             let cell = Rect::from_min_size(at + corner, size);
-            let here = ui.interact(
-                cell,
-                response.id.with(("number", corner.x as i32, corner.y as i32, symbol)),
-                Sense::click(),
-            );
-            here.widget_info(|| {
-                WidgetInfo::labeled(WidgetType::Button, true, format!("where {symbol} comes from"))
-            });
+            let id = response.id.with(("number", corner.x as i32, corner.y as i32, symbol));
+            let here = ui.interact(cell, id, Sense::click());
+            theme::says(&here, WidgetType::Button, format!("where {symbol} comes from"));
             let ends: Vec<&str> = symbol.split('·').collect();
             if here.hovered() {
                 linked::point(ui.ctx(), &ends);
@@ -229,7 +220,7 @@ mod tests {
 
     #[test]
     fn every_sign_of_every_equation_is_in_the_fonts() {
-        let ctx = egui::Context::default();
+        let ctx = Context::default();
         ctx.set_fonts(crate::lettering::fonts());
         let _ = ctx.run_ui(egui::RawInput::default(), |_| ());
         let registry = crate::registry::Registry::builtin();
@@ -244,7 +235,7 @@ mod tests {
         }
         ctx.fonts_mut(|fonts| {
             for family in [theme::maths(), theme::maths_italic(), egui::FontFamily::Proportional] {
-                let font = egui::FontId::new(17.0, family);
+                let font = FontId::new(17.0, family);
                 // Position of the character in the font texture, which is the same for all missing characters.
                 let mut place = |c: char| {
                     let galley = fonts.layout_no_wrap(c.to_string(), font.clone(), Color32::WHITE);
@@ -263,7 +254,7 @@ mod tests {
 
     #[test]
     fn equations_stay_inside_the_panel() {
-        let ctx = egui::Context::default();
+        let ctx = Context::default();
         ctx.set_fonts(crate::lettering::fonts());
         for width in [120.0, 270.0] {
             for text in HARD {
@@ -280,7 +271,7 @@ mod tests {
                     shapes = output.shapes;
                 }
                 for clipped in &shapes {
-                    if let egui::Shape::Text(text) = &clipped.shape {
+                    if let Shape::Text(text) = &clipped.shape {
                         let right = text.pos.x + text.galley.size().x;
                         assert!(right < clipped.clip_rect.right() + 1.0, "{width}: {:?}", text.galley.text());
                     }

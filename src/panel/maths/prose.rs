@@ -1,11 +1,8 @@
 //! Sentences with symbols and code.
 
-use bevy_egui::egui::{
-    Align, FontId, TextStyle, Ui,
-    text::{LayoutJob, TextFormat},
-};
+use bevy_egui::egui::text::{LayoutJob, TextFormat};
 
-use crate::panel::theme::Palette;
+use crate::panel::prelude::*;
 
 /// A sentence that sets `k_d` with a subscript, and text between backticks as code.
 #[must_use]
@@ -53,7 +50,7 @@ mod tests {
 
     #[test]
     fn indices_stand_below_and_code_has_its_letters() {
-        let ctx = egui::Context::default();
+        let ctx = Context::default();
         let mut seen = Vec::new();
         let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
             let job =

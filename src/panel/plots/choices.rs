@@ -1,21 +1,17 @@
 //! The choices above the plot: the quantity, the angles, the scale.
 
-use bevy_egui::egui::{self, ComboBox, Ui, WidgetInfo, WidgetType};
+use bevy_egui::egui::ComboBox;
 
 use crate::{
     curves::{Channel, Form, Kind},
-    panel::{
-        knob, menu,
-        state::{Action, MOST_LIGHT, PlotCommand, Session},
-        theme,
-    },
+    panel::{knob, menu, prelude::*, state::MOST_LIGHT},
     scene::limits::Limits,
 };
 
 /// Shows them.
-pub(super) fn row(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let plots = &session.plots;
-    let mut ask = |command: PlotCommand| actions.push(Action::Plot(command));
+pub(super) fn row(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let plots = &context.session().plots;
+    let mut ask = |command: PlotCommand| context.act(Action::Plot(command));
     ui.horizontal(|ui| {
         let kinds = Kind::ALL.map(|kind| {
             let [name, about] = kind.declaration().choice;
@@ -95,34 +91,18 @@ fn list<T: Copy + PartialEq>(
     chosen: T,
     all: &[(T, &str, &str)],
 ) -> Option<T> {
-    let now = all.iter().find(|(value, ..)| *value == chosen).or(all.first());
-    let (shown, tip) = now.map_or(("–", ""), |(_, name, tip)| (*name, *tip));
-    let mut by_key = false;
-    let combo = ComboBox::from_id_salt(("plots", label)).width(width).selected_text(shown);
+    let names: Vec<_> = all.iter().map(|(_, name, _)| *name).collect();
+    let now = all.iter().position(|(value, ..)| *value == chosen).unwrap_or(0);
+    let tip = |ui: &mut Ui, i: usize| about_choice(ui, all[i].1, all[i].2);
     // The longest list is seen whole.
-    let combo = combo.height(400.0);
-    let menu = combo.show_ui(ui, |ui| {
-        let mut picked = None;
-        for (value, name, tip) in all {
-            let response = menu::choice(ui, *value == chosen, *name, &mut by_key);
-            if response.clicked() {
-                picked = Some(*value);
-            }
-            response.on_hover_ui(|ui| about_choice(ui, name, tip));
-        }
-        picked
-    });
-    menu.response
-        .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, format!("{label}: {shown}")));
-    if by_key {
-        menu.response.request_focus();
-    }
-    menu.response.on_hover_ui(|ui| about_choice(ui, shown, tip));
-    menu.inner.flatten()
+    let combo = ComboBox::from_id_salt(("plots", label)).width(width).height(400.0);
+    let (button, picked) = menu::list(ui, combo, label, &names, Some(now), tip);
+    button.on_hover_ui(|ui| tip(ui, now));
+    picked.map(|i| all[i].0)
 }
 
 fn about_choice(ui: &mut Ui, name: &str, tip: &str) {
     ui.set_max_width(300.0);
     ui.label(theme::strong(ui, name));
-    ui.add(egui::Label::new(tip).wrap());
+    ui.add(Label::new(tip).wrap());
 }

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 use egui_file_dialog::FileDialog;
 
 use super::request::{NoCurve, Request};
-use crate::files::Shown as _;
 use crate::{
     curves::{Detail, Format},
     files,
-    panel::state::Session,
+    panel::prelude::*,
     progress::Progress,
 };
 

@@ -1,17 +1,9 @@
 //! The direction of the light, as a handle in the plot.
 
-use bevy_egui::egui::{
-    Align2, CursorIcon, Key, Pos2, Rect, Response, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, vec2,
-};
-
 use super::{pen::Screen, reading::degrees};
 use crate::{
     curves::draw::Ground,
-    panel::{
-        focus,
-        state::{Action, MOST_LIGHT, PlotCommand},
-        theme::Palette,
-    },
+    panel::{focus, prelude::*, state::MOST_LIGHT},
 };
 
 /// The name for screen readers.
@@ -23,10 +15,10 @@ pub(super) fn show(
     ui: &mut Ui,
     screen: &Screen,
     ground: &Ground,
-    theta_i: f64,
     unit: impl Fn(Pos2) -> [f64; 2],
-    actions: &mut Vec<Action>,
+    context: &mut PanelContext<'_>,
 ) {
+    let theta_i = context.session().plots.theta_i;
     let (at, angle_of): (Pos2, Box<dyn Fn([f64; 2]) -> f64>) = match *ground {
         Ground::Plot(place) => {
             let [left, _, right, _] = place;
@@ -68,7 +60,7 @@ pub(super) fn show(
         }
     }
     let wanted = wanted.map(|angle| angle.clamp(0.0, MOST_LIGHT)).filter(|angle| *angle != theta_i);
-    actions.extend(wanted.map(|angle| Action::Plot(PlotCommand::Light(angle))));
+    context.actions.extend(wanted.map(|angle| Action::Plot(PlotCommand::Light(angle))));
     response.on_hover_and_drag_cursor(CursorIcon::Grab).on_hover_text(HELP);
 }
 
@@ -77,8 +69,7 @@ fn lines(ui: &Ui, screen: &Screen, [left, top, right, bottom]: [f64; 4], theta_i
     let palette = Palette::here(ui);
     let x = |angle: f64| left + (angle + 90.0) / 180.0 * (right - left);
     let line = |angle: f64| [screen.place([x(angle), top]), screen.place([x(angle), bottom])];
-    let stroke = Stroke::new(1.0, palette.weak);
-    ui.painter().extend(Shape::dashed_line(&line(theta_i), stroke, 2.0, 3.0));
+    ui.painter().extend(Shape::dashed_line(&line(theta_i), Stroke::new(1.0, palette.weak), 2.0, 3.0));
     ui.painter().line_segment(line(-theta_i), Stroke::new(1.0, palette.accent));
     let font = TextStyle::Small.resolve(ui.style());
     let text = |angle: f64, text: String, align: Align2, right: f32| {

@@ -1,9 +1,6 @@
 //! The list of the curves: what is shown, its colour and dash, its value where the plot is read.
 
-use bevy_egui::egui::{
-    self, Align, Button, Label, Layout, Popup, PopupCloseBehavior, RichText, ScrollArea, Sense, Shape, Ui,
-    WidgetInfo, WidgetType,
-};
+use bevy_egui::egui::PopupCloseBehavior;
 
 use super::{
     Entry, PlotPanel, Recipe, Request, links,
@@ -18,14 +15,11 @@ use crate::{
         draw::{COLOURS, Line, Mark, Series},
     },
     panel::{
-        chooser,
-        icon::{self, Icon},
-        knob, linked, menu,
-        state::{Action, Of, PlotCommand, Session, Slot},
-        theme::{self, Palette},
+        chooser, knob, linked, menu,
+        prelude::*,
+        state::{Effect, Of, Pick, Slot},
     },
     parameter::Values,
-    registry::Registry,
 };
 
 /// The colours of curves, as they are called.
@@ -52,11 +46,9 @@ pub(super) fn show(
     panel: &PlotPanel,
     request: &Request,
     lit: Option<Slot>,
-    session: &Session,
-    registry: &Registry,
-    actions: &mut Vec<Action>,
+    context: &mut PanelContext<'_>,
 ) -> Option<Slot> {
-    buttons(ui, session, registry, actions);
+    buttons(ui, context);
     let quantity = request.setup.kind.quantity();
     let heading = panel.reading.map_or_else(String::new, |at| format!("{quantity} {}", at.name()));
     // The line is there before it says something: nothing moves under the pointer.
@@ -68,9 +60,7 @@ pub(super) fn show(
         ui.spacing_mut().item_spacing.y = 2.0;
         for entry in &request.entries {
             let under = ui.painter().add(Shape::Noop);
-            let row = ui.push_id(entry.slot, |ui| {
-                row(ui, panel, entry, request.setup.kind, session, registry, actions)
-            });
+            let row = ui.push_id(entry.slot, |ui| row(ui, panel, entry, request.setup.kind, context));
             let place = row.response.rect;
             linked::touch(ui, place, links::of_slot(request, entry.slot));
             if ui.rect_contains_pointer(place) && ui.ctx().dragged_id().is_none() {
@@ -89,20 +79,20 @@ pub(super) fn show(
     pointed
 }
 
-fn buttons(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+fn buttons(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let help = "Keep the curve of the selected object as it is now, to compare it with what it becomes";
         let some = session.plotted().is_some();
-        if ui.add_enabled(some, Button::new("Pin")).on_hover_text(help).clicked() {
-            actions.push(Action::Plot(PlotCommand::Pin));
-        }
+        let button = ui.add_enabled(some, Button::new("Pin")).on_hover_text(help);
+        context.on_click(&button, || Action::Plot(PlotCommand::Pin));
         let more =
             |text: &str| Button::new(text).right_text(RichText::new("▾").color(Palette::here(ui).weak));
         let (model, data) = (more("Model"), more("Measured"));
         let height = 0.45 * ui.ctx().content_rect().height();
         let button = ui.add(model).on_hover_text("Lay another model over, with its defaults");
-        button.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Lay a model over"));
+        theme::says(&button, WidgetType::ComboBox, "Lay a model over");
         let id = ui.make_persistent_id("model of the plot");
         let picked = knob::drop_down(&button, id, knob::WIDE, |ui, id| {
             chooser::models(ui, id, height, session, registry, None, None).flatten()
@@ -112,26 +102,25 @@ fn buttons(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Ve
             let id = entry.declaration.id.to_owned();
             let encoding = session.scene().display.encoding;
             let of = Of::Model { id, values: Values::default(), encoding };
-            actions.push(Action::Plot(PlotCommand::Add(of)));
+            context.act(Action::Plot(PlotCommand::Add(of)));
         }
         let help =
             "Lay measured data over: the Cornell paints, or fits to the materials of the MERL database";
         let button = ui.add(data).on_hover_text(help);
-        button.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Lay measured data over"));
+        theme::says(&button, WidgetType::ComboBox, "Lay measured data over");
         let id = ui.make_persistent_id("data of the plot");
         if let Some(name) = knob::drop_down(&button, id, 320.0, |ui, id| measured(ui, id, height)) {
             Popup::close_id(ui.ctx(), id);
-            actions.push(Action::Plot(PlotCommand::Add(Of::Measured(name))));
+            context.act(Action::Plot(PlotCommand::Add(Of::Measured(name))));
         }
         let help = "Write the plot to a file: vector graphics (SVG), a picture (PNG) or numbers (CSV)";
-        if ui.button("Export…").on_hover_text(help).clicked() {
-            actions.push(Action::Plot(PlotCommand::Dialog));
-        }
+        let button = ui.button("Export…").on_hover_text(help);
+        context.on_click(&button, || Action::Do(Effect::Pick(Pick::Plot)));
     });
 }
 
 /// The list of measured data.
-fn measured(ui: &mut Ui, id: egui::Id, height: f32) -> Option<String> {
+fn measured(ui: &mut Ui, id: Id, height: f32) -> Option<String> {
     let words = chooser::Words {
         label: "Search measured data",
         hint: "Search materials",
@@ -155,15 +144,8 @@ fn measured(ui: &mut Ui, id: egui::Id, height: f32) -> Option<String> {
     picked.map(|(id, ..)| id.clone())
 }
 
-fn row(
-    ui: &mut Ui,
-    panel: &PlotPanel,
-    entry: &Entry,
-    kind: Kind,
-    session: &Session,
-    registry: &Registry,
-    actions: &mut Vec<Action>,
-) {
+fn row(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, kind: Kind, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let palette = Palette::here(ui);
     let known = panel.known(entry.slot, kind);
     let drawn = known.and_then(|known| known.as_ref().ok());
@@ -172,14 +154,14 @@ fn row(
         ui.spacing_mut().item_spacing.x = 4.0;
         let (icon, way) = if entry.shown { (Icon::Eye, "Hide") } else { (Icon::EyeOff, "Show") };
         if icon::button(ui, icon, &format!("{way} the curve of {name}")).clicked() {
-            actions.push(Action::Plot(PlotCommand::Show(entry.slot, !entry.shown)));
+            context.act(Action::Plot(PlotCommand::Show(entry.slot, !entry.shown)));
         }
-        style(ui, panel, entry, &name, kind, actions);
+        style(ui, panel, entry, &name, kind, context);
         ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             if let Slot::Pin(number) = entry.slot {
                 if icon::button(ui, Icon::Cross, &format!("Remove the curve of {name}")).clicked() {
-                    actions.push(Action::Plot(PlotCommand::Remove(number)));
+                    context.act(Action::Plot(PlotCommand::Remove(number)));
                 }
             } else {
                 ui.add_space(icon::SIZE + 4.0);
@@ -195,7 +177,7 @@ fn row(
                     && let Some((scene, object)) = session.plotted()
                     && let Some(i) = scene.objects.iter().position(|o| std::ptr::eq(o, object))
                 {
-                    let of = session.name_of(crate::document::Selection::Object(i), registry);
+                    let of = session.name_of(Selection::Object(i), context.registry());
                     small_lines(ui, &format!("now: {of}"));
                 }
                 if let Some(Err(why)) = known.filter(|_| entry.shown) {
@@ -221,7 +203,14 @@ fn value(panel: &PlotPanel, entry: &Entry, drawn: Option<&Drawn>) -> Option<Stri
 }
 
 /// The sample of a curve, which opens the choice of its colour and its dash.
-fn style(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, name: &str, kind: Kind, actions: &mut Vec<Action>) {
+fn style(
+    ui: &mut Ui,
+    panel: &PlotPanel,
+    entry: &Entry,
+    name: &str,
+    kind: Kind,
+    context: &mut PanelContext<'_>,
+) {
     if kind.form() == Form::Slices {
         return;
     }
@@ -242,13 +231,11 @@ fn style(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, name: &str, kind: Kind, 
         return;
     }
     let (place, response) = ui.allocate_exact_size(sample_size(), Sense::click());
-    response.widget_info(|| {
-        let Style { colour, line } = entry.style;
-        let colour = COLOUR_NAMES.get(colour).copied().unwrap_or_default();
-        let says = format!("Colour and dash of {name}: {colour}, {}", dash_name(line));
-        WidgetInfo::labeled(WidgetType::ComboBox, true, says)
-    });
-    if response.hovered() || response.has_focus() {
+    let Style { colour, line } = entry.style;
+    let colour = COLOUR_NAMES.get(colour).copied().unwrap_or_default();
+    let says = format!("Colour and dash of {name}: {colour}, {}", dash_name(line));
+    theme::says(&response, WidgetType::ComboBox, says);
+    if theme::is_hot(&response) {
         ui.painter().rect_filled(place, 4.0, Palette::here(ui).hovered);
     }
     sample(ui, place, series);
@@ -260,7 +247,7 @@ fn style(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, name: &str, kind: Kind, 
         response.request_focus();
     }
     if let Some(style) = picked.and_then(|shown| shown.inner) {
-        actions.push(Action::Plot(PlotCommand::Style(entry.slot, style)));
+        context.act(Action::Plot(PlotCommand::Style(entry.slot, style)));
     }
 }
 

@@ -1,16 +1,15 @@
 //! The curves that a symbol stands for: `D` for that of the distribution, `α` for one whose shape it changes.
 
-use bevy_egui::egui::Context;
-
 use super::{Entry, Key, Recipe, Request};
 use crate::{
     curves::{Detail, Kind, Setup},
     panel::{
         linked::{Domain, lit_in},
         maths::{definition, same_symbol},
+        prelude::*,
         state::Slot,
     },
-    parameter::{Parameter, ParameterKind, Value},
+    parameter::{Parameter, Value},
     progress::Progress,
     reflection::ModelEntry,
 };
@@ -96,28 +95,7 @@ fn changes(entry: &Entry, setup: &Setup, parameter: &'static Parameter) -> bool 
 
 /// Another legal value, far enough that it matters.
 fn other(parameter: &Parameter, value: &Value) -> Option<Value> {
-    let candidates = match (&parameter.kind, value) {
-        (ParameterKind::Number { min, max, .. }, Value::Number(v)) => {
-            [1.25 * v, 0.75 * v, 0.5 * (min + max), v + 0.5].map(Value::Number).to_vec()
-        }
-        (ParameterKind::Integer { .. }, Value::Integer(v)) => {
-            [v.saturating_mul(2), v / 2, v + 1].map(Value::Integer).to_vec()
-        }
-        (_, Value::Colour(rgb)) => vec![Value::Colour(rgb.map(|c| c ^ 0x80))],
-        (ParameterKind::Triple { min, max, .. }, Value::Triple(v)) => {
-            let scaled = |factor: f32| v.map(|c| factor * c);
-            vec![
-                Value::Triple(scaled(1.25)),
-                Value::Triple(scaled(0.75)),
-                Value::Triple([0.5 * (min + max); 3]),
-            ]
-        }
-        (ParameterKind::Choice { options, .. }, Value::Choice(_)) => {
-            options.iter().map(|(id, _)| Value::Choice((*id).into())).collect()
-        }
-        _ => Vec::new(),
-    };
-    candidates.into_iter().find(|other| other != value && parameter.allows(other))
+    parameter.kind.others(value).into_iter().find(|other| other != value && parameter.allows(other))
 }
 
 #[cfg(test)]

@@ -4,21 +4,14 @@
 //! The figure is that of [`curves`](crate::curves), drawn by another pen: what the window shows is what
 //! its files show.
 
-use std::sync::Arc;
-
-use bevy_egui::egui::{self, Align, Layout, Rect, Ui, UiBuilder, vec2};
-
 use super::{
-    Panel, PanelContext, Place, is_panel, linked,
+    linked,
+    prelude::*,
     state::{PLOTS_TAB, Slot},
-    theme::Palette,
 };
-use crate::{
-    curves::{
-        Channel, Kind, Setup, Sheet, Style,
-        draw::{Figure, Series},
-    },
-    registry::Registry,
+use crate::curves::{
+    Channel, Kind, Setup, Sheet, Style,
+    draw::{Figure, Series},
 };
 use reading::Reading;
 use request::{Drawn, Key};
@@ -72,33 +65,27 @@ impl Panel for PlotPanel {
     is_panel!(PLOTS_TAB, "Plots", Place::Bottom);
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
+        let (session, registry) = (context.session(), context.registry());
         let request = Request::of(session, registry);
         self.follow(ui.ctx(), &request, registry);
         self.build(&request);
         let live = links::is_live_lit(ui.ctx(), &request, &mut self.influences);
         let lit = self.pointed.or(live.then_some(Slot::Live));
-        choices::row(ui, session, actions);
+        choices::row(ui, context);
         let whole = ui.available_rect_before_wrap();
         let width = (0.3 * whole.width()).clamp(230.0, 360.0);
         let (plot, list) = whole.split_left_right_at_x(whole.right() - width);
-        let line = egui::Stroke::new(1.0, Palette::here(ui).line);
-        ui.painter().vline(list.left(), whole.y_range(), line);
-        let column = |ui: &mut Ui, rect: Rect, add: &mut dyn FnMut(&mut Ui)| {
-            let builder = UiBuilder::new().max_rect(rect).layout(Layout::top_down(Align::Min));
-            ui.scope_builder(builder, |ui| add(ui));
-        };
+        ui.painter().vline(list.left(), whole.y_range(), Stroke::new(1.0, Palette::here(ui).line));
         let mut pointed = None;
-        column(ui, plot.with_max_x(plot.right() - 8.0), &mut |ui| {
-            pointed = self.surface(ui, &request, session.plots.theta_i, lit, actions);
+        theme::column(ui, plot.with_max_x(plot.right() - 8.0), |ui| {
+            pointed = self.surface(ui, &request, lit, context);
         });
         if let Some(slot) = pointed {
             linked::point(ui.ctx(), links::of_slot(&request, slot));
         }
         let list = Rect::from_min_max(list.min + vec2(12.0, 0.0), list.max);
-        column(ui, list, &mut |ui| {
-            let row = legend::show(ui, self, &request, lit, session, registry, actions);
-            pointed = pointed.or(row);
+        theme::column(ui, list, |ui| {
+            pointed = pointed.or(legend::show(ui, self, &request, lit, context));
         });
         if std::mem::replace(&mut self.pointed, pointed) != pointed {
             ui.ctx().request_repaint();
@@ -108,7 +95,7 @@ impl Panel for PlotPanel {
 
 impl PlotPanel {
     /// Takes what was calculated, and asks for what is missing.
-    fn follow(&mut self, ctx: &egui::Context, request: &Request, registry: &Registry) {
+    fn follow(&mut self, ctx: &Context, request: &Request, registry: &Registry) {
         self.worker.shown(ctx);
         let busy = self.worker.is_busy();
         for done in self.worker.take() {
@@ -173,12 +160,16 @@ impl PlotPanel {
 impl Built {
     /// The line of a place in the list, as the figure has it.
     fn series(&self, slot: Slot) -> Option<&Series> {
-        let i = self.slots.iter().position(|known| *known == slot)?;
-        match &self.figure {
-            Figure::Plot(plot) => plot.series.get(i),
-            Figure::Polar(polar) => polar.series.get(i),
-            Figure::Slices(_) => None,
-        }
+        series(&self.figure).get(self.slots.iter().position(|known| *known == slot)?)
+    }
+}
+
+/// The lines of a figure.
+fn series(figure: &Figure) -> &[Series] {
+    match figure {
+        Figure::Plot(plot) => &plot.series,
+        Figure::Polar(polar) => &polar.series,
+        Figure::Slices(_) => &[],
     }
 }
 

@@ -1,14 +1,10 @@
 //! Figures drawn into the window.
 
-use bevy_egui::egui::{
-    Align2, Color32, ColorImage, FontId, Galley, Painter, Pos2, Rect, Shape, Stroke, TextureHandle,
-    TextureOptions, Ui, pos2, vec2,
-};
-use std::sync::Arc;
+use bevy_egui::egui::{ColorImage, Painter, TextureHandle, TextureOptions};
 
 use crate::{
     curves::draw::{Anchor, Ink, Pen},
-    panel::theme::Palette,
+    panel::prelude::*,
 };
 
 /// Points of the window per unit of a figure: text has the size of that in panels.

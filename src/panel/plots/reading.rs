@@ -1,6 +1,9 @@
 //! The values under the pointer, or at the angle to which keys went.
 
-use crate::curves::{Curve, Sheet, Slice, draw::Ground};
+use crate::{
+    curves::{Curve, Sheet, Slice, draw::Ground},
+    text::superscript,
+};
 
 /// The place at which values are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,10 +106,6 @@ pub(super) fn text(value: f64) -> String {
         format!("{value:.digits$}")
     } else {
         let power = size.log10().floor();
-        let superscript = |c: char| match c {
-            '-' => '⁻',
-            _ => c.to_digit(10).map_or(c, |d| ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][d as usize]),
-        };
         let digits: String = format!("{power}").chars().map(superscript).collect();
         format!("{:.3} × 10{digits}", value / 10f64.powf(power))
     };

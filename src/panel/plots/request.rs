@@ -6,11 +6,13 @@ use crate::{
         subjects_with,
     },
     optics::colour::Encoding,
-    panel::state::{Of, Session, Slot},
+    panel::{
+        prelude::*,
+        state::{Of, Slot},
+    },
     parameter::Values,
     progress::Progress,
     reflection::ModelEntry,
-    registry::Registry,
     text::listed,
 };
 

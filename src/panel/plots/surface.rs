@@ -1,25 +1,14 @@
 //! The plot itself, and what is read from it.
 
-use bevy_egui::egui::{
-    Align2, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, WidgetType,
-    pos2, vec2,
-};
-
 use super::{
     Built, PlotPanel, Request, handle,
     pen::{SCALE, Screen},
     reading::{self, Reading},
+    series,
 };
 use crate::{
-    curves::{
-        Sheet,
-        draw::{Figure, GAP, Ground, Ink, Pen, Series},
-    },
-    panel::{
-        focus, linked,
-        state::{Action, Slot},
-        theme::{self, Palette},
-    },
+    curves::draw::{Figure, GAP, Ground, Ink, Pen, Series},
+    panel::{focus, linked, prelude::*, state::Slot},
 };
 
 impl PlotPanel {
@@ -29,9 +18,8 @@ impl PlotPanel {
         &mut self,
         ui: &mut Ui,
         request: &Request,
-        theta_i: f64,
         lit: Option<Slot>,
-        actions: &mut Vec<Action>,
+        context: &mut PanelContext<'_>,
     ) -> Option<Slot> {
         let place = ui.available_rect_before_wrap();
         let response = ui.interact(place, ui.id().with("plot"), Sense::click());
@@ -56,21 +44,17 @@ impl PlotPanel {
             None if response.has_focus() => walked(ui, &response, self.reading, request, axis),
             None => None,
         };
-        let title = match &built.figure {
-            Figure::Plot(plot) => &plot.title,
-            Figure::Polar(polar) => &polar.title,
-            Figure::Slices(slices) => &slices.title,
-        };
+        let (_, title) = built.figure.frame();
         let says = match self.reading {
             Some(reading) => format!("{title}; {}", reading.name()),
-            None => title.clone(),
+            None => title.to_owned(),
         };
         if response.clicked() {
             response.request_focus();
         }
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, &says));
+        theme::says(&response, WidgetType::Image, says);
         if request.setup.kind.has_light() {
-            handle::show(ui, &screen, &ground, theta_i, unit, actions);
+            handle::show(ui, &screen, &ground, unit, context);
         }
         match (empty, self.reading) {
             (Some(text), _) => says_instead(ui, place, text),
@@ -105,31 +89,33 @@ impl PlotPanel {
 /// The pointer is at a curve that is this near, points.
 const GRASP: f32 = 7.0;
 
-/// The curves of a figure as they are on screen.
-fn lines(built: &Built, ground: &Ground, screen: &Screen) -> Vec<Vec<Pos2>> {
-    let of = |series: &[Series], place: &dyn Fn(f64, f64) -> [f64; 2]| {
-        let line = |series: &Series| {
-            let finite = series.points.iter().filter(|point| point.1.is_finite());
-            finite.map(|(angle, value)| screen.place(place(*angle, *value))).collect()
-        };
-        series.iter().map(line).collect()
-    };
-    match (&built.figure, ground) {
+/// The place of a value at an angle in a figure that has such, and true if it is within the scale.
+fn place_of(figure: &Figure, ground: &Ground, angle: f64, value: f64) -> Option<([f64; 2], bool)> {
+    Some(match (figure, ground) {
         (Figure::Plot(plot), Ground::Plot([left, top, right, bottom])) => {
-            of(&plot.series, &|angle, value| {
-                let y = bottom - plot.y.place(value) * (bottom - top);
-                [left + plot.x.place(angle) * (right - left), y.clamp(*top, *bottom)]
-            })
+            let y = bottom - plot.y.place(value) * (bottom - top);
+            ([left + plot.x.place(angle) * (right - left), y], (*top - 0.5..=bottom + 0.5).contains(&y))
         }
         (Figure::Polar(polar), Ground::Polar { centre: [x, y], radius }) => {
-            of(&polar.series, &|angle, value| {
-                let (sin, cos) = angle.to_radians().sin_cos();
-                let out = radius * polar.radius.place(value).max(0.0);
-                [x + out * sin, y - out * cos]
-            })
+            let (sin, cos) = angle.to_radians().sin_cos();
+            let part = polar.radius.place(value);
+            let out = radius * part.max(0.0);
+            ([x + out * sin, y - out * cos], (..=1.001).contains(&part))
         }
-        _ => Vec::new(),
-    }
+        _ => return None,
+    })
+}
+
+/// The curves of a figure as they are on screen.
+fn lines(built: &Built, ground: &Ground, screen: &Screen) -> Vec<Vec<Pos2>> {
+    let place = |(angle, value): &(f64, f64)| {
+        let ([x, y], _) = place_of(&built.figure, ground, *angle, *value)?;
+        let y = if let Ground::Plot([_, top, _, bottom]) = ground { y.clamp(*top, *bottom) } else { y };
+        Some(screen.place([x, y]))
+    };
+    let finite = |point: &&(f64, f64)| point.1.is_finite();
+    let line = |series: &Series| series.points.iter().filter(finite).filter_map(place).collect();
+    series(&built.figure).iter().map(line).collect()
 }
 
 /// Says something in the middle of the plot.
@@ -200,43 +186,22 @@ fn mark(ui: &Ui, screen: &Screen, ground: &Ground, built: &Built, reading: Readi
     let palette = Palette::here(ui);
     let painter = ui.painter();
     let stroke = Stroke::new(1.0, palette.weak);
-    let font = TextStyle::Small.resolve(ui.style());
-    let dot = |at: Pos2, colour: usize| {
-        painter.circle(at, 3.5, screen.colour(Ink::Curve(colour)), Stroke::new(1.0, palette.panel));
-    };
-    let values = |sheet: &Sheet, angle: f64| -> Vec<f64> {
-        let value = |curve| reading::of_curve(sheet, curve, angle).unwrap_or(f64::NAN);
-        sheet.curves.iter().map(value).collect()
-    };
     match (reading, ground, &built.figure) {
         (Reading::Angle(angle), Ground::Plot([left, top, right, bottom]), Figure::Plot(plot)) => {
             let x = left + plot.x.place(angle) * (right - left);
             painter.line_segment([screen.place([x, *top]), screen.place([x, *bottom])], stroke);
-            let label = reading::degrees(angle);
-            let label = painter.layout_no_wrap(label, font, palette.text);
+            let font = TextStyle::Small.resolve(ui.style());
+            let label = painter.layout_no_wrap(reading::degrees(angle), font, palette.text);
             let at = screen.place([x, *top]) - vec2(0.0, 2.0);
             let at = Align2::CENTER_BOTTOM.anchor_size(at, label.size());
             painter.rect_filled(at.expand2(vec2(4.0, 1.0)), 2.0, palette.panel);
             painter.galley(at.min, label, palette.text);
-            for (value, series) in values(&built.sheet, angle).iter().zip(&plot.series) {
-                let y = bottom - plot.y.place(*value) * (bottom - top);
-                if (*top - 0.5..=bottom + 0.5).contains(&y) {
-                    dot(screen.place([x, y]), series.colour);
-                }
-            }
         }
-        (Reading::Angle(angle), Ground::Polar { centre, radius }, Figure::Polar(polar)) => {
-            let at = |part: f64| {
-                let (sin, cos) = angle.to_radians().sin_cos();
-                screen.place([centre[0] + part * radius * sin, centre[1] - part * radius * cos])
-            };
-            painter.line_segment([at(0.0), at(1.0)], stroke);
-            for (value, series) in values(&built.sheet, angle).iter().zip(&polar.series) {
-                let part = polar.radius.place(*value);
-                if (..=1.001).contains(&part) {
-                    dot(at(part.max(0.0)), series.colour);
-                }
-            }
+        (Reading::Angle(angle), Ground::Polar { centre: [x, y], radius }, Figure::Polar(_)) => {
+            let (sin, cos) = angle.to_radians().sin_cos();
+            let ends =
+                [0.0, 1.0].map(|part| screen.place([x + part * radius * sin, y - part * radius * cos]));
+            painter.line_segment(ends, stroke);
         }
         (Reading::Angles(half, difference), Ground::Slices(places), _) => {
             for [left, top, right, bottom] in places {
@@ -251,6 +216,14 @@ fn mark(ui: &Ui, screen: &Screen, ground: &Ground, built: &Built, reading: Readi
         }
         _ => {}
     }
+    let Reading::Angle(angle) = reading else { return };
+    for (curve, series) in built.sheet.curves.iter().zip(series(&built.figure)) {
+        let value = reading::of_curve(&built.sheet, curve, angle).unwrap_or(f64::NAN);
+        if let Some((at, true)) = place_of(&built.figure, ground, angle, value) {
+            let colour = screen.colour(Ink::Curve(series.colour));
+            painter.circle(screen.place(at), 3.5, colour, Stroke::new(1.0, palette.panel));
+        }
+    }
 }
 
 /// A legend's sample.
@@ -262,7 +235,7 @@ pub(super) fn sample(ui: &Ui, place: Rect, series: &crate::curves::draw::Series)
 }
 
 /// The room of a sample.
-pub(super) fn sample_size() -> bevy_egui::egui::Vec2 {
+pub(super) fn sample_size() -> Vec2 {
     vec2(34.0, 18.0)
 }
 
@@ -274,5 +247,5 @@ pub(super) fn right_end(row: Rect) -> Rect {
 
 /// Text of less weight, in lines.
 pub(super) fn small_lines(ui: &mut Ui, text: &str) {
-    ui.add(bevy_egui::egui::Label::new(theme::small(ui, text)).wrap());
+    ui.add(Label::new(theme::small(ui, text)).wrap());
 }

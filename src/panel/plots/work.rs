@@ -3,23 +3,21 @@
 
 use std::{
     sync::{
-        Arc, Condvar, LazyLock, Mutex, MutexGuard, PoisonError,
+        Condvar, LazyLock, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicU64, Ordering},
     },
     thread,
     time::Duration,
 };
 
-use bevy_egui::egui::Context;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::request::{Drawn, Key, NoCurve, Recipe};
 use crate::{
     caught::catch,
     curves::{Detail, Kind, Setup},
-    panel::state::Slot,
+    panel::{prelude::*, state::Slot},
     progress::Progress,
-    registry::Registry,
 };
 
 /// Fine curves wait until nothing has changed for so long.
@@ -82,12 +80,6 @@ struct Shared {
 /// Calculates curves.
 #[derive(Clone, Default)]
 pub(super) struct Worker(Arc<Shared>);
-
-impl std::fmt::Debug for Worker {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Worker")
-    }
-}
 
 impl Worker {
     /// The plots are shown in this pass.

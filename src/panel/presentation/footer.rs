@@ -3,19 +3,15 @@
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use bevy_egui::egui::{FontId, Pos2, Rect, TextStyle, Ui, UiBuilder, pos2, vec2};
-
 use super::{BODY, Block, CAPTION, Definition, columns, kept, padding, since};
 use crate::{
     caption::{Part, single},
     panel::{
         caption::{Lines, parts_of},
         maths, notice,
-        state::Session,
-        theme::{self, Palette},
+        prelude::*,
     },
-    registry::Registry,
-    scene::{comparison::Layout, variant::LETTERS},
+    scene::comparison::Layout,
 };
 
 /// Maximum height of all equations, as a fraction of the screen; larger equations are left out.
@@ -130,7 +126,7 @@ impl Footer {
             let galley = theme::elided(ui, &text, FontId::proportional(CAPTION * height), ink, room);
             ui.painter().galley(place.min + vec2(padding.x, top), galley, ink);
         }
-        notice::show(ui, whole.with_max_y(place.top()), CAPTION * height, since(ui).0, session);
+        notice::show(ui, whole.with_max_y(place.top()), CAPTION * height, since(ui), session);
     }
 }
 

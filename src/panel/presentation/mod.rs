@@ -6,9 +6,7 @@ use std::{
     ops::Range,
 };
 
-use bevy_egui::egui::{
-    Align2, Context, CornerRadius, FontId, Id, Pos2, Rect, TextStyle, Ui, UiBuilder, Vec2, vec2,
-};
+use bevy_egui::egui::CornerRadius;
 
 use super::{
     caption::{self, Lines, models_shown},
@@ -17,15 +15,11 @@ use super::{
     marks::Lens,
     maths::{self, Sizes},
     notice,
+    prelude::*,
     shares::shared,
-    state::{Action, PictureArea, Session, ViewChange},
-    theme::Palette,
     typeset::Break,
 };
-use crate::{
-    reflection::{ModelEntry, Term},
-    registry::Registry,
-};
+use crate::reflection::{ModelEntry, Term};
 
 pub use footer::Footer;
 
@@ -91,7 +85,7 @@ impl Stage {
         // A turning camera must not move the layout: its position at the start counts.
         let mut hasher = DefaultHasher::new();
         let objects: Vec<_> = session.scene().shown().map(|o| (o.position, o.size)).collect();
-        format!("{equation:?} {parts:?} {whole:?} {objects:?} {}", since(ui).0).hash(&mut hasher);
+        format!("{equation:?} {parts:?} {whole:?} {objects:?} {}", since(ui)).hash(&mut hasher);
         kept(ui, "stage of the presentation", hasher.finish(), |ui| {
             Self::laid_out(ui, whole, session, equation, parts)
         })
@@ -166,7 +160,7 @@ impl Stage {
         let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width);
         words.paint(ui, self.caption.min + padding, palette.text);
         let below = self.picture.with_max_y(self.caption.top().min(self.picture.bottom()));
-        notice::show(ui, below, CAPTION * height, since(ui).0, session);
+        notice::show(ui, below, CAPTION * height, since(ui), session);
         let mut free = self.picture;
         if !self.equation.is_empty() {
             ui.painter().rect_filled(self.plate, 8.0, palette.panel);
@@ -322,11 +316,11 @@ fn covers(rect: Rect, (at, radius): (Pos2, f32)) -> bool {
 }
 
 /// Start time of the presentation, in seconds.
-fn since(ui: &Ui) -> (f64, f64) {
+fn since(ui: &Ui) -> f64 {
     let id = Id::new("presentation since");
     let (now, pass) = (ui.input(|i| i.time), ui.ctx().cumulative_pass_nr());
-    let since =
-        ui.data(|d| d.get_temp::<(f64, u64)>(id)).filter(|(_, last)| last + 2 > pass).map_or(now, |s| s.0);
+    let known = ui.data(|d| d.get_temp::<(f64, u64)>(id)).filter(|(_, last)| last + 2 > pass);
+    let since = known.map_or(now, |(since, _)| since);
     ui.data_mut(|d| d.insert_temp(id, (since, pass)));
-    (since, now)
+    since
 }

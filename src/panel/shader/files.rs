@@ -1,70 +1,28 @@
 //! The list of the shader files behind the picture.
 
-use std::{path::Path, sync::Arc};
-
-use bevy_egui::egui::{
-    self, Align, Color32, FontId, Galley, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo,
-    WidgetType, vec2,
-};
+use std::path::Path;
 
 use super::missing_model;
-use crate::files::Shown as _;
 use crate::{
     panel::{
-        icon::{self, Icon},
-        state::{Action, ModelCommand, Session, Severity},
-        theme::{self, Palette},
+        prelude::*,
+        state::{Effect, Pick},
     },
     program,
-    registry::{
-        Registry,
-        compose::{File, Part},
-    },
+    registry::compose::{File, Part},
 };
+
+/// The names and purposes of files, by their parts.
+const WORDS: &str = include_str!("../../../assets/text/shader_files.tsv");
 
 /// The display name and the purpose of a file of a composition.
 #[must_use]
 pub fn words(part: Part, path: &str) -> (String, &'static str) {
+    let part = format!("{part:?}\t");
+    let line = WORDS.lines().find_map(|line| line.strip_prefix(&*part));
+    let (name, help) = line.and_then(|line| line.split_once('\t')).unwrap_or_default();
     let word = path.rsplit('/').next().and_then(|name| name.split('.').next()).unwrap_or(path);
-    let (name, help) = match part {
-        Part::Model => (
-            "the model",
-            "How light leaves the surface: `response` answers to one light, `ambient_response` to uniform light. Begin here.",
-        ),
-        Part::Import => ("imported", "A file of yours that another one of the list asks for with `#import`."),
-        Part::ShadingModel => (
-            "the shading model",
-            "The stage that evaluates the model: per polygon, per vertex or per pixel, and what is interpolated between.",
-        ),
-        Part::Loop => (
-            "the light loop",
-            "Asks every light what arrives at the point, hands that to the model, and adds up the answers.",
-        ),
-        Part::LightType => {
-            let help = "From where, and how strongly, the light of this type arrives at a point.";
-            return (format!("the light type: {word}"), help);
-        }
-        Part::LightRecord => (
-            "the light record",
-            "The record of each light in the shader: place, direction, colour, strength, parameters.",
-        ),
-        Part::Stages => (
-            "the stages",
-            "What goes into a shading model and what comes out of it: the vertex, and what is interpolated for the pixel.",
-        ),
-        Part::Vocabulary => {
-            let help = "Functions that models are written in: terms and frames, Fresnel reflectance, distributions, masking. \
-                        Their twins in Rust have the same names.";
-            return (format!("vocabulary: {word}"), help);
-        }
-        Part::Channels => {
-            ("the debug channels", "The values that lead to a pixel as colours: View › Channel shows them.")
-        }
-        Part::Wrapper => {
-            ("the wrapper", "Bindings and entry points for the GPU. The only file that knows the renderer.")
-        }
-    };
-    (name.to_owned(), help)
+    (name.replace("{word}", word), help)
 }
 
 fn origin(files: &[File], registry: &Registry) -> &'static str {
@@ -76,11 +34,12 @@ fn origin(files: &[File], registry: &Registry) -> &'static str {
     }
 }
 
-pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+pub(super) fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
     let (Some(model), Some(shading)) =
         (registry.model(session.model_shown()), registry.shading_model(session.shading_shown()))
     else {
-        ui.add(egui::Label::new(missing_model(session, registry, session.model_shown())).wrap());
+        ui.add(Label::new(missing_model(session, registry, session.model_shown())).wrap());
         return;
     };
     let lights = registry.lights_in(session.document.scene().light_types(registry));
@@ -89,11 +48,11 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             match &session.shaders.folders.shaders {
-                Some(folder) => watched(ui, session, folder, actions),
-                None => export(ui, actions),
+                Some(folder) => watched(ui, folder, context),
+                None => export(ui, context),
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let label = egui::Label::new(theme::strong(ui, title)).truncate();
+                let label = Label::new(theme::strong(ui, title)).truncate();
                 ui.add(label).on_hover_text("The picture is made of these files.");
                 let text = origin(&files, registry);
                 let folder = &session.shaders.folders.shaders;
@@ -105,7 +64,7 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
     });
     // Paths are aligned, after the longest name.
     let font = TextStyle::Body.resolve(ui.style());
-    let width = |text: String| ui.painter().layout_no_wrap(text, font.clone(), egui::Color32::WHITE).size().x;
+    let width = |text: String| ui.painter().layout_no_wrap(text, font.clone(), Color32::WHITE).size().x;
     let names = files.iter().map(|file| width(words(file.part, &file.path).0)).fold(0.0, f32::max);
     ScrollArea::vertical().id_salt("files").auto_shrink(false).show(ui, |ui| {
         // The scroll bar floats over this margin.
@@ -114,34 +73,30 @@ pub(super) fn files(ui: &mut Ui, session: &Session, registry: &Registry, actions
         ui.spacing_mut().interact_size.y = ROW;
         let names = (names.ceil() + 10.0).min(0.6 * ui.available_width());
         for file in files {
-            self::file(ui, (session, registry), &file, names, actions);
+            self::file(ui, &file, names, context);
         }
     });
 }
 
 /// The button that exports the shaders to a folder.
-fn export(ui: &mut Ui, actions: &mut Vec<Action>) {
+fn export(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let button = ui.button("Export shaders for editing…").on_hover_text(
         "Copies every shader file into a folder that you choose. A file saved there is reloaded at once.",
     );
-    if button.clicked() {
-        actions.push(Action::Model(ModelCommand::ExportDialog));
-    }
+    context.on_click(&button, || Action::Do(Effect::Pick(Pick::ShaderFolder)));
 }
 
 /// The watched folder, laid out from right to left.
-fn watched(ui: &mut Ui, session: &Session, folder: &Path, actions: &mut Vec<Action>) {
-    let palette = Palette::here(ui);
+fn watched(ui: &mut Ui, folder: &Path, context: &mut PanelContext<'_>) {
     let text = folder.shown().to_string();
-    if icon::button(ui, Icon::Copy, "Copy the path of the folder").clicked() {
-        actions.push(Action::Copy(text.clone()));
-    }
+    let button = icon::button(ui, Icon::Copy, "Copy the path of the folder");
+    context.on_click(&button, || Action::Do(Effect::CopyText(text.clone())));
     let room = 0.5 * ui.available_width();
     let font = TextStyle::Small.resolve(ui.style());
-    let (shown, _) = theme::elided_within(ui, &text, &font, palette.text, room);
+    let (shown, _) = theme::elided_within(ui, &text, &font, Palette::here(ui).text, room);
     let path = ui.label(shown);
     let mut help = format!("{text}\nA file saved in this folder is loaded at once.");
-    if let Some(models) = &session.shaders.folders.models {
+    if let Some(models) = &context.session().shaders.folders.models {
         help += &format!("\nCustom models: {}", models.shown());
     }
     path.on_hover_text(help);
@@ -162,14 +117,8 @@ fn short(ui: &Ui, path: &str, font: &FontId, colour: Color32, room: f32) -> Arc<
 const ROW: f32 = 22.0;
 
 /// The row of a file; `names` is the width of the name column, in points.
-pub(super) fn file(
-    ui: &mut Ui,
-    (session, registry): (&Session, &Registry),
-    file: &File,
-    names: f32,
-    actions: &mut Vec<Action>,
-) {
-    let foreign = registry.is_foreign(&file.path);
+fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
+    let (session, foreign) = (context.session(), context.registry().is_foreign(&file.path));
     let File { part, ref path, edited } = *file;
     let palette = Palette::here(ui);
     let (name, help) = words(part, path);
@@ -184,20 +133,20 @@ pub(super) fn file(
         }
         let (place, label) = ui.allocate_exact_size(vec2(names, ROW), Sense::hover());
         let galley = theme::elided(ui, &name, TextStyle::Body, palette.text, place.width());
-        let at = egui::pos2(place.left(), place.center().y - galley.size().y / 2.0);
+        let at = pos2(place.left(), place.center().y - galley.size().y / 2.0);
         ui.painter().galley(at, galley, palette.text);
         let says = match (trouble, edited) {
             (Some(t), _) => format!("{name}: {path}: error in line {}", t.problem.line),
             (None, true) => format!("{name}: {path}: edited"),
             (None, false) => format!("{name}: {path}"),
         };
-        label.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &says));
+        theme::says(&label, WidgetType::Label, says);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(file) = &on_disk {
                 let open = icon::button(ui, Icon::Pencil, &format!("Open {path} in an editor"));
                 if open.clicked() {
                     let line = session.line_of_trouble(path);
-                    actions.push(Action::Model(ModelCommand::Edit { path: file.clone(), line }));
+                    context.act(Action::Do(Effect::OpenInEditor { path: file.clone(), line }));
                 }
             }
             if let Some(t) = trouble {
@@ -211,8 +160,7 @@ pub(super) fn file(
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.label(shown));
         });
     });
-    row.response.on_hover_ui(|ui| {
-        ui.set_max_width(340.0);
+    theme::tip(row.response, 340.0, |ui| {
         ui.label(theme::strong(ui, &name));
         ui.label(help);
         let place = on_disk.map_or_else(
@@ -222,4 +170,34 @@ pub(super) fn file(
         );
         ui.label(theme::small(ui, place));
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_has_its_words() {
+        use Part::{
+            Channels, Import, LightRecord, LightType, Loop, Model, ShadingModel, Stages, Vocabulary, Wrapper,
+        };
+        let parts = [
+            Model,
+            Import,
+            ShadingModel,
+            Loop,
+            LightType,
+            Vocabulary,
+            LightRecord,
+            Stages,
+            Channels,
+            Wrapper,
+        ];
+        for part in parts {
+            let (name, help) = words(part, "shaders/light/point.wgsl");
+            assert!(!name.is_empty() && help.ends_with('.'), "{part:?}");
+        }
+        assert_eq!(words(LightType, "shaders/light/point.wgsl").0, "the light type: point");
+        assert_eq!(WORDS.lines().count(), parts.len());
+    }
 }

@@ -1,17 +1,7 @@
 //! The shader panel: the files behind the picture, and their errors.
 
-use bevy_egui::egui::{self, Align, Layout, Rect, ScrollArea, Ui, UiBuilder};
-
-use super::{
-    Panel, PanelContext, Place, author, export, is_panel, laws,
-    state::{Action, SHADER_TAB, Session, Severity},
-    theme::{self, Palette},
-};
-use crate::{
-    custom::source_path,
-    registry::Registry,
-    text::{plural, sentence},
-};
+use super::{author, export, laws, prelude::*, state::SHADER_TAB};
+use crate::{custom::source_path, text::sentence};
 use {files::files, trouble::troubles};
 
 mod files;
@@ -33,29 +23,23 @@ impl Panel for Shader {
     }
 
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry, actions) = (context.session(), context.registry(), &mut context.actions);
-        let palette = Palette::here(ui);
+        let session = context.session();
         let whole = ui.available_rect_before_wrap();
         let gap = 12.0;
         // Problems get more width.
         let share = if session.shaders.troubles.is_empty() { 0.5 } else { 0.4 };
         let left = (share * whole.width()).clamp(240.0, 620.0);
         let columns = whole.split_left_right_at_x(whole.left() + left + gap);
-        ui.painter().vline(columns.1.left(), whole.y_range(), egui::Stroke::new(1.0, palette.line));
-        // A column keeps its width, whatever it contains.
-        let column = |ui: &mut Ui, rect: Rect, add: &mut dyn FnMut(&mut Ui)| {
-            let builder = UiBuilder::new().max_rect(rect).layout(Layout::top_down(Align::Min));
-            ui.scope_builder(builder, |ui| add(ui));
-        };
+        ui.painter().vline(columns.1.left(), whole.y_range(), Stroke::new(1.0, Palette::here(ui).line));
         let (mut list, mut text) = columns;
         list.max.x -= gap;
         text.min.x = (text.min.x + gap).min(text.max.x - 64.0);
-        column(ui, list, &mut |ui| files(ui, session, registry, actions));
-        column(ui, text, &mut |ui| {
+        theme::column(ui, list, |ui| files(ui, context));
+        theme::column(ui, text, |ui| {
             if session.shaders.troubles.is_empty() {
-                well(ui, session, registry, actions);
+                well(ui, context);
             } else {
-                troubles(ui, session, actions);
+                troubles(ui, context);
             }
         });
     }
@@ -80,7 +64,8 @@ pub fn missing_model(session: &Session, registry: &Registry, id: &str) -> String
 }
 
 /// The panel without errors: the latest reload, and first steps.
-fn well(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<Action>) {
+fn well(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
     let heading = if laws::are_broken(session) { "No errors, but broken laws" } else { "No errors" };
     let how = match &session.shaders.folders.shaders {
         Some(_) => {
@@ -93,13 +78,13 @@ fn well(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<A
     ui.horizontal(|ui| {
         ui.label(theme::strong(ui, heading));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            laws::button(ui, session, registry, actions);
-            export::copy_menu(ui, session, registry, actions);
+            laws::button(ui, context);
+            export::copy_menu(ui, context);
             let last = session.shaders.last.as_ref();
             let text =
                 last.map(|last| format!("{} loaded in {:.0} ms", last.file, last.milliseconds.max(0.0)));
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                text.map(|text| ui.add(egui::Label::new(theme::small(ui, text)).truncate()));
+                text.map(|text| ui.add(Label::new(theme::small(ui, text)).truncate()));
             });
         });
     });
@@ -107,8 +92,8 @@ fn well(ui: &mut Ui, session: &Session, registry: &Registry, actions: &mut Vec<A
         // The scroll bar floats over this margin.
         ui.set_width(ui.available_width() - 8.0);
         laws::findings(ui, session);
-        ui.add(egui::Label::new(how).wrap());
+        ui.add(Label::new(how).wrap());
         ui.add_space(4.0);
-        actions.extend(author::buttons(ui, session, registry));
+        author::buttons(ui, context);
     });
 }

@@ -1,17 +1,8 @@
 //! Errors in shader files, each with its source line.
 
-use bevy_egui::egui::{
-    self, Align, FontId, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, WidgetType, vec2,
-};
-
-use crate::files::Shown as _;
 use crate::{
     library::status::{Trouble, shown_instead},
-    panel::{
-        icon,
-        state::{Action, ModelCommand, Session, Severity},
-        theme::{self, Palette},
-    },
+    panel::{prelude::*, state::Effect},
     shader::report::annotated,
 };
 
@@ -84,8 +75,8 @@ pub fn report(trouble: &Trouble) -> String {
     format!("{text}\n{}\n", consequence(trouble))
 }
 
-pub(super) fn troubles(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let mut all: Vec<_> = session.shaders.troubles.iter().collect();
+pub(super) fn troubles(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let mut all: Vec<_> = context.session().shaders.troubles.iter().collect();
     // Problems that affect the picture come first.
     all.sort_by_key(|t| t.stale.is_empty());
     ScrollArea::vertical().id_salt("troubles").auto_shrink(false).show(ui, |ui| {
@@ -94,38 +85,34 @@ pub(super) fn troubles(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>
             if i > 0 {
                 ui.separator();
             }
-            ui.push_id(i, |ui| self::trouble(ui, trouble, actions));
+            ui.push_id(i, |ui| self::trouble(ui, trouble, context));
         }
     });
 }
 
-pub(super) fn trouble(ui: &mut Ui, trouble: &Trouble, actions: &mut Vec<Action>) {
-    let palette = Palette::here(ui);
+fn trouble(ui: &mut Ui, trouble: &Trouble, context: &mut PanelContext<'_>) {
     let p = &trouble.problem;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        let (sign, response) = ui.allocate_exact_size(vec2(16.0, 24.0), Sense::hover());
-        icon::severity(ui.painter(), sign.center(), 6.0, Severity::Error, &palette);
-        response.on_hover_text(Severity::Error.name());
+        icon::sign(ui, [16.0, 24.0], 6.0, Severity::Error).on_hover_text(Severity::Error.name());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(path) = &trouble.path {
                 let open = ui.button("Open in editor").on_hover_text(path.shown().to_string());
                 if open.clicked() {
-                    actions.push(Action::Model(ModelCommand::Edit { path: path.clone(), line: p.line }));
+                    context.act(Action::Do(Effect::OpenInEditor { path: path.clone(), line: p.line }));
                 }
             }
-            if ui.button("Copy").on_hover_text("Copy place, message and line").clicked() {
-                actions.push(Action::Copy(report(trouble)));
-            }
+            let button = ui.button("Copy").on_hover_text("Copy place, message and line");
+            context.on_click(&button, || Action::Do(Effect::CopyText(report(trouble))));
             let place = format!("{}:{}:{}", p.file, p.line, p.column);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(egui::Label::new(theme::strong(ui, place)).truncate());
+                ui.add(Label::new(theme::strong(ui, place)).truncate());
             });
         });
     });
-    ui.add(egui::Label::new(RichText::new(&p.message).color(palette.error)).wrap().selectable(true));
+    ui.add(Label::new(RichText::new(&p.message).color(Palette::here(ui).error)).wrap().selectable(true));
     source_line(ui, trouble);
-    ui.add(egui::Label::new(consequence(trouble)).wrap());
+    ui.add(Label::new(consequence(trouble)).wrap());
 }
 
 /// The source line with its number, and a caret below the position.
@@ -150,16 +137,14 @@ fn source_line(ui: &mut Ui, trouble: &Trouble) {
     let caret = ui.painter().layout_no_wrap("^".to_owned(), large, palette.error);
     let height = source.size().y + 0.55 * caret.size().y + 2.0 * padding.y;
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
-    response.widget_info(|| {
-        WidgetInfo::labeled(WidgetType::Label, true, format!("line {}: {}", p.line, p.source.trim()))
-    });
+    theme::says(&response, WidgetType::Label, format!("line {}: {}", p.line, p.source.trim()));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 4.0, palette.field);
     let top = rect.min + padding;
     painter.galley(top, number, palette.weak);
     let left = rect.left() + gutter;
-    painter.vline(left - 0.5 * padding.x, rect.y_range().shrink(2.0), egui::Stroke::new(1.0, palette.line));
-    let at = egui::pos2(left + padding.x, top.y);
+    painter.vline(left - 0.5 * padding.x, rect.y_range().shrink(2.0), Stroke::new(1.0, palette.line));
+    let at = pos2(left + padding.x, top.y);
     // Taken from the laid-out text, since not all characters have the same width.
     let here = source.pos_from_cursor(egui::text::CCursor::new(shown.caret));
     let middle = here.min.x + 0.5 * advance;

@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use glam::Vec3;
 
 use super::{
-    CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity, Steer, ViewChange,
+    CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity, ViewChange,
 };
 use crate::{
     document::{Edit, Selection},
-    parameter::Parameter,
     registry::Registry,
 };
 
@@ -28,12 +27,8 @@ pub enum Action {
     Reload,
     /// Save to the file of the document, or choose one if there is none.
     Save,
-    /// Choose a file and save to it.
-    SaveAsDialog,
     /// Save to a file.
     SaveAs(PathBuf),
-    /// Choose a file for a parameter of a light or an object.
-    FileDialog(Selection, &'static Parameter),
     /// Forget the list of recent files.
     ClearRecent,
     /// Close the window.
@@ -58,8 +53,6 @@ pub enum Action {
     Toggle(Selection),
     /// Open files dropped on the window, or add them to the scene.
     Drop(Vec<PathBuf>),
-    /// Show the manual in the browser.
-    Manual,
     /// Start to rename a part in the scene list.
     BeginRename(Selection),
     /// Cancel renaming.
@@ -87,24 +80,14 @@ pub enum Action {
     /// Pin the pixel under the pointer, or else the centre of the picture, so that it stays explained; unpin if one is
     /// pinned.
     Pin,
-    /// Move the camera to the observer.
-    HomeView,
-    /// Turn the camera to the selection.
-    FocusSelection,
     /// Move the camera around the pinned point until it faces the plane of the point's vectors.
     LookFromSide,
-    /// Move the observer to the camera.
-    ObserverFromView,
-    /// Move the camera a little.
-    Steer(Steer),
-    /// Copy text to the clipboard.
-    Copy(String),
+    /// Carry out an effect, which changes nothing in the session.
+    Do(Effect),
     /// A command for custom models and shaders.
     Model(ModelCommand),
     /// A command for exports.
     Export(ExportCommand),
-    /// A command for pictures.
-    Picture(PictureCommand),
     /// A command for the views of a comparison.
     Compare(CompareCommand),
     /// A command for matching views.
@@ -154,26 +137,6 @@ pub enum ExportCommand {
         /// The file or folder.
         path: PathBuf,
     },
-    /// Stop the running export.
-    Cancel,
-    /// Show a folder in the file manager.
-    Reveal(PathBuf),
-}
-
-/// A command for pictures. A view means that view alone; `None` means all views as shown.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum PictureCommand {
-    /// Choose a file for the picture.
-    Dialog(Option<usize>),
-    /// Save the picture to a file.
-    To {
-        /// The view.
-        view: Option<usize>,
-        /// The file.
-        path: PathBuf,
-    },
-    /// Copy the picture to the clipboard.
-    Copy(Option<usize>),
 }
 
 /// A command for custom models and shaders.
@@ -191,63 +154,62 @@ pub enum ModelCommand {
     Cancel,
     /// Open the file of the current model in an editor.
     EditShown,
-    /// Open a file in an editor.
-    Edit {
-        /// The file.
-        path: PathBuf,
-        /// The line to go to, from 1.
-        line: usize,
-    },
     /// Search for violations of the laws of the current model.
     CheckLaws,
-    /// Choose a folder to export the shaders to.
-    ExportDialog,
-    /// Export the shaders to a folder.
-    Export(PathBuf),
-    /// Copy a file into the folder of custom models, and select its model.
-    Adopt(PathBuf),
 }
 
 impl Session {
     /// Applies an action. Returns the effects, which need files, entities or the operating system.
     pub fn apply(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
+        self.act(action, registry);
+        self.requests()
+    }
+
+    /// Applies an action; its effects are [requested](Self::request).
+    pub(super) fn act(&mut self, action: Action, registry: &Registry) {
         let revision = self.document.revision();
         let words = self.default_words();
         let undoes = matches!(action, Action::Undo | Action::Redo | Action::GoToStep(_));
-        let mut effects = self.carry_out(action, registry);
+        self.carry_out(action, registry);
         if !undoes && self.document.revision() != revision {
             self.forget_default_words(words);
         }
-        effects.extend(self.resume_lesson());
+        self.resume_lesson();
         // The button would undo a different step.
         self.messages.check_undo(&self.last_step());
-        effects
     }
 
-    pub(super) fn carry_out(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {
+    /// Requests an effect.
+    pub(super) fn request(&mut self, effect: Effect) {
+        self.requested.push(effect);
+    }
+
+    /// The effects requested since the last call.
+    pub(in crate::panel) fn requests(&mut self) -> Vec<Effect> {
+        std::mem::take(&mut self.requested)
+    }
+
+    pub(super) fn carry_out(&mut self, action: Action, registry: &Registry) {
         match action {
             Action::New
             | Action::OpenDialog
             | Action::Open(_)
             | Action::OpenExample(_)
             | Action::Reload
-            | Action::Quit => return self.unless_unsaved(action, registry),
-            Action::Save => return vec![self.save()],
-            Action::SaveAsDialog => return vec![Effect::PickSave],
-            Action::SaveAs(path) => return self.save_as(&path, registry),
-            Action::FileDialog(part, parameter) => return vec![Effect::PickFile(part, parameter)],
-            Action::ClearRecent => return self.clear_recent(),
-            Action::Answer(answer) => return self.answered(answer, registry),
+            | Action::Quit => self.unless_unsaved(action, registry),
+            Action::Save => self.save(),
+            Action::SaveAs(path) => self.save_as(&path, registry),
+            Action::ClearRecent => self.clear_recent(),
+            Action::Answer(answer) => self.answered(answer, registry),
             Action::Select(selection) => self.select(selection),
             Action::SelectNext => self.step_selection(1),
             Action::SelectPrevious => self.step_selection(-1),
-            Action::AddLight(id) => self.add_light(&id, registry),
-            Action::AddObject(id) => self.add_object(&id, registry),
+            Action::AddLight(id) => self.add_light(&id, |_| (), registry),
+            Action::AddObject(id) => self.add_object(&id, None, |_| (), registry),
             Action::Duplicate(part) => self.duplicate(part, registry),
             Action::Remove(part) => self.remove(part, registry),
             Action::Toggle(part) => self.toggle(part, registry),
-            Action::Drop(paths) => return self.dropped(paths, registry),
-            Action::Manual => return vec![Effect::OpenManual],
+            Action::Drop(paths) => self.dropped(paths, registry),
             Action::BeginRename(part) => self.begin_rename(part),
             Action::CancelRename => self.renaming = None,
             Action::BeginDrag => self.document.end_gesture(),
@@ -258,30 +220,24 @@ impl Session {
             Action::GoToStep(done) => self.go_to_step(done, registry),
             Action::RecentModel(slot) => self.choose_recent(slot, registry),
             Action::Expose(ev) => self.expose(ev, registry),
-            Action::NextTerms => return self.next_terms(registry),
+            Action::NextTerms => self.next_terms(registry),
             Action::Compare(command) => self.compare(command, registry),
-            Action::Match(command) => return self.matching(command, registry),
-            Action::Plot(command) => return self.plot(command),
-            Action::Lesson(command) => return self.lesson(command, registry),
+            Action::Match(command) => self.matching(command, registry),
+            Action::Plot(command) => self.plot(command),
+            Action::Lesson(command) => self.lesson(command, registry),
             Action::View(ViewChange::Terms(terms)) if self.active() > 0 => {
                 self.override_terms(terms, registry)
             }
-            Action::View(change) => return self.change_view(change),
+            Action::View(change) => self.change_view(change),
             Action::Pin => self.toggle_pin(),
-            Action::HomeView => return vec![Effect::HomeView],
-            Action::FocusSelection => return vec![Effect::FocusSelection],
             // The panels have made a movement of it, or a message.
             Action::LookFromSide => {}
-            Action::ObserverFromView => return vec![Effect::ObserverFromView],
-            Action::Steer(steer) => return vec![Effect::Steer(steer)],
-            Action::Copy(text) => return vec![Effect::CopyText(text)],
-            Action::Model(ask) => return self.author(ask, registry),
-            Action::Export(command) => return self.export(command),
-            Action::Picture(command) => return self.picture(command),
+            Action::Do(effect) => self.request(effect),
+            Action::Model(ask) => self.author(ask, registry),
+            Action::Export(command) => self.export(command),
             Action::Say(severity, text) => self.say(severity, text),
             Action::Dismiss(index) => self.messages.dismiss(index),
             Action::DismissAll => self.messages.clear(),
         }
-        Vec::new()
     }
 }

@@ -28,6 +28,19 @@ pub struct LawCheck {
     pub outcome: Option<Result<LawReport, String>>,
 }
 
+/// The writing of custom models and shaders.
+#[derive(Clone, Debug, Default)]
+pub struct Authoring {
+    /// The custom model that is about to be created.
+    pub draft: Option<ModelDraft>,
+    /// A model to select once it is available, because its file was just written.
+    pub wanted_model: Option<String>,
+    /// The latest law check of a model.
+    pub laws: Option<LawCheck>,
+    /// Shader problems of the previous frame, by file and message.
+    pub(in crate::panel) seen_troubles: Vec<(String, String)>,
+}
+
 /// A problem with a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameProblem {
@@ -74,61 +87,22 @@ fn free_id(id: &str, registry: &Registry) -> String {
     std::iter::once(id.to_owned()).chain(numbered).find(|id| !taken(id)).unwrap_or_default()
 }
 
-impl Session {
-    /// Applies a command for custom models and shaders.
-    pub(super) fn author(&mut self, ask: ModelCommand, registry: &Registry) -> Vec<Effect> {
-        match ask {
-            ModelCommand::New => {
-                self.draft = Some(ModelDraft { of: None, name: free_id("my_model", registry) })
-            }
-            ModelCommand::Duplicate => {
-                let of = self.model_shown().to_owned();
-                if registry.model(&of).is_none() {
-                    self.say(Severity::Warning, format!("There is no model “{of}” to copy."));
-                    return Vec::new();
-                }
-                let name = free_id(&format!("my_{}", of.trim_start_matches("my_")), registry);
-                self.draft = Some(ModelDraft { of: Some(of), name });
-            }
-            ModelCommand::Type(text) => {
-                if let Some(draft) = &mut self.draft {
-                    draft.name = text;
-                }
-            }
-            ModelCommand::Create => return self.create(registry),
-            ModelCommand::Cancel => self.draft = None,
-            ModelCommand::EditShown => return self.edit_shown(registry),
-            ModelCommand::Edit { path, line } => return vec![Effect::OpenInEditor { path, line }],
-            ModelCommand::CheckLaws => return self.check_laws(),
-            ModelCommand::ExportDialog => return vec![Effect::PickShaderFolder],
-            ModelCommand::Adopt(path) => return vec![Effect::AdoptModel(path)],
-            ModelCommand::Export(folder) => return vec![Effect::ExportShaders(folder)],
-        }
-        Vec::new()
-    }
-
-    fn create(&mut self, registry: &Registry) -> Vec<Effect> {
+impl Authoring {
+    /// Creates the model whose name was typed.
+    fn create(&mut self, registry: &Registry) -> Option<Effect> {
         // The problem is shown beside the field.
         let checked = self.draft.as_ref().and_then(|draft| check_name(&draft.name, registry).ok());
-        let Some((id, draft)) = checked.and_then(|id| Some((id, self.draft.take()?))) else {
-            return Vec::new();
-        };
-        let ModelDraft { of, name } = draft;
-        let name = name.trim().to_owned();
-        vec![match of {
-            Some(model) => Effect::DuplicateModel { model, id, name },
-            None => Effect::NewModel { id, name },
-        }]
+        let (id, ModelDraft { of, name }) = checked.and_then(|id| Some((id, self.draft.take()?)))?;
+        Some(Effect::NewModel { of, id, name: name.trim().to_owned() })
     }
 
-    fn check_laws(&mut self) -> Vec<Effect> {
+    /// Starts a check of a model, unless one runs. `since` is the latest reload of shaders.
+    fn check_laws(&mut self, model: String, since: Option<Reloaded>) -> Option<Effect> {
         let running = self.laws.as_ref().is_some_and(|check| check.outcome.is_none());
-        if running {
-            return Vec::new();
-        }
-        let model = self.model_shown().to_owned();
-        self.laws = Some(LawCheck { model: model.clone(), since: self.shaders.last.clone(), outcome: None });
-        vec![Effect::CheckLaws(model)]
+        (!running).then(|| {
+            self.laws = Some(LawCheck { model: model.clone(), since, outcome: None });
+            Effect::CheckLaws(model)
+        })
     }
 
     /// Receives the result of a law check.
@@ -137,16 +111,49 @@ impl Session {
             check.outcome = Some(outcome);
         }
     }
+}
 
-    fn edit_shown(&mut self, registry: &Registry) -> Vec<Effect> {
+impl Session {
+    /// Applies a command for custom models and shaders.
+    pub(super) fn author(&mut self, ask: ModelCommand, registry: &Registry) {
+        match ask {
+            ModelCommand::New => {
+                self.authoring.draft = Some(ModelDraft { of: None, name: free_id("my_model", registry) });
+            }
+            ModelCommand::Duplicate => {
+                let of = self.model_shown().to_owned();
+                if registry.model(&of).is_none() {
+                    return self.say(Severity::Warning, format!("There is no model “{of}” to copy."));
+                }
+                let name = free_id(&format!("my_{}", of.trim_start_matches("my_")), registry);
+                self.authoring.draft = Some(ModelDraft { of: Some(of), name });
+            }
+            ModelCommand::Type(text) => {
+                if let Some(draft) = &mut self.authoring.draft {
+                    draft.name = text;
+                }
+            }
+            ModelCommand::Create => self.requested.extend(self.authoring.create(registry)),
+            ModelCommand::Cancel => self.authoring.draft = None,
+            ModelCommand::EditShown => self.edit_shown(registry),
+            ModelCommand::CheckLaws => {
+                let model = self.model_shown().to_owned();
+                self.requested.extend(self.authoring.check_laws(model, self.shaders.last.clone()));
+            }
+        }
+    }
+
+    fn edit_shown(&mut self, registry: &Registry) {
         let id = self.model_shown();
         let path = registry.model(id).map_or_else(|| source_path(id), |m| m.declaration.wgsl.path.to_owned());
         match self.shaders.folders.file_of(&path) {
-            Some(file) => vec![Effect::OpenInEditor { path: file, line: self.line_of_trouble(&path) }],
+            Some(file) => {
+                let line = self.line_of_trouble(&path);
+                self.request(Effect::OpenInEditor { path: file, line });
+            }
             None => {
                 self.say(Severity::Info, BUILT_IN);
                 self.view.unfold(SHADER_TAB);
-                Vec::new()
             }
         }
     }

@@ -1,11 +1,9 @@
 //! The views of a comparison: the active view, and adding and removing views.
 
-use std::sync::Arc;
-
 use super::{Converging, Session, Severity};
 use crate::{
     channel::DebugChannel,
-    document::{Edit, Extent, Revision, Selection},
+    document::{Edit, Extent, Selection},
     optics::TermSelection,
     parameter::{Value, Values},
     registry::Registry,
@@ -43,20 +41,6 @@ pub enum CompareCommand {
     Reset(usize, Key),
 }
 
-/// The scene as seen in the active view, unless that is the scene itself.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Seen(Option<InView>);
-
-/// What a view showed at a revision of the document.
-#[derive(Clone, Debug)]
-struct InView {
-    at: (Revision, usize),
-    variant: Variant,
-    /// The models of the scene itself.
-    models: [String; 2],
-    scene: Arc<Scene>,
-}
-
 impl Session {
     /// The active view, which the panels show and change: 0 is the scene itself, 1 view B.
     #[must_use]
@@ -67,12 +51,7 @@ impl Session {
     /// The scene as seen in the active view.
     #[must_use]
     pub fn scene(&self) -> &Scene {
-        match &self.seen.0 {
-            Some(seen) if self.active() > 0 && seen.at == (self.document.revision(), self.active()) => {
-                &seen.scene
-            }
-            _ => &self.document,
-        }
+        self.seen.scene(&self.document, self.active())
     }
 
     /// The view compared with view A: side by side, the active one.
@@ -127,40 +106,13 @@ impl Session {
     /// True if the cached scene of the active view is out of date, so that [`look`](Self::look) must be called.
     #[must_use]
     pub fn is_stale(&self) -> bool {
-        let now = (self.active() > 0).then(|| (self.document.revision(), self.active()));
-        self.seen.0.as_ref().map(|seen| seen.at) != now
+        self.seen.is_stale(&self.document, self.active())
     }
 
     /// Updates [`scene`](Self::scene) to the active view. Where little has changed since, it costs as little.
     pub fn look(&mut self, registry: &Registry) {
         self.view.active = self.active();
-        let view = self.view.active;
-        let before = self.seen.0.take();
-        let Some(variant) = self.document.overrides(view) else { return };
-        let document: &Scene = &self.document;
-        let models = [document.reflection_model.clone(), document.shading_model.clone()];
-        let same = |seen: &InView| {
-            seen.at.1 == view && seen.models == models && seen.variant.shows_objects_like(&variant)
-        };
-        let kept = before.filter(same).and_then(|seen| {
-            let parts = self.document.changes_since(seen.at.0)?;
-            Some((parts, seen.scene))
-        });
-        let scene = match kept {
-            Some((parts, mut scene)) => {
-                let seen = Arc::make_mut(&mut scene);
-                for part in parts {
-                    part.copy(document, seen);
-                    match part {
-                        Extent::Object(i) => variant.apply_to_object(seen, i, registry),
-                        _ => variant.lay_over_rest(seen),
-                    }
-                }
-                scene
-            }
-            None => Arc::new(variant.applied(document, registry)),
-        };
-        self.seen.0 = Some(InView { at: (self.document.revision(), view), variant, models, scene });
+        self.seen.look(&self.document, self.view.active, registry);
     }
 
     /// Overrides of the active view; `None` for view A.
@@ -253,9 +205,7 @@ impl Session {
                 self.set(Comparison { layout, with, ..comparison }, registry);
             }
             CompareCommand::NextLayout => {
-                let all = Layout::ALL;
-                let at = all.iter().position(|layout| *layout == comparison.layout).unwrap_or(0);
-                self.compare(CompareCommand::Layout(all[(at + 1) % all.len()]), registry);
+                self.compare(CompareCommand::Layout(comparison.layout.next()), registry);
             }
             CompareCommand::Set(comparison) => self.set(comparison, registry),
             CompareCommand::Remove(view) => self.remove_view(view, registry),

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Action, Effect, LessonCommand, LessonSource, ModelCommand, Note, Session, Severity};
+use super::{Action, Effect, LessonCommand, LessonSource, Note, Session, Severity};
 use crate::files::Shown as _;
 use crate::{
     custom,
     document::{Edit, Selection},
-    parameter::{Parameter, ParameterKind, Value},
+    parameter::{Parameter, Value},
     registry::Registry,
     scene::{Part, formats},
 };
@@ -19,16 +19,14 @@ fn ends_in(path: &Path, extensions: &[&str]) -> bool {
 
 /// The first of the parameters that accepts the file.
 fn taker(parameters: &'static [Parameter], path: &Path) -> Option<&'static Parameter> {
-    parameters
-        .iter()
-        .find(|p| matches!(p.kind, ParameterKind::File { format, .. } if ends_in(path, format.extensions)))
+    parameters.iter().find(|p| p.kind.format().is_some_and(|format| ends_in(path, format.extensions)))
 }
 
 impl Session {
     /// Opens dropped files: the first scene, picture with a scene, or lesson; otherwise adds every object and lamp to
     /// the scene, and selects a model.
-    pub(super) fn dropped(&mut self, paths: Vec<PathBuf>, registry: &Registry) -> Vec<Effect> {
-        let Some(first) = paths.first().cloned() else { return Vec::new() };
+    pub(super) fn dropped(&mut self, paths: Vec<PathBuf>, registry: &Registry) {
+        let Some(first) = paths.first().cloned() else { return };
         if let Some(scene) = paths.iter().find(|path| formats::is_scene_file(path, registry)) {
             return self.carry_out(Action::Open(scene.clone()), registry);
         }
@@ -41,7 +39,9 @@ impl Session {
             taken |= self.take_part(path, registry) || self.take_model(path, registry);
         }
         // Any other file is opened as a scene: the message explains why it is not one.
-        if taken { Vec::new() } else { self.carry_out(Action::Open(first), registry) }
+        if !taken {
+            self.carry_out(Action::Open(first), registry);
+        }
     }
 
     /// Adds an object or a lamp made from the file; a selected lamp of that type receives the file instead. Returns
@@ -52,7 +52,7 @@ impl Session {
         {
             let Some(file) = self.usable(parameter, path) else { return true };
             let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-            self.add_object_with(
+            self.add_object(
                 shape.declaration.id,
                 name,
                 |object| object.shape.set(parameter.name, file),
@@ -73,7 +73,7 @@ impl Session {
                 let edit = Edit::parameter(Part::Light(i), parameter.name, file);
                 self.edit(edit, registry);
             }
-            None => self.add_light_with(id, |light| light.parameters.set(parameter.name, file), registry),
+            None => self.add_light(id, |light| light.parameters.set(parameter.name, file), registry),
         }
         true
     }
@@ -81,11 +81,12 @@ impl Session {
     /// The file as a value; `None` with a message if the file is damaged.
     fn usable(&mut self, parameter: &'static Parameter, path: &Path) -> Option<Value> {
         let file = self.chosen(parameter, path)?;
-        if let Value::File(named) = &file
-            && let Some(problem) = named.problem()
-        {
-            self.say(Severity::Error, format!("{problem}; nothing was added."));
-            return None;
+        if let Value::File(named) = &file {
+            self.outside.allow([named]);
+            if let Some(problem) = named.problem() {
+                self.say(Severity::Error, format!("{problem}; nothing was added."));
+                return None;
+            }
         }
         Some(file)
     }
@@ -109,7 +110,7 @@ impl Session {
                     "{} is not in the folder of custom models. Copy it there to use it.",
                     path.shown()
                 );
-                let copy = Action::Model(ModelCommand::Adopt(path.to_owned()));
+                let copy = Action::Do(Effect::AdoptModel(path.to_owned()));
                 self.note(Note::new(Severity::Info, text).offering("Copy it there", copy));
                 self.view.unfold(super::MESSAGES_TAB);
             }

@@ -33,6 +33,10 @@ impl Session {
         let scene_choice = chosen.filter(|_| part == Part::Scene);
         let other_model = chosen.is_some() && matches!(part, Part::Scene | Part::Object(_));
         let named = sets(Light::name) && matches!(part, Part::Light(_) | Part::Object(_));
+        self.outside.allow(values.iter().filter_map(|(_, value)| match value {
+            Some(Value::File(file)) => Some(file),
+            _ => None,
+        }));
         let before = self.document.revision();
         let done = match edit.one() {
             Some((Part::Light(i), key, Some(Value::Choice(id)))) if key == Light::light_type.into() => {

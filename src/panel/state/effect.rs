@@ -7,15 +7,11 @@ use glam::Vec3;
 
 use crate::{document::Selection, matching::What, parameter::Parameter, scene::load::Stamp};
 
-/// Work that needs files, entities or the operating system, carried out by the app.
-#[derive(Clone, Debug, PartialEq)]
+/// Work that needs files, entities or the operating system: a message to the systems that carry it out.
+#[derive(Clone, Debug, PartialEq, Message)]
 pub enum Effect {
-    /// Show the dialog that selects a file to open.
-    PickOpen,
-    /// Show the dialog that selects a file to save to.
-    PickSave,
-    /// Show the dialog that selects a file for a parameter of a light or an object.
-    PickFile(Selection, &'static Parameter),
+    /// Show a dialog: see [`Dialogs`](crate::panel::Dialogs).
+    Pick(Pick),
     /// Read a file; see [`effects::run`](crate::panel::effects::run).
     OpenFile(PathBuf),
     /// Write the document, or a copy of the scene of the open lesson; see [`effects::run`](crate::panel::effects::run).
@@ -61,18 +57,11 @@ pub enum Effect {
     SaveSettings,
     /// Create the file of a new custom model.
     NewModel {
+        /// Id of the model to copy, if any.
+        of: Option<String>,
         /// Id of the model, also the file name.
         id: String,
         /// Display name.
-        name: String,
-    },
-    /// Create the file of a custom model as a copy of another model.
-    DuplicateModel {
-        /// Id of the model to copy.
-        model: String,
-        /// Id of the copy, also the file name.
-        id: String,
-        /// Display name of the copy.
         name: String,
     },
     /// Copy a file into the folder of custom models.
@@ -88,8 +77,6 @@ pub enum Effect {
     },
     /// Search for violations of the laws of a model.
     CheckLaws(String),
-    /// Show the dialog that selects the destination of an export in a format, by its id.
-    PickExport(&'static str),
     /// Export the scene.
     Export {
         /// Id of the format.
@@ -99,8 +86,6 @@ pub enum Effect {
         /// True to overwrite existing files, after asking the user.
         overwrite: bool,
     },
-    /// Show the dialog that selects a file for the picture of a single view, or of all as shown.
-    PickPicture(Option<usize>),
     /// Save or copy the picture of a single view, or of all as shown.
     Picture {
         /// The single view, if any.
@@ -119,8 +104,6 @@ pub enum Effect {
         /// Names of the free parameters.
         parameters: Vec<&'static str>,
     },
-    /// Show the dialog that selects a file for the plot.
-    PickPlot,
     /// Save the plot to a file.
     WritePlot(PathBuf),
     /// Stop the running match.
@@ -129,8 +112,6 @@ pub enum Effect {
     CancelExport,
     /// Show a folder in the file manager.
     Reveal(PathBuf),
-    /// Show the dialog that selects a lesson.
-    PickLesson,
     /// Read a lesson; see [`effects::run`](crate::panel::effects::run).
     OpenLesson(PathBuf),
     /// Reload the open lesson, whose file may have changed.
@@ -139,38 +120,29 @@ pub enum Effect {
     SaveProgress(String),
     /// Change the camera along with the document.
     Camera(CameraChange),
-    /// Show the dialog that selects a folder for the shaders.
-    PickShaderFolder,
     /// Export the shaders to a folder for editing.
     ExportShaders(PathBuf),
 }
 
-impl Effect {
-    /// True if it shows a dialog: see [`Dialogs`](crate::panel::Dialogs).
-    pub(crate) fn is_dialog(&self) -> bool {
-        matches!(
-            self,
-            Self::PickOpen
-                | Self::PickSave
-                | Self::PickFile(..)
-                | Self::PickExport(_)
-                | Self::PickPicture(_)
-                | Self::PickPlot
-                | Self::PickLesson
-                | Self::PickShaderFolder
-        )
-    }
-
-    /// True if it writes files of custom models or shaders.
-    pub(crate) fn is_authoring(&self) -> bool {
-        matches!(
-            self,
-            Self::NewModel { .. }
-                | Self::DuplicateModel { .. }
-                | Self::AdoptModel(_)
-                | Self::ExportShaders(_)
-        )
-    }
+/// What a dialog selects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pick {
+    /// A file to open.
+    Open,
+    /// A file to save to.
+    Save,
+    /// A file for a parameter of a light or an object.
+    File(Selection, &'static Parameter),
+    /// The destination of an export in a format, by its id.
+    Export(&'static str),
+    /// A file for the picture of a single view, or of all as shown.
+    Picture(Option<usize>),
+    /// A file for the plot.
+    Plot,
+    /// A lesson.
+    Lesson,
+    /// A folder for the shaders.
+    ShaderFolder,
 }
 
 /// Change of the camera when the user's own document is set aside or restored.
@@ -212,7 +184,3 @@ pub enum RecoveryChoice {
     /// All copies are kept for later.
     Later,
 }
-
-/// An [`Effect`] as a message to the systems that carry it out.
-#[derive(Clone, Debug, PartialEq, Message)]
-pub struct LabEffect(pub Effect);

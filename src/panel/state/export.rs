@@ -1,40 +1,42 @@
-//! Exports: commands and results.
+//! Exports and pictures: commands and results.
 
 use std::path::{Path, PathBuf};
 
-use super::{Action, Answer, Effect, ExportCommand, Note, Question, Session, Severity};
-use crate::export::{Form, form};
-use crate::files::Shown as _;
+use super::{Action, Effect, ExportCommand, Note, Pick, Session, Severity};
+use crate::{
+    export::{Form, form},
+    files::{self, Shown as _},
+    scene::variant::LETTERS,
+};
+
+/// Result of saving or copying a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PictureEnd {
+    /// Saved to a file.
+    Saved(PathBuf),
+    /// Copied to the clipboard, with this width and height in pixels.
+    Copied([u32; 2]),
+    /// Neither saved nor copied, for the given reason.
+    Failed(String),
+}
 
 impl Session {
-    pub(super) fn export(&mut self, command: ExportCommand) -> Vec<Effect> {
+    pub(super) fn export(&mut self, command: ExportCommand) {
         match command {
-            ExportCommand::Cancel => vec![Effect::CancelExport],
-            ExportCommand::Reveal(path) => vec![Effect::Reveal(path)],
             _ if self.facts.export.is_some() => {
                 self.say(Severity::Info, "An export is still running: wait for it, or cancel it below.");
-                Vec::new()
             }
-            ExportCommand::Dialog(form) => vec![Effect::PickExport(form)],
-            ExportCommand::To { form, path } => vec![Effect::Export { form, path, overwrite: false }],
+            ExportCommand::Dialog(form) => self.request(Effect::Pick(Pick::Export(form))),
+            ExportCommand::To { form, path } => {
+                self.request(Effect::Export { form, path, overwrite: false });
+            }
         }
     }
 
-    /// Asks whether to overwrite an existing destination of an export.
-    pub fn export_exists(&mut self, form: &'static str, path: PathBuf) {
-        self.questions.ask(Question::ReplaceExport { form, path });
-    }
-
-    pub(super) fn answer_export(&self, form: &'static str, path: PathBuf, answer: Answer) -> Vec<Effect> {
-        match answer {
-            Answer::Overwrite => vec![Effect::Export { form, path, overwrite: true }],
-            _ => Vec::new(),
-        }
-    }
-
-    /// Reports a written file, and offers to show its folder.
-    pub(super) fn note_file(&mut self, text: String, folder: &Path) {
-        let reveal = Action::Export(ExportCommand::Reveal(folder.to_owned()));
+    /// Reports a written file or folder, and offers to show the folder.
+    pub(super) fn note_file(&mut self, text: String, path: &Path) {
+        let folder = if path.is_dir() { path } else { files::folder_of(path) };
+        let reveal = Action::Do(Effect::Reveal(folder.to_owned()));
         self.note(Note::new(Severity::Info, text).offering("Open the folder", reveal));
     }
 
@@ -44,14 +46,33 @@ impl Session {
         match outcome {
             Ok(notes) => {
                 notes.into_iter().for_each(|note| self.say(Severity::Info, note));
-                let text = format!("Exported as {name} to {}.", path.shown());
-                self.note_file(text, if path.is_dir() { &path } else { crate::files::folder_of(&path) });
+                self.note_file(format!("Exported as {name} to {}.", path.shown()), &path);
             }
             // The latest message is on top.
             Err(reasons) => {
                 reasons.into_iter().rev().for_each(|reason| self.say(Severity::Error, reason));
                 self.say(Severity::Error, format!("The scene was not exported as {name}."));
             }
+        }
+    }
+
+    /// The suggested name for a picture, without extension.
+    #[must_use]
+    pub fn picture_stem(&self, view: Option<usize>) -> String {
+        let letter = view.filter(|_| !self.document.variants.is_empty()).and_then(|view| LETTERS.get(view));
+        letter.map_or_else(|| self.stem(), |letter| format!("{}_{}", self.stem(), letter.to_lowercase()))
+    }
+
+    /// Reports the result of saving or copying a picture.
+    pub fn pictured(&mut self, end: PictureEnd) {
+        match end {
+            PictureEnd::Saved(path) => {
+                self.note_file(format!("Saved the picture to {}.", path.shown()), &path);
+            }
+            PictureEnd::Copied([width, height]) => {
+                self.say(Severity::Info, format!("Copied the picture: {width}×{height} pixels."));
+            }
+            PictureEnd::Failed(why) => self.say(Severity::Error, why),
         }
     }
 }

@@ -24,10 +24,10 @@ pub struct Facts {
     pub converged: [Converging; MAX_VARIANTS + 1],
     /// Statistics of the comparison; `None` until they are known.
     pub comparison: Option<Numbers>,
-    /// The running export.
-    pub export: Option<Exporting>,
-    /// The running match.
-    pub matching: Option<Matching>,
+    /// The running export, labelled with the name of its format.
+    pub export: Option<Running<&'static str>>,
+    /// The running match, labelled with the view that is matched to view A.
+    pub matching: Option<Running<usize>>,
     /// Mean time per frame, in milliseconds; 0 if not yet known.
     pub frame_ms: f32,
     /// The graphics API: "Vulkan", "Metal", …
@@ -81,22 +81,11 @@ impl Converging {
     }
 }
 
-/// State of a running export.
+/// A running task.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Exporting {
-    /// Name of the format.
-    pub name: &'static str,
-    /// Completed fraction.
-    pub done: f32,
-    /// The current step.
-    pub step: String,
-}
-
-/// State of a running match.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Matching {
-    /// The view that is matched to view A.
-    pub view: usize,
+pub struct Running<L> {
+    /// What it is about.
+    pub label: L,
     /// Completed fraction.
     pub done: f32,
     /// The current step.

@@ -2,19 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Action, Effect, Note, Session, Severity};
-use crate::files::Shown as _;
+use super::{Action, Effect, Note, Pick, RECENT_FILES, Session, Severity};
 use crate::{
     document::{Document, Edit, Extent, Selection},
-    files,
+    files::{self, Shown as _},
     optics::TermSelection,
-    parameter::{NamedFile, Parameter, ParameterKind, Value, Values, outside},
+    parameter::{NamedFile, Outside, Parameter, Value, Values},
     registry::Registry,
     scene::{Part, Scene, examples::EXAMPLES, formats},
 };
-
-/// Maximum length of the list of recent files.
-pub const RECENT_FILES: usize = 10;
 
 /// The file for a name typed for a scene: keeps the extension of a writable format, once, and otherwise appends that of
 /// JSON.
@@ -48,23 +44,28 @@ fn see_from(values: &mut Values, folder: &Path) -> bool {
 impl Session {
     /// Makes a scene read from a file the document.
     pub fn opened(&mut self, path: PathBuf, scene: Scene) -> Vec<Effect> {
+        self.show_opened(path, scene);
+        self.requests()
+    }
+
+    pub(super) fn show_opened(&mut self, path: PathBuf, scene: Scene) {
         self.view.examples_open = false;
         self.healed(&path);
         self.remember_file(&path);
         self.replace_document(Some(path), scene);
-        vec![Effect::DocumentChanged, Effect::SaveSettings]
+        self.requested.extend([Effect::DocumentChanged, Effect::SaveSettings]);
     }
 
     /// Saves the document to its file, or asks for one.
-    pub(super) fn save(&self) -> Effect {
-        match self.path.clone() {
+    pub(super) fn save(&mut self) {
+        self.request(match self.path.clone() {
             Some(path) => Effect::SaveFile { path, overwrite: false },
-            None => Effect::PickSave,
-        }
+            None => Effect::Pick(Pick::Save),
+        });
     }
 
     /// Saves the document to a file with the typed name.
-    pub(super) fn save_as(&mut self, typed: &Path, registry: &Registry) -> Vec<Effect> {
+    pub(super) fn save_as(&mut self, typed: &Path, registry: &Registry) {
         // The default scene and examples take the name of their file from now on.
         let shipped = |name: &String| EXAMPLES.iter().any(|example| example.name == *name);
         if self.lesson.is_none() && self.path.is_none() && self.document.name.as_ref().is_some_and(shipped) {
@@ -75,7 +76,7 @@ impl Session {
         let path = scene_file(typed, registry);
         let overwrite = path == typed;
         self.keep_files(&path);
-        vec![Effect::SaveFile { path, overwrite }]
+        self.request(Effect::SaveFile { path, overwrite });
     }
 
     /// True for the name, and for the description, if they are those of the default scene and still apply. False in a
@@ -132,6 +133,7 @@ impl Session {
                     .change(name, Extent::Object(i), self.selection, |scene| scene.objects[i] = object);
             }
         }
+        self.outside.allow(self.document.files());
     }
 
     /// The edit that sets a file parameter of a light or an object. The name is relative to the folder of the scene if
@@ -142,17 +144,12 @@ impl Session {
         parameter: &'static Parameter,
         path: &Path,
     ) -> Option<Edit> {
-        let file = self.chosen(parameter, path)?;
-        match part {
-            Selection::Light(i) => Some(Edit::parameter(Part::Light(i), parameter.name, file)),
-            Selection::Object(i) => Some(Edit::parameter(Part::Object(i), parameter.name, file)),
-            _ => None,
-        }
+        Some(Edit::parameter(Part::from(part), parameter.name, self.chosen(parameter, path)?))
     }
 
     /// A selected file, as the value of a parameter.
     pub(super) fn chosen(&self, parameter: &Parameter, path: &Path) -> Option<Value> {
-        let ParameterKind::File { format, .. } = parameter.kind else { return None };
+        let format = parameter.kind.format()?;
         let folder = self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
         let below = std::path::absolute(folder).ok().filter(|_| self.path.is_some());
         let written = below.and_then(|folder| path.strip_prefix(folder).ok()).unwrap_or(path);
@@ -166,20 +163,18 @@ impl Session {
         self.path = Some(path);
         self.document.mark_saved(registry);
         self.disk_saved();
-        let mut effects = vec![Effect::SaveSettings];
+        self.request(Effect::SaveSettings);
         if let Some(action) = self.questions.after_save.take() {
-            effects.extend(self.apply(action, registry));
+            self.act(action, registry);
         }
-        effects
+        self.requests()
     }
 
     /// Records that a copy of the open lesson's scene has been saved.
     pub(in crate::panel) fn copy_saved(&mut self, path: &Path) -> Vec<Effect> {
         self.remember_file(path);
-        self.note_file(
-            format!("A copy of this scene was saved to {}; the lesson goes on.", path.shown()),
-            files::folder_of(path),
-        );
+        let text = format!("A copy of this scene was saved to {}; the lesson goes on.", path.shown());
+        self.note_file(text, path);
         vec![Effect::SaveSettings]
     }
 
@@ -188,13 +183,15 @@ impl Session {
         if self.facts.camera_is_free {
             note.text.push_str(" The file keeps the observer’s view, not the one you turned to.");
             match self.observer_problem() {
-                None => note = note.offering("Set observer to this view", Action::ObserverFromView),
+                None => {
+                    note = note.offering("Set observer to this view", Action::Do(Effect::ObserverFromView))
+                }
                 Some(why) => note.text.push_str(&format!(" {why}")),
             }
         }
         let folder = files::folder_of(path);
         if let Some(file) = self.document.files().find(|file| file.is_outside(folder)) {
-            let option = outside::OPTION;
+            let option = Outside::OPTION;
             note.text.push_str(&format!(
                 " It names {}, outside its folder: copy it there, or start with {option} to open it again.",
                 file.name()
@@ -204,22 +201,17 @@ impl Session {
         self.note(note);
     }
 
-    pub(super) fn start_new(&mut self) -> Vec<Effect> {
-        self.replace_document(None, Scene::default());
-        vec![Effect::DocumentChanged]
+    /// Shows a scene that has no file.
+    pub(super) fn start_with(&mut self, scene: Scene) {
+        self.replace_document(None, scene);
+        self.request(Effect::DocumentChanged);
     }
 
-    pub(super) fn open_example(&mut self, i: usize, registry: &Registry) -> Vec<Effect> {
+    pub(super) fn open_example(&mut self, i: usize, registry: &Registry) {
         match EXAMPLES.get(i).map(|example| example.scene(registry)) {
-            Some(Ok(scene)) => {
-                self.replace_document(None, scene);
-                vec![Effect::DocumentChanged]
-            }
-            Some(Err(error)) => {
-                self.say(Severity::Error, error.to_string());
-                Vec::new()
-            }
-            None => Vec::new(),
+            Some(Ok(scene)) => self.start_with(scene),
+            Some(Err(error)) => self.say(Severity::Error, error.to_string()),
+            None => {}
         }
     }
 
@@ -243,20 +235,21 @@ impl Session {
 
     /// Makes the scene of a recovery copy the document, with unsaved changes.
     pub(in crate::panel) fn recovered(&mut self, path: Option<PathBuf>, scene: Scene) {
+        self.outside.allow(scene.files());
         self.replace_document(path, scene);
         self.disk.recovered = true;
     }
 
-    pub(super) fn clear_recent(&mut self) -> Vec<Effect> {
-        self.recent_files.clear();
-        vec![Effect::SaveSettings]
+    pub(super) fn clear_recent(&mut self) {
+        self.settings.recent_files.clear();
+        self.request(Effect::SaveSettings);
     }
 
     pub(super) fn remember_file(&mut self, path: &Path) {
         // The next start may be in another folder.
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        self.recent_files.retain(|p| *p != path);
-        self.recent_files.insert(0, path);
-        self.recent_files.truncate(RECENT_FILES);
+        self.settings.recent_files.retain(|p| *p != path);
+        self.settings.recent_files.insert(0, path);
+        self.settings.recent_files.truncate(RECENT_FILES);
     }
 }

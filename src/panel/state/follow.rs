@@ -7,7 +7,7 @@ use std::{borrow::Cow, collections::BTreeMap, mem::discriminant, ops::DerefMut};
 use super::{Kept, ParameterPlace, Session, Severity, StashedValues};
 use crate::{
     document::{Extent, Selection},
-    parameter::{Parameter, ParameterKind, Value},
+    parameter::{Parameter, Value},
     registry::Registry,
     scene::{Object, check::Declared},
 };
@@ -159,7 +159,7 @@ impl Change {
         let Self { place: (_, name), wanted, to, .. } = self;
         match to {
             Some(value) if value == wanted => (format!("{name} is as it was again for"), ".".to_owned()),
-            Some(value @ Value::Triple(_)) => {
+            Some(value) if self.declared.is_some_and(|p| p.kind.components() > 1) => {
                 (format!("{name} is now clamped to its range for"), format!(", {}.", self.reason(value)))
             }
             Some(value) => (format!("{name} is now {value} for"), format!(", {}.", self.reason(value))),
@@ -176,15 +176,13 @@ impl Change {
     /// The reason for a value that replaces the wanted one.
     fn reason(&self, value: &Value) -> String {
         let Some(p) = self.declared else { return String::new() };
-        let (most, least) = match (&p.kind, value, &self.wanted) {
-            (ParameterKind::Number { min, max, .. }, Value::Number(v), Value::Number(wanted)) => {
-                (v == max && wanted > v, v == min && wanted < v)
+        let range = p.kind.limits();
+        let (most, least) = match (range, p.kind.number_of(value), p.kind.number_of(&self.wanted)) {
+            (Some(range), Some(v), Some(wanted)) => {
+                (v == range.max && wanted > v, v == range.min && wanted < v)
             }
-            (ParameterKind::Integer { min, max, .. }, Value::Integer(v), Value::Integer(wanted)) => {
-                (Some(*v) == *max && wanted > v, v == min && wanted < v)
-            }
-            (ParameterKind::Triple { min, max, .. }, ..) => {
-                return format!("since each must be between {min} and {max}");
+            (Some(range), ..) if p.kind.components() > 1 => {
+                return format!("since each must be between {} and {}", range.min as f32, range.max as f32);
             }
             _ => (false, false),
         };

@@ -8,15 +8,14 @@ use std::{
 
 use super::{
     Action, Aside, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Note, OpenLesson,
-    PLOTS_TAB, Past, Pin, Plots, Session, Severity, View,
+    PLOTS_TAB, Pin, Plots, Session, Severity, View,
     aside::Shown,
     follow::follow_registry,
     open_lesson::{Entered, problem_of},
 };
-use crate::files::Shown as _;
 use crate::{
     document::Document,
-    files,
+    files::{self, Shown as _},
     lesson::{Goal, Lesson, Problem, Task, WindowChange, shipped::LESSONS},
     registry::Registry,
     scene::Scene,
@@ -33,57 +32,48 @@ fn is_about_pixels(goal: &Goal) -> bool {
 const PICTURE: [u32; 2] = [1600, 900];
 
 impl Session {
-    pub(super) fn lesson(&mut self, command: LessonCommand, registry: &Registry) -> Vec<Effect> {
+    pub(super) fn lesson(&mut self, command: LessonCommand, registry: &Registry) {
+        let step = self.lesson.as_ref().map_or(0, |lesson| lesson.step);
         match command {
-            LessonCommand::Open(LessonSource::Shipped(i)) => match LESSONS.get(i) {
-                Some(lesson) => {
-                    self.begin_lesson(Arc::new(lesson.clone()), LessonSource::Shipped(i), registry)
+            LessonCommand::Open(LessonSource::Shipped(i)) => {
+                if let Some(lesson) = LESSONS.get(i) {
+                    self.begin_lesson(Arc::new(lesson.clone()), LessonSource::Shipped(i), registry);
                 }
-                None => Vec::new(),
-            },
-            LessonCommand::Open(LessonSource::File(path)) => vec![Effect::OpenLesson(path)],
-            LessonCommand::OpenDialog => vec![Effect::PickLesson],
-            LessonCommand::Continue => match self.progress.next() {
-                Some(source) => self.lesson(LessonCommand::Open(source), registry),
-                None => Vec::new(),
-            },
+            }
+            LessonCommand::Open(LessonSource::File(path)) => self.request(Effect::OpenLesson(path)),
+            LessonCommand::Continue => {
+                if let Some(source) = self.progress.next() {
+                    self.lesson(LessonCommand::Open(source), registry);
+                }
+            }
             _ if self.lesson.is_none() => {
-                let text = "No lesson is open: Help › Lessons lists them.";
-                self.say(Severity::Info, text);
-                Vec::new()
+                self.say(Severity::Info, "No lesson is open: Help › Lessons lists them.");
             }
             LessonCommand::Leave => self.leave_lesson(registry),
             LessonCommand::Next => self.next_step(registry),
-            LessonCommand::Previous => {
-                let before = self.lesson.as_ref().and_then(|lesson| lesson.step.checked_sub(1));
-                before.map_or_else(Vec::new, |step| self.return_to(step, registry))
-            }
-            LessonCommand::Again => {
-                let step = self.lesson.as_ref().map_or(0, |lesson| lesson.step);
-                self.return_to(step, registry)
-            }
+            LessonCommand::Previous if step == 0 => {}
+            LessonCommand::Previous => self.return_to(step - 1, registry),
+            LessonCommand::Again => self.return_to(step, registry),
             LessonCommand::GoTo(step) => self.return_to(step, registry),
-            LessonCommand::Answer(answer) => self.choose_answer(answer),
+            LessonCommand::Answer(answer) => {
+                let progress = &mut self.progress;
+                self.requested.extend(self.lesson.iter_mut().flat_map(|open| open.choose(answer, progress)));
+            }
             LessonCommand::Point(pin) => {
                 self.view.pin(Some(pin));
                 self.view.unfold(EXPLAIN_TAB);
-                Vec::new()
             }
-            LessonCommand::Solved(step) => self.solved(step),
+            LessonCommand::Solved(step) => {
+                let progress = &mut self.progress;
+                self.requested.extend(self.lesson.iter_mut().flat_map(|open| open.solve(step, progress)));
+            }
             LessonCommand::Hint => {
                 self.lesson.iter_mut().for_each(|lesson| lesson.hint = !lesson.hint);
-                Vec::new()
             }
             LessonCommand::Tree(open) => {
                 self.lesson.iter_mut().for_each(|lesson| lesson.tree_open = open);
-                Vec::new()
             }
         }
-    }
-
-    /// The initial scene of a step if the learner has changed nothing before.
-    fn scene_of(lesson: &Lesson, step: usize, registry: &Registry) -> Result<Scene, String> {
-        lesson.state(step, registry)
     }
 
     /// Opens a lesson at the learner's last step; a finished lesson starts again.
@@ -92,19 +82,19 @@ impl Session {
         lesson: Arc<Lesson>,
         source: LessonSource,
         registry: &Registry,
-    ) -> Vec<Effect> {
+    ) {
         if lesson.steps.is_empty() {
-            return Vec::new();
+            return;
         }
-        let mut effects = self.leave_lesson(registry);
+        self.leave_lesson(registry);
         let past = self.progress.of(&source.name()).filter(|past| !(past.finished && past.step == 0));
         let step = past.map_or(0, |past| past.step.min(lesson.steps.len() - 1));
         let (done, tries) = past.map(|past| (past.done.clone(), past.tries.clone())).unwrap_or_default();
-        let scene = match Self::scene_of(&lesson, step, registry) {
+        let scene = match lesson.state(step, registry) {
             Ok(scene) => scene,
             Err(why) => {
-                self.say(Severity::Error, format!("The lesson “{}” was not opened: {why}", lesson.title));
-                return effects;
+                let text = format!("The lesson “{}” was not opened: {why}", lesson.title);
+                return self.say(Severity::Error, text);
             }
         };
         let mut aside = Aside::around(Document::new(scene), self);
@@ -125,10 +115,9 @@ impl Session {
             aside: Box::new(aside),
         });
         self.select_first();
-        effects.push(Effect::Camera(CameraChange::PutAside));
+        self.request(Effect::Camera(CameraChange::PutAside));
         self.show_from_start(step);
-        effects.extend(self.arrived());
-        effects
+        self.arrived();
     }
 
     /// Shows a step with the view settings of all steps up to it.
@@ -178,41 +167,23 @@ impl Session {
     }
 
     /// Records the state at the start of a step, which *again* and *previous* restore.
-    fn arrived(&mut self) -> Vec<Effect> {
+    fn arrived(&mut self) {
         let entered = Entered {
             scene: Arc::new(self.document.scene().clone()),
             selection: self.selection,
             shown: Shown::of(&self.view),
             plots: self.plots.clone(),
         };
-        let Some(open) = &mut self.lesson else { return Vec::new() };
+        let Some(open) = &mut self.lesson else { return };
         open.entered.insert(open.step, entered);
-        self.note_progress()
-    }
-
-    /// Records the step and the progress.
-    fn note_progress(&mut self) -> Vec<Effect> {
-        let Some(open) = &mut self.lesson else { return Vec::new() };
-        (open.hint, open.asking) = (false, false);
-        open.entries += 1;
-        let name = open.source.name();
-        let past = self.progress.lessons.entry(name.clone()).or_default();
-        *past = Past {
-            title: open.lesson.title.clone(),
-            step: open.step,
-            steps: open.lesson.steps.len(),
-            done: open.done.clone(),
-            tries: open.tries.clone(),
-            finished: past.finished,
-        };
-        self.progress.last = Some(name.clone());
-        vec![Effect::SaveProgress(name)]
+        let noted = open.note_step(&mut self.progress);
+        self.requested.extend(noted);
     }
 
     /// Shows a scene with a new history, unless it is shown already.
-    fn show_scene(&mut self, scene: Scene, registry: &Registry) -> Vec<Effect> {
+    fn show_scene(&mut self, scene: Scene, registry: &Registry) {
         if self.document == scene {
-            return Vec::new();
+            return;
         }
         let home = self.document.observer != scene.observer;
         let types = |scene: &Scene| scene.objects.iter().map(|o| o.object_type.clone()).collect::<Vec<_>>();
@@ -227,104 +198,60 @@ impl Session {
         if !self.exists(self.selection) {
             self.select_first();
         }
-        follow_registry(self, registry);
-        if home { vec![Effect::HomeView] } else { Vec::new() }
+        follow_registry(&mut *self, registry);
+        if home {
+            self.request(Effect::HomeView);
+        }
     }
 
-    fn next_step(&mut self, registry: &Registry) -> Vec<Effect> {
-        let Some(open) = &mut self.lesson else { return Vec::new() };
+    fn next_step(&mut self, registry: &Registry) {
+        let Some(open) = &mut self.lesson else { return };
         if !open.is_done() && !open.asking {
             open.asking = true;
-            return Vec::new();
+            return;
         }
         if open.is_last() {
             return self.finish_lesson(registry);
         }
         open.step += 1;
         let (lesson, step) = (open.lesson.clone(), open.step);
-        let Some(now) = lesson.steps.get(step) else { return Vec::new() };
-        let mut effects = Vec::new();
+        let Some(now) = lesson.steps.get(step) else { return };
         if let Some(change) = &now.scene {
             // If the learner has removed what the step changes, the step starts from its initial scene.
-            let scene =
-                change.apply(&self.document, registry).or_else(|_| Self::scene_of(&lesson, step, registry));
+            let scene = change.apply(&self.document, registry).or_else(|_| lesson.state(step, registry));
             match scene {
-                Ok(scene) => effects.extend(self.show_scene(scene, registry)),
+                Ok(scene) => self.show_scene(scene, registry),
                 Err(why) => self.say(Severity::Error, why),
             }
         }
         self.change_window(&now.window);
-        effects.extend(self.arrived());
-        effects
+        self.arrived();
     }
 
     /// Returns to a step as it was when last entered.
-    fn return_to(&mut self, step: usize, registry: &Registry) -> Vec<Effect> {
-        let Some(open) = self.lesson.as_mut().filter(|open| step < open.lesson.steps.len()) else {
-            return Vec::new();
-        };
+    fn return_to(&mut self, step: usize, registry: &Registry) {
+        let Some(open) = self.lesson.as_mut().filter(|open| step < open.lesson.steps.len()) else { return };
         open.step = step;
         open.answers.remove(&step);
         let (lesson, entered) = (open.lesson.clone(), open.entered.get(&step).cloned());
         let Some(entered) = entered else {
-            return match Self::scene_of(&lesson, step, registry) {
+            return match lesson.state(step, registry) {
                 Ok(scene) => {
-                    let mut effects = self.show_scene(scene, registry);
+                    self.show_scene(scene, registry);
                     Shown::of(&View::default()).put(&mut self.view);
                     self.plots = Plots::default();
                     self.show_from_start(step);
-                    effects.extend(self.arrived());
-                    effects
+                    self.arrived();
                 }
-                Err(why) => {
-                    self.say(Severity::Error, why);
-                    Vec::new()
-                }
+                Err(why) => self.say(Severity::Error, why),
             };
         };
-        let mut effects = self.show_scene((*entered.scene).clone(), registry);
+        self.show_scene((*entered.scene).clone(), registry);
         entered.shown.put(&mut self.view);
         self.plots = entered.plots;
         self.select(entered.selection);
-        effects.extend(self.note_progress());
-        effects
-    }
-
-    fn choose_answer(&mut self, answer: usize) -> Vec<Effect> {
-        let Some(open) = &mut self.lesson else { return Vec::new() };
-        let (step, now) = (open.step, open.lesson.steps.get(open.step));
-        let Some(Task::Predict { answers, .. }) = now.and_then(|step| step.task.as_ref()) else {
-            return Vec::new();
-        };
-        let Some(chosen) = answers.get(answer) else { return Vec::new() };
-        let right = chosen.right;
-        open.asking = false;
-        let all = open.answers.entry(step).or_default();
-        if all.last() != Some(&answer) {
-            all.push(answer);
-            if !open.done.contains(&step) {
-                *open.tries.entry(step).or_default() += 1;
-            }
-        }
-        if right { self.solved(step) } else { self.note_answer() }
-    }
-
-    fn solved(&mut self, step: usize) -> Vec<Effect> {
-        let Some(open) = &mut self.lesson else { return Vec::new() };
-        if !open.done.insert(step) {
-            return Vec::new();
-        }
-        self.note_answer()
-    }
-
-    /// Records the progress within the current step.
-    fn note_answer(&mut self) -> Vec<Effect> {
-        let Some(open) = &mut self.lesson else { return Vec::new() };
-        open.asking = false;
-        let (hint, entries) = (open.hint, open.entries);
-        let effects = self.note_progress();
-        self.lesson.iter_mut().for_each(|open| (open.hint, open.entries) = (hint, entries));
-        effects
+        let progress = &mut self.progress;
+        self.requested.extend(self.lesson.iter_mut().flat_map(|open| open.note_step(progress)));
     }
 
     /// The task of the current step, unless it is done.
@@ -348,8 +275,8 @@ impl Session {
     }
 
     /// Finishes the lesson after the last step.
-    fn finish_lesson(&mut self, registry: &Registry) -> Vec<Effect> {
-        let Some(open) = &self.lesson else { return Vec::new() };
+    fn finish_lesson(&mut self, registry: &Registry) {
+        let Some(open) = &self.lesson else { return };
         let (title, source) = (open.lesson.title.clone(), open.source.clone());
         let (tasks, done) = (open.tasks(), open.done.len());
         let [right, first] = open.first_tries();
@@ -371,19 +298,19 @@ impl Session {
             note = note.offering("Open it", Action::Lesson(open));
         }
         let name = source.name();
-        let mut effects = self.leave_lesson(registry);
+        self.leave_lesson(registry);
         self.note(note);
-        effects.push(Effect::SaveProgress(name));
-        effects
+        self.request(Effect::SaveProgress(name));
     }
 
     /// Leaves the lesson and restores the user's own document.
-    pub(super) fn leave_lesson(&mut self, registry: &Registry) -> Vec<Effect> {
-        let Some(mut open) = self.lesson.take() else { return Vec::new() };
-        self.exchange(&mut open.aside);
-        // The models may have changed since the document was set aside.
-        follow_registry(self, registry);
-        vec![Effect::Camera(CameraChange::Exchange)]
+    pub(super) fn leave_lesson(&mut self, registry: &Registry) {
+        if let Some(mut open) = self.lesson.take() {
+            self.exchange(&mut open.aside);
+            // The models may have changed since the document was set aside.
+            follow_registry(&mut *self, registry);
+            self.request(Effect::Camera(CameraChange::Exchange));
+        }
     }
 
     /// Leaves the lesson because another document replaces the user's own.
@@ -395,11 +322,12 @@ impl Session {
     }
 
     /// Shows the user's own document while a question about it is open.
-    pub(super) fn park_lesson(&mut self) -> Vec<Effect> {
-        let Some(mut open) = self.lesson.take() else { return Vec::new() };
-        self.exchange(&mut open.aside);
-        self.parked = Some(Box::new(open));
-        vec![Effect::Camera(CameraChange::Exchange)]
+    pub(super) fn park_lesson(&mut self) {
+        if let Some(mut open) = self.lesson.take() {
+            self.exchange(&mut open.aside);
+            self.parked = Some(Box::new(open));
+            self.request(Effect::Camera(CameraChange::Exchange));
+        }
     }
 
     /// True if a lesson was interrupted by a question, and no question is pending any more.
@@ -408,74 +336,60 @@ impl Session {
     }
 
     /// Returns to the lesson once the question that interrupted it is settled.
-    pub(in crate::panel) fn resume_lesson(&mut self) -> Vec<Effect> {
-        if !self.is_lesson_due() {
-            return Vec::new();
+    pub(in crate::panel) fn resume_lesson(&mut self) {
+        let due = self.is_lesson_due();
+        if let Some(mut open) = self.parked.take_if(|_| due) {
+            self.exchange(&mut open.aside);
+            self.lesson = Some(*open);
+            self.request(Effect::Camera(CameraChange::Exchange));
         }
-        let Some(mut open) = self.parked.take() else { return Vec::new() };
-        self.exchange(&mut open.aside);
-        self.lesson = Some(*open);
-        vec![Effect::Camera(CameraChange::Exchange)]
     }
 
     /// Opens a lesson that was read from a file, or reports all its problems. If it is already open, it continues at
     /// the current step.
-    pub fn lesson_read(
-        &mut self,
-        path: PathBuf,
-        read: Result<Lesson, Vec<Problem>>,
-        registry: &Registry,
-    ) -> Vec<Effect> {
+    pub fn lesson_read(&mut self, path: PathBuf, read: Result<Lesson, Vec<Problem>>, registry: &Registry) {
+        self.healed(&path);
         match read {
-            Ok(lesson) => {
-                self.healed(&path);
-                self.begin_lesson(Arc::new(lesson), LessonSource::File(path), registry)
-            }
+            Ok(lesson) => self.begin_lesson(Arc::new(lesson), LessonSource::File(path), registry),
             Err(problems) => {
-                self.healed(&path);
                 // The latest message is on top: first the problem, then above it the consequence.
                 for problem in problems.iter().rev() {
                     self.say_about(&path, Severity::Error, problem_of(&path, problem));
                 }
                 let text = format!("The lesson {} was not opened.", path.shown());
                 self.say_about(&path, Severity::Error, text);
-                Vec::new()
             }
         }
     }
 
     /// Updates the open lesson after its file was edited. Keeps the step; restarts it if its scene or view settings
     /// have changed.
-    pub fn lesson_edited(&mut self, read: Result<Lesson, Vec<Problem>>, registry: &Registry) -> Vec<Effect> {
-        let Some(open) = &mut self.lesson else { return Vec::new() };
+    pub fn lesson_edited(&mut self, read: Result<Lesson, Vec<Problem>>, registry: &Registry) {
+        let Some(open) = &mut self.lesson else { return };
         let lesson = match read {
             Ok(lesson) if !lesson.steps.is_empty() => lesson,
-            Ok(_) => return Vec::new(),
-            Err(problems) => {
-                open.problems = problems;
-                return Vec::new();
-            }
+            Ok(_) => return,
+            Err(problems) => return open.problems = problems,
         };
         open.problems.clear();
         let step = open.step.min(lesson.steps.len() - 1);
-        let before = Self::scene_of(&open.lesson, open.step, registry);
+        let before = open.lesson.state(open.step, registry);
         let windows = |lesson: &Lesson, step: usize| -> Vec<WindowChange> {
             lesson.steps.iter().take(step + 1).map(|step| step.window.clone()).collect()
         };
         let same = step == open.step
-            && before == Self::scene_of(&lesson, step, registry)
+            && before == lesson.state(step, registry)
             && windows(&open.lesson, step) == windows(&lesson, step);
         open.lesson = Arc::new(lesson);
         open.entered.retain(|at, _| same && *at == step);
         open.answers.clear();
         if same {
             // The author's scroll position and rings stay.
-            let entries = open.entries;
-            let effects = self.note_progress();
-            self.lesson.iter_mut().for_each(|open| open.entries = entries);
-            return effects;
+            open.hint = false;
+            self.requested.extend(open.note(&mut self.progress));
+            return;
         }
-        self.return_to(step, registry)
+        self.return_to(step, registry);
     }
 
     /// Folder of the open lesson's file.

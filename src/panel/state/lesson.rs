@@ -39,8 +39,6 @@ impl LessonSource {
 pub enum LessonCommand {
     /// Open a lesson at the learner's last step.
     Open(LessonSource),
-    /// Select a lesson file.
-    OpenDialog,
     /// Continue the most recent lesson, or start the next one.
     Continue,
     /// Go to the next step; if the task is not done, ask first. After the last step, finish.

@@ -21,8 +21,6 @@ pub enum MatchCommand {
     Start,
     /// Close the dialog without a match.
     Close,
-    /// Stop the running match.
-    Cancel,
 }
 
 /// Options of a match that is about to start.
@@ -44,9 +42,8 @@ impl MatchDraft {
 }
 
 impl Session {
-    pub(super) fn matching(&mut self, command: MatchCommand, registry: &Registry) -> Vec<Effect> {
+    pub(super) fn matching(&mut self, command: MatchCommand, registry: &Registry) {
         match command {
-            MatchCommand::Cancel => return vec![Effect::CancelMatch],
             MatchCommand::Ask(_) if self.facts.matching.is_some() => {
                 self.say(Severity::Info, "A match is still running: wait for it, or cancel it below.");
             }
@@ -66,12 +63,11 @@ impl Session {
             MatchCommand::Start => {
                 if let Some(draft) = self.match_draft.take() {
                     let names = draft.free().map(|parameter| parameter.name).collect();
-                    return vec![Effect::Match { view: draft.view, what: draft.what, parameters: names }];
+                    self.request(Effect::Match { view: draft.view, what: draft.what, parameters: names });
                 }
             }
             MatchCommand::Close => self.match_draft = None,
         }
-        Vec::new()
     }
 
     /// Handles the end of a match: its values become one step of the history, unless the scene has changed since.

@@ -1,9 +1,8 @@
 //! Messages to the user, and badges in the picture.
 
-use std::{
-    ops::Deref,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
+
+use bevy::prelude::Deref;
 
 use super::{Action, MESSAGES_TAB, SHADER_TAB, Session, Severity};
 use crate::{files::printable, program::in_own_words};
@@ -48,8 +47,9 @@ pub struct Badge {
 }
 
 /// The messages, oldest first; each stays until it is dismissed, or pushed out by [`MAX_MESSAGES`] newer ones.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deref)]
 pub struct Messages {
+    #[deref]
     notes: Vec<Note>,
     /// The step that a message offers to undo.
     undo: Option<Step>,
@@ -59,30 +59,17 @@ pub struct Messages {
     added: usize,
     /// Messages about files, which are removed once the file is fine.
     about: Vec<(PathBuf, Note)>,
-    /// State of the bottom strip before an error unfolded it, and the number of errors at that time.
-    unfolded: Option<Unfolded>,
-    /// State of the bottom strip before a shader error unfolded it: open or not, and the panel.
-    shaders: Option<(bool, String)>,
+    /// The bottom strip before an error unfolded it, and the number of errors at that time.
+    unfolded: Option<(Strip, usize)>,
+    /// The bottom strip before a shader error unfolded it.
+    shaders: Option<Strip>,
 }
 
-/// State of the bottom strip before it unfolded automatically.
-#[derive(Clone, Debug, PartialEq)]
-struct Unfolded {
-    open: bool,
-    tab: String,
-    errors: usize,
-}
+/// State of the bottom strip: open or not, and the panel.
+type Strip = (bool, String);
 
 /// The number of applied steps, and the name of the latest one.
 pub(super) type Step = (usize, Option<String>);
-
-impl Deref for Messages {
-    type Target = [Note];
-
-    fn deref(&self) -> &[Note] {
-        &self.notes
-    }
-}
 
 impl Messages {
     /// Adds a message, unless it equals the latest one.
@@ -165,10 +152,8 @@ impl Session {
 
     pub(in crate::panel) fn note(&mut self, note: Note) {
         if note.severity == Severity::Error {
-            let seen = self.view.bottom_open && self.view.bottom_tab == MESSAGES_TAB;
-            if !seen && self.messages.unfolded.is_none() {
-                let (open, tab) = (self.view.bottom_open, self.view.bottom_tab.clone());
-                self.messages.unfolded = Some(Unfolded { open, tab, errors: self.messages.errors() });
+            if !self.sees(MESSAGES_TAB) && self.messages.unfolded.is_none() {
+                self.messages.unfolded = Some((self.strip(), self.messages.errors()));
             }
             self.view.unfold(MESSAGES_TAB);
         }
@@ -197,31 +182,39 @@ impl Session {
 
     /// Folds the strip if an error unfolded it and no such error remains.
     pub(super) fn fold_healed(&mut self) {
-        let Some(before) = &self.messages.unfolded else { return };
-        let seen = self.view.bottom_open && self.view.bottom_tab == MESSAGES_TAB;
-        if seen && self.messages.errors() <= before.errors {
-            (self.view.bottom_open, self.view.bottom_tab) = (before.open, before.tab.clone());
-            self.messages.unfolded = None;
+        let errors = self.messages.errors();
+        if self.sees(MESSAGES_TAB)
+            && let Some((before, _)) = self.messages.unfolded.take_if(|(_, before)| errors <= *before)
+        {
+            (self.view.bottom_open, self.view.bottom_tab) = before;
         }
+    }
+
+    /// True if a panel is in sight at the bottom.
+    fn sees(&self, tab: &str) -> bool {
+        self.view.bottom_open && self.view.bottom_tab == tab
+    }
+
+    fn strip(&self) -> Strip {
+        (self.view.bottom_open, self.view.bottom_tab.clone())
     }
 
     /// Unfolds the strip with the shader panel because of an error.
     pub(in crate::panel) fn unfold_shaders(&mut self) {
-        let seen = self.view.bottom_open && self.view.bottom_tab == SHADER_TAB;
-        if !seen && self.messages.shaders.is_none() {
-            self.messages.shaders = Some((self.view.bottom_open, self.view.bottom_tab.clone()));
+        if !self.sees(SHADER_TAB) && self.messages.shaders.is_none() {
+            self.messages.shaders = Some(self.strip());
         }
         self.view.unfold(SHADER_TAB);
     }
 
     /// Folds the strip once no shader errors remain, if one of them unfolded it.
     pub(in crate::panel) fn fold_shaders(&mut self) {
-        let Some((open, tab)) = self.messages.shaders.take() else { return };
-        if self.view.bottom_open && self.view.bottom_tab == SHADER_TAB {
-            (self.view.bottom_open, self.view.bottom_tab) = (open, tab);
-        } else if let Some(before) = self.messages.unfolded.as_mut().filter(|b| b.tab == SHADER_TAB) {
+        let Some(strip) = self.messages.shaders.take() else { return };
+        if self.sees(SHADER_TAB) {
+            (self.view.bottom_open, self.view.bottom_tab) = strip;
+        } else if let Some((before, _)) = self.messages.unfolded.as_mut().filter(|(b, _)| b.1 == SHADER_TAB) {
             // Messages were unfolded over the shaders.
-            (before.open, before.tab) = (open, tab);
+            *before = strip;
         }
         // The errors below the shaders may have been fixed meanwhile.
         self.fold_healed();

@@ -8,17 +8,17 @@ use std::path::PathBuf;
 
 use bevy::ecs::resource::Resource;
 
-pub use action::{Action, Answer, ExportCommand, ModelCommand, PictureCommand};
+pub use action::{Action, Answer, ExportCommand, ModelCommand};
 pub use area::{Cell, PictureArea};
 pub use aside::Aside;
 pub(super) use author::BUILT_IN;
-pub use author::{LawCheck, ModelDraft, NameProblem, check_name};
+pub use author::{Authoring, LawCheck, ModelDraft, NameProblem, check_name};
 pub use compare::CompareCommand;
 pub use desk::Desk;
 pub use disk::OnDisk;
-pub use effect::{CameraChange, Effect, LabEffect, RecoveryChoice, Steer};
-pub use facts::{Clipping, Converging, Exporting, Facts, LARGEST, Matching, Numbers};
-pub use files::RECENT_FILES;
+pub use effect::{CameraChange, Effect, Pick, RecoveryChoice, Steer};
+pub use export::PictureEnd;
+pub use facts::{Clipping, Converging, Facts, LARGEST, Numbers, Running};
 pub use lesson::{LessonCommand, LessonSource};
 pub use lobe::{LobeChoice, LobeScale};
 pub use matching::{MatchCommand, MatchDraft};
@@ -26,29 +26,25 @@ pub use messages::{Badge, MAX_MESSAGES, Messages, Note};
 pub use open_lesson::OpenLesson;
 pub(super) use open_lesson::problem_of;
 pub use own_keys::{GivenKeys, OwnKeys, Pairs, Replaced};
-pub use pictures::PictureEnd;
 pub use place::{Over, PanelInfo, Place};
 pub use plots::{MOST_LIGHT, Of, PinnedCurve, PlotCommand, Plots, Slot};
 pub use probe::{EXPLAIN_TAB, Pin};
 pub use progress::{Past, Progress};
-pub use question::{MissingPart, Question, Questions};
-pub use recovery::Offer;
-pub use settings::Settings;
+pub use question::{MissingPart, Offer, Question, Questions};
+pub use settings::{RECENT_FILES, SCALES, Settings, ThemeChoice, nearest_scale};
 pub use severity::Severity;
 pub use shortcut::Shortcut;
 pub use slots::{MODEL_SLOTS, ModelSlots};
 pub use stash::StashedValues;
 pub(super) use stash::{Kept, ParameterPlace};
-pub use view::{
-    HandleChange, HandleMode, Labels, MESSAGES_TAB, PLOTS_TAB, SCALES, SHADER_TAB, ThemeChoice, View,
-    ViewChange, nearest_scale,
-};
+pub use view::{HandleChange, HandleMode, Labels, MESSAGES_TAB, PLOTS_TAB, SHADER_TAB, View, ViewChange};
 
-use terms::KnownTerms;
+use seen::Seen;
 
 use crate::{
     document::{Document, Selection},
     library::status::ShaderStatus,
+    parameter::Outside,
     scene::Scene,
 };
 
@@ -75,14 +71,13 @@ mod nudge;
 mod open_lesson;
 mod own_keys;
 mod parts;
-mod pictures;
 mod place;
 mod placing;
 mod plots;
 mod probe;
 mod progress;
 mod question;
-mod recovery;
+mod seen;
 mod selection;
 mod settings;
 mod severity;
@@ -117,31 +112,28 @@ pub struct Session {
     pub messages: Messages,
     /// Questions to the user.
     pub questions: Questions,
-    /// Files opened or saved, latest first.
-    pub recent_files: Vec<PathBuf>,
-    /// The keys that the user gave to commands.
+    /// The files outside their folders that scenes may name.
+    pub outside: Outside,
+    /// What is kept between sessions.
+    pub settings: Settings,
+    /// The keys of the user's own that are in force.
     pub keys: OwnKeys,
     /// Facts that the app provides without marking the session as changed.
     pub facts: Facts,
     /// Folders and problems of the shaders, provided by the app.
     pub shaders: ShaderStatus,
-    /// Shader problems of the previous frame, by file and message.
-    pub(super) seen_troubles: Vec<(String, String)>,
-    /// The custom model that is about to be created.
-    pub draft: Option<ModelDraft>,
+    /// The writing of custom models and shaders.
+    pub authoring: Authoring,
     /// The match that is about to start.
     pub match_draft: Option<MatchDraft>,
-    /// A model to select once it is available, because its file was just written.
-    pub wanted_model: Option<String>,
-    /// The latest law check of a model.
-    pub laws: Option<LawCheck>,
     /// The available panels, for the menus; updated when they are shown.
     pub panels: Vec<PanelInfo>,
     /// A dialog to open on behalf of code other than the panels: an action that was pending until the document was
     /// saved.
     pub wanted_dialog: Option<Effect>,
-    known_terms: KnownTerms,
-    seen: compare::Seen,
+    seen: Seen,
+    /// The effects that the action has requested so far.
+    requested: Vec<Effect>,
 }
 
 impl Default for Session {
@@ -167,18 +159,16 @@ impl Session {
             progress: Progress::default(),
             messages: Messages::default(),
             questions: Questions::default(),
-            recent_files: Vec::new(),
+            outside: Outside::default(),
+            settings: Settings::default(),
             keys: OwnKeys::default(),
             shaders: ShaderStatus::default(),
-            seen_troubles: Vec::new(),
-            draft: None,
+            authoring: Authoring::default(),
             match_draft: None,
-            wanted_model: None,
-            laws: None,
             panels: Vec::new(),
             wanted_dialog: None,
-            known_terms: KnownTerms::default(),
-            seen: compare::Seen::default(),
+            seen: Seen::default(),
+            requested: Vec::new(),
         };
         session.select_first();
         session.desk.model_slots.take(&session.document.reflection_model);

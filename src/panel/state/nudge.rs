@@ -78,7 +78,7 @@ impl Session {
         match self.selection {
             Selection::Object(i) if self.exists(self.selection) => {
                 let object = &self.document.objects[i];
-                let edit = match self.view.handles {
+                Ok(match self.view.handles {
                     HandleMode::Move => {
                         Edit::set(part, Object::position, room.nearest(tidy(object.position + METRES * way)))
                     }
@@ -94,13 +94,12 @@ impl Session {
                         let least = object.size.min(METRES);
                         Edit::set(part, Object::size, size.max(least).min(most))
                     }
-                };
-                Ok(edit)
+                })
             }
             Selection::Light(i) if self.exists(self.selection) => {
                 let light = &self.document.lights[i];
                 let entry = registry.light(&light.light_type);
-                let edit = match (self.view.handles, light.position, light.direction) {
+                Ok(match (self.view.handles, light.position, light.direction) {
                     (HandleMode::Move, Some(at), _) => {
                         Edit::set(part, Light::position, room.nearest(tidy(at + METRES * way)))
                     }
@@ -113,8 +112,7 @@ impl Session {
                         Some(field) => field,
                         None => return has_no("size"),
                     },
-                };
-                Ok(edit)
+                })
             }
             _ => Err("Select an object or a light to move it.".to_owned()),
         }

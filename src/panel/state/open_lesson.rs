@@ -7,11 +7,11 @@ use std::{
     sync::Arc,
 };
 
-use super::{Aside, LessonSource, Plots, aside::Shown};
+use super::{Aside, Effect, LessonSource, Past, Plots, Progress, aside::Shown};
 use crate::files::Shown as _;
 use crate::{
     document::Selection,
-    lesson::{Lesson, Problem, Step},
+    lesson::{Lesson, Problem, Step, Task},
     scene::Scene,
 };
 
@@ -83,6 +83,53 @@ impl OpenLesson {
     pub fn first_tries(&self) -> [usize; 2] {
         let right = || self.tries.iter().filter(|(step, _)| self.done.contains(step));
         [right().count(), right().filter(|(_, tries)| **tries == 1).count()]
+    }
+
+    /// Records the step and the progress.
+    pub(super) fn note_step(&mut self, progress: &mut Progress) -> Vec<Effect> {
+        (self.hint, self.asking) = (false, false);
+        self.entries += 1;
+        self.note(progress)
+    }
+
+    /// Records the progress within the step.
+    pub(super) fn note(&mut self, progress: &mut Progress) -> Vec<Effect> {
+        self.asking = false;
+        let name = self.source.name();
+        let past = progress.lessons.entry(name.clone()).or_default();
+        *past = Past {
+            title: self.lesson.title.clone(),
+            step: self.step,
+            steps: self.lesson.steps.len(),
+            done: self.done.clone(),
+            tries: self.tries.clone(),
+            finished: past.finished,
+        };
+        progress.last = Some(name.clone());
+        vec![Effect::SaveProgress(name)]
+    }
+
+    /// Chooses an answer to the question of the step.
+    pub(super) fn choose(&mut self, answer: usize, progress: &mut Progress) -> Vec<Effect> {
+        let step = self.step;
+        let Some(Task::Predict { answers, .. }) = self.now().and_then(|step| step.task.as_ref()) else {
+            return Vec::new();
+        };
+        let Some(right) = answers.get(answer).map(|chosen| chosen.right) else { return Vec::new() };
+        self.asking = false;
+        let all = self.answers.entry(step).or_default();
+        if all.last() != Some(&answer) {
+            all.push(answer);
+            if !self.done.contains(&step) {
+                *self.tries.entry(step).or_default() += 1;
+            }
+        }
+        if right { self.solve(step, progress) } else { self.note(progress) }
+    }
+
+    /// Records that the task of a step is done.
+    pub(super) fn solve(&mut self, step: usize, progress: &mut Progress) -> Vec<Effect> {
+        if self.done.insert(step) { self.note(progress) } else { Vec::new() }
     }
 
     /// The latest answer in this step.

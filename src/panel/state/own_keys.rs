@@ -73,12 +73,10 @@ impl Serialize for GivenKeys {
 /// The keys that replace the usual ones, by the ids of commands.
 pub type Replaced = BTreeMap<String, Vec<Shortcut>>;
 
-/// The keys that the user gave, and those of them that are in force.
+/// The keys of the user's own that are in force.
 #[derive(Clone, Debug, Default)]
 pub struct OwnKeys {
-    /// As given.
-    pub given: GivenKeys,
-    /// In force; `None` until they have been checked.
+    /// Those among the [given](GivenKeys) ones; `None` until they have been checked.
     pub checked: Option<Arc<Replaced>>,
 }
 

@@ -22,12 +22,8 @@ impl Session {
         count < most
     }
 
-    pub(super) fn add_light(&mut self, id: &str, registry: &Registry) {
-        self.add_light_with(id, |_| (), registry);
-    }
-
     /// Adds a light of a type; `with` sets further properties.
-    pub(super) fn add_light_with(&mut self, id: &str, with: impl FnOnce(&mut Light), registry: &Registry) {
+    pub(super) fn add_light(&mut self, id: &str, with: impl FnOnce(&mut Light), registry: &Registry) {
         let Some(entry) = registry.light(id).filter(|_| self.has_room(LIGHTS)) else { return };
         let d = entry.declaration;
         let stand = self.stand(registry);
@@ -52,12 +48,8 @@ impl Session {
         }
     }
 
-    pub(super) fn add_object(&mut self, id: &str, registry: &Registry) {
-        self.add_object_with(id, None, |_| (), registry);
-    }
-
     /// Adds an object of a type; `with` sets further properties. The name is made unique if it is taken.
-    pub(super) fn add_object_with(
+    pub(super) fn add_object(
         &mut self,
         id: &str,
         name: Option<String>,

@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use super::{Effect, Session, Severity};
-use crate::files::Shown as _;
+use super::{Session, Severity};
 use crate::{
     curves::{Channel, Kind, Style, draw::Line},
     document::Selection,
-    files,
+    files::Shown as _,
     optics::colour::Encoding,
     parameter::Values,
     scene::{Object, Scene},
@@ -133,10 +132,6 @@ pub enum PlotCommand {
     Add(Of),
     /// Remove a pinned or added curve.
     Remove(u64),
-    /// Select a file for the plot.
-    Dialog,
-    /// Save the plot to a file.
-    To(PathBuf),
 }
 
 impl Session {
@@ -162,7 +157,7 @@ impl Session {
         })
     }
 
-    pub(super) fn plot(&mut self, command: PlotCommand) -> Vec<Effect> {
+    pub(super) fn plot(&mut self, command: PlotCommand) {
         let plots = &mut self.plots;
         match command {
             PlotCommand::Kind(kind) => plots.kind = kind,
@@ -181,10 +176,7 @@ impl Session {
             },
             PlotCommand::Add(of) => plots.add(of),
             PlotCommand::Remove(number) => plots.pins.retain(|pin| pin.number != number),
-            PlotCommand::Dialog => return vec![Effect::PickPlot],
-            PlotCommand::To(path) => return vec![Effect::WritePlot(path)],
         }
-        Vec::new()
     }
 
     /// Reports the result of saving a plot: its notes, or why it failed.
@@ -192,7 +184,7 @@ impl Session {
         match outcome {
             Ok(notes) => {
                 notes.into_iter().for_each(|note| self.say(Severity::Info, note));
-                self.note_file(format!("The plot was written to {}.", path.shown()), files::folder_of(&path));
+                self.note_file(format!("The plot was written to {}.", path.shown()), &path);
             }
             Err(why) => self.say(Severity::Error, format!("The plot was not written: {why}.")),
         }

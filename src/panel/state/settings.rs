@@ -4,7 +4,30 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{GivenKeys, OwnKeys, RECENT_FILES, Session, ThemeChoice, View, nearest_scale};
+use super::{GivenKeys, OwnKeys, Session};
+
+/// Maximum length of the list of recent files.
+pub const RECENT_FILES: usize = 10;
+
+/// Available interface scales, in per cent.
+pub const SCALES: [u16; 6] = [100, 110, 125, 150, 175, 200];
+
+/// The nearest of [`SCALES`].
+#[must_use]
+pub fn nearest_scale(percent: u16) -> u16 {
+    SCALES.into_iter().min_by_key(|s| s.abs_diff(percent)).unwrap_or(100)
+}
+
+/// Light or dark theme.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ThemeChoice {
+    /// Near-black panels, for judging pictures.
+    #[default]
+    Dark,
+    /// Near-white panels, for bright rooms and projectors.
+    Light,
+}
 
 /// Settings that are kept between sessions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -12,7 +35,7 @@ use super::{GivenKeys, OwnKeys, RECENT_FILES, Session, ThemeChoice, View, neares
 pub struct Settings {
     /// Light or dark theme.
     pub theme: ThemeChoice,
-    /// Interface scale, in per cent. Earlier versions stored only whether type was large.
+    /// Interface scale, in per cent: one of [`SCALES`]. Earlier versions stored only whether type was large.
     #[serde(alias = "large_type", deserialize_with = "scale")]
     pub scale: u16,
     /// Width of the scene list, in points.
@@ -27,7 +50,7 @@ pub struct Settings {
     pub hidden_panels: Vec<String>,
     /// Ids of folded guest panels.
     pub folded_panels: Vec<String>,
-    /// Id of the guest panel in the bottom strip.
+    /// Id of the guest panel that the user chose in the bottom strip. The panel may be unknown to this window.
     pub guest_tab: Option<String>,
     /// True if saved or copied pictures have a caption.
     pub picture_caption: bool,
@@ -59,27 +82,34 @@ fn scale<'de, D: Deserializer<'de>>(value: D) -> Result<u16, D::Error> {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self::of(View::default())
+        Self {
+            theme: ThemeChoice::Dark,
+            scale: 100,
+            left_width: 208.0,
+            lesson_width: 340.0,
+            right_width: 344.0,
+            bottom_height: 144.0,
+            hidden_panels: Vec::new(),
+            folded_panels: Vec::new(),
+            guest_tab: None,
+            picture_caption: true,
+            recent_files: Vec::new(),
+            keys: GivenKeys::default(),
+        }
     }
 }
 
 impl Settings {
-    /// The settings of a view, without files and keys.
-    fn of(view: View) -> Self {
-        Self {
-            theme: view.theme,
-            scale: view.scale,
-            left_width: view.left_width,
-            lesson_width: view.lesson_width,
-            right_width: view.right_width,
-            bottom_height: view.bottom_height,
-            hidden_panels: view.hidden_panels,
-            folded_panels: view.folded_panels,
-            guest_tab: view.guest_tab,
-            picture_caption: view.picture_caption,
-            recent_files: Vec::new(),
-            keys: GivenKeys::default(),
-        }
+    /// True if a guest panel is hidden.
+    #[must_use]
+    pub fn hides(&self, id: &str) -> bool {
+        self.hidden_panels.iter().any(|hidden| hidden == id)
+    }
+
+    /// True if a guest panel is folded.
+    #[must_use]
+    pub fn folds(&self, id: &str) -> bool {
+        self.folded_panels.iter().any(|folded| folded == id)
     }
 
     /// Replaces sizes that no screen has (after manual edits of the file) by defaults.
@@ -99,27 +129,10 @@ impl Settings {
 }
 
 impl Session {
-    /// The settings to keep between sessions.
-    #[must_use]
-    pub fn settings(&self) -> Settings {
-        let (recent_files, keys) = (self.recent_files.clone(), self.keys.given.clone());
-        Settings { recent_files, keys, ..Settings::of(self.view.clone()) }
-    }
-
     /// Applies settings of an earlier session.
     pub fn adopt(&mut self, settings: Settings) {
-        self.view.theme = settings.theme;
-        self.view.scale = settings.scale;
-        self.view.left_width = settings.left_width;
-        self.view.lesson_width = settings.lesson_width;
-        self.view.right_width = settings.right_width;
-        self.view.bottom_height = settings.bottom_height;
-        self.view.hidden_panels = settings.hidden_panels;
-        self.view.folded_panels = settings.folded_panels;
-        self.view.guest_tab = settings.guest_tab;
-        self.view.picture_caption = settings.picture_caption;
-        self.recent_files = settings.recent_files;
-        self.recent_files.truncate(RECENT_FILES);
-        self.keys = OwnKeys { given: settings.keys, checked: None };
+        self.settings = settings;
+        self.settings.recent_files.truncate(RECENT_FILES);
+        self.keys = OwnKeys::default();
     }
 }

@@ -37,24 +37,9 @@ const OTHER_NAMES: [(&str, Key); 12] = [
 
 /// Keys that are pressed with others or belong to the system.
 fn is_command_key(key: Key) -> bool {
-    use Key::{
-        AltLeft, AltRight, ControlLeft, ControlRight, Copy, Cut, Paste, ShiftLeft, ShiftRight, SuperLeft,
-        SuperRight,
-    };
-    ![
-        AltLeft,
-        AltRight,
-        ControlLeft,
-        ControlRight,
-        Copy,
-        Cut,
-        Paste,
-        ShiftLeft,
-        ShiftRight,
-        SuperLeft,
-        SuperRight,
-    ]
-    .contains(&key)
+    const HELD: [&str; 4] = ["Alt", "Control", "Shift", "Super"];
+    let name = key.name();
+    !["Copy", "Cut", "Paste"].contains(&name) && !HELD.iter().any(|held| name.starts_with(held))
 }
 
 /// The key of a name, however it is spelled.

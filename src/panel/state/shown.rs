@@ -2,7 +2,7 @@
 
 use std::{ffi::OsStr, path::Path};
 
-use super::{Action, Effect, Session, Severity, ViewChange};
+use super::{Action, Session, Severity, ViewChange};
 use crate::{
     document::{Edit, Selection},
     files::printable,
@@ -108,11 +108,11 @@ impl Session {
     /// The terms that the picture can isolate, and all of them together; terms that are 0 everywhere are left out.
     #[must_use]
     pub fn offered_terms(&self, registry: &Registry) -> Vec<TermSelection> {
-        self.known_terms.offered(self.scene(), registry)
+        self.seen.terms.offered(self.scene(), registry)
     }
 
     /// Isolates the next term of the equation.
-    pub(super) fn next_terms(&mut self, registry: &Registry) -> Vec<Effect> {
+    pub(super) fn next_terms(&mut self, registry: &Registry) {
         let offered = self.offered_terms(registry);
         let shown = self.terms();
         let next = match offered.iter().position(|t| *t == shown) {
@@ -122,7 +122,7 @@ impl Session {
         if offered.len() == 1 && shown == next {
             self.say(Severity::Info, "The equation has only one term here: there is nothing to separate.");
         }
-        self.carry_out(Action::View(ViewChange::Terms(next)), registry)
+        self.carry_out(Action::View(ViewChange::Terms(next)), registry);
     }
 
     /// Isolates terms in the active view alone.
@@ -138,7 +138,7 @@ impl Session {
         if shown == TermSelection::All {
             return false;
         }
-        let present = |scene: &Scene| self.known_terms.present(scene, registry);
+        let present = |scene: &Scene| self.seen.terms.present(scene, registry);
         let seen = (view != self.active()).then(|| self.document.seen(view, registry)).flatten();
         !seen.map_or_else(|| present(self.scene()), |(scene, _)| present(&scene)).contains(&shown)
     }

@@ -1,6 +1,6 @@
 //! The models on the keys 1–9.
 
-use std::ops::Deref;
+use bevy::prelude::Deref;
 
 use crate::registry::Registry;
 
@@ -8,19 +8,12 @@ use crate::registry::Registry;
 pub const MODEL_SLOTS: usize = 9;
 
 /// The models on the keys 1–9. A model keeps its number while it has a key, so that users can memorise it.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deref)]
 pub struct ModelSlots {
+    #[deref]
     slots: Vec<String>,
     /// The models in order of use, latest last; never used ones come first.
     used: Vec<String>,
-}
-
-impl Deref for ModelSlots {
-    type Target = [String];
-
-    fn deref(&self) -> &[String] {
-        &self.slots
-    }
 }
 
 impl ModelSlots {

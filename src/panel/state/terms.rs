@@ -3,12 +3,13 @@
 use std::{
     collections::HashMap,
     f32::consts::TAU,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex},
 };
 
 use glam::Vec3;
 
 use crate::{
+    caught::lock,
     optics::{Frame, TermSelection},
     parameter::Values,
     reflection::ModelEntry,
@@ -62,7 +63,7 @@ impl KnownTerms {
         let encoding = scene.display.encoding;
         let version = model.version();
         let key = format!("{} {version} {encoding:?} {everywhere} {material:?}", model.declaration.id);
-        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = lock(&self.0);
         if let Some(present) = known.get(&key) {
             return *present;
         }

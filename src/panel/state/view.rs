@@ -2,8 +2,10 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::{Effect, LobeChoice, Pin, Place, Session, probe::EXPLAIN_TAB};
-use crate::{channel::DebugChannel, optics::TermSelection, scene::variant::MAX_VARIANTS};
+use super::{
+    Effect, LobeChoice, Pin, Place, SCALES, Session, Settings, ThemeChoice, nearest_scale, probe::EXPLAIN_TAB,
+};
+use crate::{channel::DebugChannel, declared::choice, optics::TermSelection, scene::variant::MAX_VARIANTS};
 
 /// Id of the panel that shows the messages.
 pub const MESSAGES_TAB: &str = "messages";
@@ -12,60 +14,13 @@ pub const PLOTS_TAB: &str = "plots";
 /// Id of the panel that shows the shaders.
 pub const SHADER_TAB: &str = "shader";
 
-/// Available interface scales, in per cent.
-pub const SCALES: [u16; 6] = [100, 110, 125, 150, 175, 200];
-
-/// The nearest of [`SCALES`].
-#[must_use]
-pub fn nearest_scale(percent: u16) -> u16 {
-    SCALES.into_iter().min_by_key(|s| s.abs_diff(percent)).unwrap_or(100)
-}
-
-/// Light or dark theme.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ThemeChoice {
-    /// Near-black panels, for judging pictures.
-    #[default]
-    Dark,
-    /// Near-white panels, for bright rooms and projectors.
-    Light,
-}
-
-/// The effect of the handles in the picture, and of the keys that nudge the selection.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum HandleMode {
-    /// Move the selection.
-    #[default]
-    Move,
-    /// Turn the selection.
-    Turn,
-    /// Resize the selection.
-    Size,
-}
-
-impl HandleMode {
-    /// All modes, in the order of the key.
-    pub const ALL: [Self; 3] = [Self::Move, Self::Turn, Self::Size];
-
-    /// Display name.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Move => "Move",
-            Self::Turn => "Turn",
-            Self::Size => "Size",
-        }
-    }
-
-    /// The next mode, in a cycle.
-    #[must_use]
-    pub const fn next(self) -> Self {
-        match self {
-            Self::Move => Self::Turn,
-            Self::Turn => Self::Size,
-            Self::Size => Self::Move,
-        }
+choice! {
+    /// The effect of the handles in the picture, and of the keys that nudge the selection; in the order of the key.
+    HandleMode {
+        #[default]
+        Move "move" "Move" "Move the selection.",
+        Turn "turn" "Turn" "Turn the selection.",
+        Size "size" "Size" "Resize the selection.",
     }
 }
 
@@ -78,50 +33,19 @@ pub enum HandleChange {
     Mode(HandleMode),
 }
 
-/// The labels of objects in the picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Labels {
-    /// Never.
-    #[default]
-    Off,
-    /// Always.
-    On,
-    /// In presentations.
-    Presentation,
-}
-
-impl Labels {
-    /// All options, in menu order.
-    pub const ALL: [Self; 3] = [Self::Off, Self::On, Self::Presentation];
-
-    /// The id of its command.
-    #[must_use]
-    pub const fn id(self) -> &'static str {
-        match self {
-            Self::Off => "off",
-            Self::On => "on",
-            Self::Presentation => "presentation",
-        }
-    }
-
-    /// The name for people.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Off => "No labels",
-            Self::On => "Names, models and values",
-            Self::Presentation => "Only in a presentation",
-        }
+choice! {
+    /// The labels of objects in the picture, in menu order.
+    Labels {
+        #[default]
+        Off "off" "No labels" "Never.",
+        On "on" "Names, models and values" "Always.",
+        Presentation "presentation" "Only in a presentation" "In presentations.",
     }
 }
 
 /// View settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    /// Light or dark theme.
-    pub theme: ThemeChoice,
-    /// Interface scale, in per cent: one of [`SCALES`].
-    pub scale: u16,
     /// True if the strip of examples is shown below the picture.
     pub examples_open: bool,
     /// True if the picture fills the screen, with the equation over it and without panels.
@@ -144,8 +68,6 @@ pub struct View {
     pub only_changed: bool,
     /// True if clipped pixels are marked.
     pub show_clipping: bool,
-    /// True if saved or copied pictures have a caption.
-    pub picture_caption: bool,
     /// Visible terms of the equation.
     pub terms: TermSelection,
     /// Debug channels that replace the pictures of the views, view A first.
@@ -168,20 +90,6 @@ pub struct View {
     pub pin_number: u64,
     /// Display options of the lobe at the explained point.
     pub lobe: LobeChoice,
-    /// Width of the scene list, in points.
-    pub left_width: f32,
-    /// Width of a lesson, in points.
-    pub lesson_width: f32,
-    /// Width of the properties panel, in points.
-    pub right_width: f32,
-    /// Height of the bottom strip, in points.
-    pub bottom_height: f32,
-    /// Ids of hidden guest panels.
-    pub hidden_panels: Vec<String>,
-    /// Ids of folded guest panels.
-    pub folded_panels: Vec<String>,
-    /// Id of the guest panel that the user chose in the bottom strip. The panel may be unknown to this window.
-    pub guest_tab: Option<String>,
     /// True if the list of keyboard shortcuts is open.
     pub keys_open: bool,
     /// True if the *About* window is open.
@@ -195,8 +103,6 @@ pub struct View {
 impl Default for View {
     fn default() -> Self {
         Self {
-            theme: ThemeChoice::Dark,
-            scale: 100,
             examples_open: false,
             presenting: false,
             fullscreen: false,
@@ -208,7 +114,6 @@ impl Default for View {
             labels: Labels::Off,
             only_changed: false,
             show_clipping: false,
-            picture_caption: true,
             terms: TermSelection::All,
             channels: [None; MAX_VARIANTS + 1],
             active: 0,
@@ -220,13 +125,6 @@ impl Default for View {
             pinned: None,
             pin_number: 0,
             lobe: LobeChoice::default(),
-            left_width: 208.0,
-            lesson_width: 340.0,
-            right_width: 344.0,
-            bottom_height: 144.0,
-            hidden_panels: Vec::new(),
-            folded_panels: Vec::new(),
-            guest_tab: None,
             keys_open: false,
             about_open: false,
             chooser_open: false,
@@ -238,9 +136,9 @@ impl Default for View {
 /// A change of the view settings.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ViewChange {
-    /// See [`View::theme`].
+    /// See [`Settings::theme`].
     Theme(ThemeChoice),
-    /// See [`View::scale`]; rounded to the nearest of [`SCALES`].
+    /// See [`Settings::scale`]; rounded to the nearest of [`SCALES`].
     Scale(u16),
     /// Select the next larger of [`SCALES`].
     Larger,
@@ -264,7 +162,7 @@ pub enum ViewChange {
     OnlyChanged(bool),
     /// See [`View::show_clipping`].
     Clipping(bool),
-    /// See [`View::picture_caption`].
+    /// See [`Settings::picture_caption`].
     PictureCaption(bool),
     /// See [`View::terms`].
     Terms(TermSelection),
@@ -288,11 +186,11 @@ pub enum ViewChange {
     Right(bool),
     /// Store the panel sizes after dragging: scene list, properties, bottom strip.
     Sizes {
-        /// See [`View::left_width`].
+        /// See [`Settings::left_width`].
         left: f32,
-        /// See [`View::right_width`].
+        /// See [`Settings::right_width`].
         right: f32,
-        /// See [`View::bottom_height`].
+        /// See [`Settings::bottom_height`].
         bottom: f32,
     },
     /// See [`View::keys_open`].
@@ -327,27 +225,15 @@ impl View {
         tab.clone_into(&mut self.bottom_tab);
     }
 
-    /// True if a guest panel is hidden.
-    #[must_use]
-    pub fn hides(&self, id: &str) -> bool {
-        self.hidden_panels.iter().any(|hidden| hidden == id)
-    }
-
-    /// True if a guest panel is folded.
-    #[must_use]
-    pub fn folds(&self, id: &str) -> bool {
-        self.folded_panels.iter().any(|folded| folded == id)
-    }
-
-    fn change(&mut self, change: ViewChange) {
+    fn change(&mut self, change: ViewChange, kept: &mut Settings) {
         match change {
-            ViewChange::Theme(theme) => self.theme = theme,
-            ViewChange::Scale(percent) => self.scale = nearest_scale(percent),
+            ViewChange::Theme(theme) => kept.theme = theme,
+            ViewChange::Scale(percent) => kept.scale = nearest_scale(percent),
             ViewChange::Larger => {
-                self.scale = SCALES.into_iter().find(|s| *s > self.scale).unwrap_or(self.scale)
+                kept.scale = SCALES.into_iter().find(|s| *s > kept.scale).unwrap_or(kept.scale);
             }
             ViewChange::Smaller => {
-                self.scale = SCALES.into_iter().rfind(|s| *s < self.scale).unwrap_or(self.scale);
+                kept.scale = SCALES.into_iter().rfind(|s| *s < kept.scale).unwrap_or(kept.scale);
             }
             ViewChange::Examples(on) => self.examples_open = on,
             ViewChange::Presenting(on) if on != self.presenting => {
@@ -366,7 +252,7 @@ impl View {
             ViewChange::Labels(labels) => self.labels = labels,
             ViewChange::OnlyChanged(on) => self.only_changed = on,
             ViewChange::Clipping(on) => self.show_clipping = on,
-            ViewChange::PictureCaption(on) => self.picture_caption = on,
+            ViewChange::PictureCaption(on) => kept.picture_caption = on,
             ViewChange::Terms(terms) => self.terms = terms,
             ViewChange::Channel(channel) => {
                 if let Some(shown) = self.channels.get_mut(self.active) {
@@ -377,8 +263,8 @@ impl View {
             ViewChange::BottomTab(id) => {
                 self.unfold(&id);
             }
-            ViewChange::Panel(id, shown) => set(&mut self.hidden_panels, id, !shown),
-            ViewChange::Fold(id, folded) => set(&mut self.folded_panels, id, folded),
+            ViewChange::Panel(id, shown) => set(&mut kept.hidden_panels, id, !shown),
+            ViewChange::Fold(id, folded) => set(&mut kept.folded_panels, id, folded),
             ViewChange::Pin(pin) => {
                 self.pin(pin);
                 if pin.is_some() {
@@ -389,7 +275,7 @@ impl View {
             ViewChange::Left(open) => self.left_open = open,
             ViewChange::Right(open) => self.right_open = open,
             ViewChange::Sizes { left, right, bottom } => {
-                (self.left_width, self.right_width, self.bottom_height) = (left, right, bottom);
+                (kept.left_width, kept.right_width, kept.bottom_height) = (left, right, bottom);
             }
             ViewChange::Keys(open) => self.keys_open = open,
             ViewChange::About(open) => self.about_open = open,
@@ -410,8 +296,8 @@ impl Session {
         }
     }
 
-    pub(super) fn change_view(&mut self, change: ViewChange) -> Vec<Effect> {
-        let before = self.settings();
+    pub(super) fn change_view(&mut self, change: ViewChange) {
+        let before = self.settings.clone();
         let place = |id: &str| self.panels.iter().find(|p| p.guest && p.id == id).map(|p| p.place);
         match &change {
             ViewChange::Panel(id, true) => match place(id) {
@@ -419,22 +305,24 @@ impl Session {
                 Some(Place::Right) => self.view.right_open = true,
                 _ => {}
             },
-            ViewChange::BottomTab(id) => self.view.guest_tab = place(id).map(|_| id.clone()),
-            ViewChange::Bottom(false) => self.view.guest_tab = None,
+            ViewChange::BottomTab(id) => self.settings.guest_tab = place(id).map(|_| id.clone()),
+            ViewChange::Bottom(false) => self.settings.guest_tab = None,
             _ => {}
         }
         if matches!(change, ViewChange::Bottom(_) | ViewChange::BottomTab(_)) {
             self.keep_strip();
         }
-        let left = self.view.left_width;
-        self.view.change(change);
+        let left = self.settings.left_width;
+        self.view.change(change, &mut self.settings);
         if self.lesson.is_some() {
             // The panel at the left is the lesson.
-            let width = std::mem::replace(&mut self.view.left_width, left);
+            let width = std::mem::replace(&mut self.settings.left_width, left);
             if width != left {
-                self.view.lesson_width = width;
+                self.settings.lesson_width = width;
             }
         }
-        if before == self.settings() { Vec::new() } else { vec![Effect::SaveSettings] }
+        if before != self.settings {
+            self.request(Effect::SaveSettings);
+        }
     }
 }

@@ -139,12 +139,10 @@ impl<const S: usize, const E: usize> Tile<S, E> {
         let samples = const { positions::<S>() }.map(|at| at.map(|c| c as f32 / SUBPIXEL as f32));
         for (i, (nearness, colour)) in self.nearness.iter_mut().zip(&mut self.colour).enumerate() {
             let shown = lights.pixel([i % E, i / E], samples);
-            for (s, (radiance, near)) in
-                shown.into_iter().enumerate().filter_map(|(s, seen)| Some((s, seen?)))
-            {
-                if nearness[s] == 0.0 || near > nearness[s] {
-                    nearness[s] = near.max(f32::MIN_POSITIVE);
-                    colour[s] = radiance;
+            for (s, seen) in shown.into_iter().enumerate() {
+                if let Some(seen) = seen.filter(|seen| nearness[s] == 0.0 || seen.nearness > nearness[s]) {
+                    nearness[s] = seen.nearness.max(f32::MIN_POSITIVE);
+                    colour[s] = seen.radiance;
                 }
             }
         }

@@ -67,7 +67,7 @@ pub(super) fn parameters(all: &[Parameter], reserved: &[&str], part: &str, files
         ensure(!reserved.contains(&p.name), || {
             of(format!("the name is that of another key of {part} in scene files; choose another"))
         })?;
-        ensure(files || !matches!(p.kind, ParameterKind::File { .. }), || {
+        ensure(files || p.kind.format().is_none(), || {
             of("is a file, which only light types and object types may have".to_owned())
         })?;
         kind(p).map_err(of)?;
@@ -80,54 +80,17 @@ pub(super) fn parameters(all: &[Parameter], reserved: &[&str], part: &str, files
 
 /// Checks the range and the default of a parameter.
 fn kind(p: &Parameter) -> Check {
-    let ends = |min: f32, max: f32| {
-        ensure(min.is_finite() && max.is_finite() && min <= max, || {
-            format!("its range is {min} to {max}, but must be two finite numbers, the smaller one first")
-        })
-    };
-    match &p.kind {
-        ParameterKind::Number { min, max, .. } | ParameterKind::Triple { min, max, .. } => ends(*min, *max)?,
-        ParameterKind::Integer { min, max, slider_max, .. } => {
-            let top = max.unwrap_or(*slider_max);
-            ensure(*min <= top, || {
-                format!("its range is {min} to {top}, but the smaller one must be first")
-            })?;
-        }
-        ParameterKind::Choice { options, default } => {
-            ensure(!options.is_empty(), || "it has no choices, but needs at least one".to_owned())?;
-            let mut known = HashSet::new();
-            for (id, _) in *options {
-                ensure(!id.is_empty() && known.insert(id), || {
-                    format!("the choice \"{id}\" is empty or given twice; each needs a name of its own")
-                })?;
-                // Files write these without quotes.
-                ensure(p.is_flag() || id.parse::<bool>().is_err(), || {
-                    format!("the choice \"{id}\" is a value of flags; use another name, or `Parameter::flag`")
-                })?;
-            }
-            ensure(*default < options.len(), || {
-                format!(
-                    "its default is choice {default}, but must be an index from 0 to {}",
-                    options.len() - 1
-                )
-            })?;
-        }
-        ParameterKind::Colour { .. } => {}
-        ParameterKind::File { format, default } => {
-            ensure(format.shipped.iter().any(|(name, _)| name == default), || {
-                format!("its default is the file \"{default}\", but must be one that its format ships")
-            })?;
-        }
-    }
+    p.kind.check()?;
     // The numbers of a file are checked by `shipped_files`, since reading takes time.
-    let file = matches!(p.kind, ParameterKind::File { .. });
     let default = p.default_value();
-    ensure(file || p.allows(&default), || format!("its default is {default}, but must be {}", p.rule()))
+    ensure(p.kind.format().is_some() || p.allows(&default), || {
+        format!("its default is {default}, but must be {}", p.rule())
+    })
 }
 
 /// Checks that the files that are defaults of parameters can be read.
 pub(super) fn shipped_files(all: &[Parameter]) -> Check {
-    all.iter().filter(|p| matches!(p.kind, ParameterKind::File { .. })).try_for_each(|p| {
+    all.iter().filter(|p| p.kind.format().is_some()).try_for_each(|p| {
         let default = p.default_value();
         ensure(p.allows(&default), || {
             format!("parameter `{}`: its default is {default}, but must be {}", p.name, p.rule())
@@ -269,7 +232,7 @@ pub(super) fn light_type(registry: &Registry, entry: &LightEntry) -> Check {
     let sizes = d.sizes.iter().map(|size| ("size", size.parameter()));
     let others = [("cone", d.cone_parameter), ("roll", d.roll_parameter)];
     for (what, name) in others.into_iter().filter_map(|(what, name)| Some((what, name?))).chain(sizes) {
-        let number = |p: &Parameter| matches!(p.kind, ParameterKind::Number { .. });
+        let number = |p: &Parameter| matches!(p.kind, ParameterKind::Number(_));
         ensure(entry.parameter(name).is_some_and(number), || {
             format!("its {what} is parameter `{name}`, but must be a parameter of type number")
         })?;

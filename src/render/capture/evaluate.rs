@@ -2,10 +2,9 @@
 
 use bevy::render::{
     render_resource::{
-        BindGroupEntry, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferBindingType,
-        BufferDescriptor, BufferInitDescriptor, BufferUsages, CommandEncoderDescriptor,
-        ComputePassDescriptor, ComputePipeline, PipelineLayoutDescriptor, RawComputePipelineDescriptor,
-        ShaderModuleDescriptor, ShaderSource, ShaderStages,
+        BindGroupEntries, BindGroupLayoutEntries, Buffer, BufferInitDescriptor, BufferUsages,
+        CommandEncoderDescriptor, ShaderStages,
+        binding_types::{storage_buffer_read_only_sized, storage_buffer_sized},
     },
     renderer::{RenderDevice, RenderQueue},
     settings::RenderResources,
@@ -21,7 +20,10 @@ use crate::{
     parameter::Values,
     reflection::{ModelEntry, Surface, ends::ends},
     registry::compose::compose_evaluation,
-    render::trial::refused,
+    render::{
+        pass::{Compute, buffer},
+        trial::refused,
+    },
     shader::{check, compose::Sources},
 };
 
@@ -89,8 +91,7 @@ pub struct Evaluator {
     model: ModelEntry,
     device: RenderDevice,
     queue: RenderQueue,
-    layout: BindGroupLayout,
-    pipeline: ComputePipeline,
+    pass: Compute,
     row: Buffer,
     /// The model on the CPU, if it is interpreted there.
     on_cpu: Option<Arc<dyn Surface>>,
@@ -109,49 +110,15 @@ impl Evaluator {
         let row = row(&device, model, &Values::default(), Encoding::Srgb);
         // Users' shaders may ask for bindings that do not exist here.
         let scope = device.wgpu_device().push_error_scope(wgpu::ErrorFilter::Validation);
-        let text = composed.text.clone();
-        let module = device.create_and_validate_shader_module(ShaderModuleDescriptor {
-            label: Some("evaluate"),
-            source: ShaderSource::Wgsl(text.into()),
-        });
-        let entry = |binding, read_only| BindGroupLayoutEntry {
-            binding,
-            visibility: ShaderStages::COMPUTE,
-            ty: BindingType::Buffer {
-                ty: BufferBindingType::Storage { read_only },
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
-        let layout =
-            device.create_bind_group_layout("evaluate", &[entry(0, true), entry(1, true), entry(2, false)]);
-        let pipeline_layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label: Some("evaluate"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_compute_pipeline(&RawComputePipelineDescriptor {
-            label: Some("evaluate"),
-            layout: Some(&pipeline_layout),
-            module: &module,
-            entry_point: Some("evaluate"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+        let read = storage_buffer_read_only_sized(false, None);
+        let entries = (read, read, storage_buffer_sized(false, None));
+        let entries = BindGroupLayoutEntries::sequential(ShaderStages::COMPUTE, entries);
+        let pass = Compute::new(&device, "evaluate", composed.text.as_str().into(), "evaluate", &entries);
         if let Some(error) = block_on(scope.pop()) {
             return Err(GpuError::Invalid(refused(&composed, &error)));
         }
-        let mut evaluator = Self {
-            model: model.clone(),
-            device,
-            queue,
-            layout,
-            pipeline,
-            row,
-            on_cpu: None,
-            patience: PATIENCE,
-        };
+        let mut evaluator =
+            Self { model: model.clone(), device, queue, pass, row, on_cpu: None, patience: PATIENCE };
         evaluator.set(&Values::default(), Encoding::Srgb);
         Ok(evaluator)
     }
@@ -206,45 +173,20 @@ impl Evaluator {
             usage: BufferUsages::STORAGE,
         });
         let size = (pairs.len() * ANSWER_BYTES) as u64;
-        let empty = |usage| {
-            device.create_buffer(&BufferDescriptor {
-                label: Some("answers"),
-                size,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
+        let empty = |usage| buffer(device, "answers", size, usage);
         let output = empty(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
         let staging = empty(BufferUsages::COPY_DST | BufferUsages::MAP_READ);
-        let group = device.create_bind_group(
-            "evaluate",
-            &self.layout,
-            &[
-                BindGroupEntry { binding: 0, resource: self.row.as_entire_binding() },
-                BindGroupEntry { binding: 1, resource: input.as_entire_binding() },
-                BindGroupEntry { binding: 2, resource: output.as_entire_binding() },
-            ],
-        );
+        let [row, from, to] = [&self.row, &input, &output].map(|buffer| buffer.as_entire_buffer_binding());
+        let entries = BindGroupEntries::sequential((row, from, to));
         let mut encoder =
             device.create_command_encoder(&CommandEncoderDescriptor { label: Some("evaluate") });
-        {
-            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                label: Some("evaluate"),
-                timestamp_writes: None,
-            });
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, Some(&*group), &[]);
-            pass.dispatch_workgroups(pairs.len().div_ceil(64) as u32, 1, 1);
-        }
+        let groups = pairs.len().div_ceil(64) as u32;
+        self.pass.run(device, &mut encoder, &entries, groups);
         encoder.copy_buffer_to_buffer(&output, 0, &staging, 0, size);
         self.queue.submit([encoder.finish()]);
         Ok(read_back(device, &staging, self.patience)?
             .chunks_exact(ANSWER_BYTES)
-            .map(|b| Terms {
-                ambient: vector(&b[..12]),
-                diffuse: vector(&b[16..28]),
-                specular: vector(&b[32..44]),
-            })
+            .map(|terms| [0, 16, 32].map(|at| vector(&terms[at..])).into())
             .collect())
     }
 }

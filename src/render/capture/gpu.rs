@@ -4,33 +4,26 @@ use std::{path::Path, sync::OnceLock, time::Duration};
 
 use bevy::{
     a11y::AccessibilityPlugin,
-    app::{App, PluginsState, TerminalCtrlCHandlerPlugin},
-    asset::{AssetPlugin, Assets, Handle, RenderAssetUsages},
-    camera::{ClearColorConfig, Hdr, RenderTarget},
-    ecs::prelude::*,
-    image::Image,
+    app::{PluginsState, TerminalCtrlCHandlerPlugin},
+    asset::RenderAssetUsages,
+    camera::{Hdr, RenderTarget},
     light::cluster::GlobalClusterSettings,
     log::LogPlugin,
-    picking::{InteractionPlugin, PickingPlugin, input::PointerInputPlugin},
-    prelude::{DefaultPlugins, PluginGroup},
+    prelude::*,
     render::{
         RenderApp, RenderPlugin,
         camera::CameraRenderGraph,
         pipelined_rendering::PipelinedRenderingPlugin,
         render_asset::RenderAssets,
-        render_resource::{
-            Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Extent3d, MapMode, PollType,
-            TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat, TextureUsages,
-        },
+        render_resource::*,
         renderer::{RenderDevice, RenderQueue, initialize_renderer},
         settings::{Backends, RenderCreation, RenderResources, WgpuSettings},
         texture::GpuImage,
     },
     tasks::block_on,
-    window::{ExitCondition, WindowPlugin},
+    window::ExitCondition,
     winit::WinitPlugin,
 };
-use glam::{UVec2, Vec3};
 use thiserror::Error;
 use wgpu::PollError;
 
@@ -48,6 +41,7 @@ use crate::{
         live::LiveShaders,
         meshes::{BATCH, MESH_BUDGET, ShapeMeshes},
         overrides::Overrides,
+        pass::buffer,
         plugin::ScenePlugin,
         schedule::run_on_one_thread,
         view::View,
@@ -176,13 +170,6 @@ impl Output {
             Self::Linear => TextureFormat::Rgba32Float,
         }
     }
-
-    fn bytes_per_pixel(self) -> u32 {
-        match self {
-            Self::Display => 4,
-            Self::Linear => 16,
-        }
-    }
 }
 
 /// Maximum duration of a first picture; software Vulkan compiles shaders for a few seconds at most.
@@ -228,7 +215,7 @@ impl GpuRenderer {
                 .set(WindowPlugin {
                     primary_window: None,
                     exit_condition: ExitCondition::DontExit,
-                    ..WindowPlugin::default()
+                    ..default()
                 })
                 .set(RenderPlugin {
                     render_creation: RenderCreation::Manual(resources),
@@ -300,13 +287,11 @@ impl GpuRenderer {
         let mut cameras = world.query_filtered::<(Entity, Option<&Overrides>), With<PictureCamera>>();
         let cameras: Vec<_> = cameras.iter(world).map(|(camera, known)| (camera, known.cloned())).collect();
         for (camera, known) in cameras {
-            let mut wanted = known.clone().unwrap_or_default();
-            wanted.channel = channel;
-            let wanted = Some(wanted).filter(|wanted| *wanted != Overrides::default());
-            match wanted {
-                same if same == known => {}
-                Some(wanted) => _ = world.entity_mut(camera).insert(wanted),
-                None => _ = world.entity_mut(camera).remove::<Overrides>(),
+            let wanted = Overrides { channel, ..known.clone().unwrap_or_default() };
+            if wanted == Overrides::default() {
+                world.entity_mut(camera).remove::<Overrides>();
+            } else if known.as_ref() != Some(&wanted) {
+                world.entity_mut(camera).insert(wanted);
             }
         }
     }
@@ -363,28 +348,17 @@ impl GpuRenderer {
         let queue = world.resource::<RenderQueue>();
         let image = world.resource::<RenderAssets<GpuImage>>().get(texture).ok_or_else(missing)?;
 
-        let row = self.width * self.output.bytes_per_pixel();
+        let row = self.width * self.output.format().block_copy_size(None).unwrap_or_default();
         let padded = row.next_multiple_of(256);
-        let staging = self.staging.get_or_insert_with(|| {
-            device.create_buffer(&BufferDescriptor {
-                label: Some("picture"),
-                size: u64::from(padded) * u64::from(self.height),
-                usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-                mapped_at_creation: false,
-            })
-        });
+        let size = u64::from(padded) * u64::from(self.height);
+        let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+        let staging = self.staging.get_or_insert_with(|| buffer(device, "picture", size, usage));
         let mut encoder =
             device.create_command_encoder(&CommandEncoderDescriptor { label: Some("read picture") });
+        let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None };
         encoder.copy_texture_to_buffer(
             image.texture.as_image_copy(),
-            TexelCopyBufferInfo {
-                buffer: staging,
-                layout: TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(padded),
-                    rows_per_image: None,
-                },
-            },
+            TexelCopyBufferInfo { buffer: staging, layout },
             Extent3d { width: self.width, height: self.height, depth_or_array_layers: 1 },
         );
         queue.submit([encoder.finish()]);

@@ -4,9 +4,9 @@
 use std::time::{Duration, Instant};
 
 use bevy::{
-    camera::{Camera, Camera3d, Camera3dDepthLoadOp, ClearColorConfig},
-    ecs::{prelude::*, world::EntityWorldMut},
+    camera::Camera3dDepthLoadOp,
     pbr::PreparedMaterial,
+    prelude::*,
     render::{
         RenderApp,
         camera::CameraRenderGraph,

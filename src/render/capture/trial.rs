@@ -9,22 +9,15 @@ use std::{
 };
 
 use bevy::{
-    app::App,
-    asset::{Assets, Handle, RenderAssetUsages},
-    camera::visibility::Visibility,
-    ecs::{
-        prelude::*,
-        schedule::{Schedules, SingleThreadedExecutor},
-    },
-    mesh::{Mesh, Mesh3d, MeshTag},
+    asset::RenderAssetUsages,
+    mesh::MeshTag,
+    prelude::*,
     render::{
-        RenderApp,
         error_handler::{RenderErrorHandler, RenderErrorPolicy},
         renderer::{RenderAdapter, RenderDevice},
         storage::ShaderBuffer,
     },
-    shader::{Shader, ValidateShader},
-    transform::components::Transform,
+    shader::ValidateShader,
 };
 
 use super::gpu::{GpuError, GpuRenderer, Output};
@@ -69,9 +62,9 @@ pub fn serve(input: impl BufRead, mut output: impl Write) -> Result<(), GpuError
     say(&Answer::Ready).map_err(gone)?;
     for line in input.lines() {
         let Ok(request) = serde_json::from_str::<Request>(&line.map_err(gone)?) else { continue };
-        deadline.begin();
+        deadline.set(Some(Instant::now()));
         let (answer, more) = stage.try_out(&request);
-        deadline.end();
+        deadline.set(None);
         say(&answer).map_err(gone)?;
         if !more {
             break;
@@ -102,14 +95,6 @@ impl Deadline {
 
     fn set(&self, since: Option<Instant>) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = since;
-    }
-
-    fn begin(&self) {
-        self.set(Some(Instant::now()));
-    }
-
-    fn end(&self) {
-        self.set(None);
     }
 }
 
@@ -152,7 +137,8 @@ impl Stage {
                 RenderErrorPolicy::Ignore
             }));
         })?;
-        on_one_thread(renderer.app());
+        // A shader for light with extent takes its samples whatever lights there are. The window waits for one.
+        renderer.set_light_samples(1);
         renderer.set_scene(scene());
         renderer.settle()?;
         let actors = [false, true].map(|faces| Actor::new(renderer.app().world_mut(), faces));
@@ -163,16 +149,13 @@ impl Stage {
     fn try_out(&mut self, request: &Request) -> (Answer, bool) {
         let composed =
             Composed { text: request.text.clone(), map: request.map.clone(), ..Composed::default() };
-        let known = match judged(&composed, request.faces) {
-            Some(Ok(())) => true,
-            Some(Err(problem)) => {
-                // The composer reports positions in more cases.
-                return (Answer::Bad(self.explained(&composed, request.faces).unwrap_or(problem)), true);
+        let judged = judged(&composed, request.faces);
+        if judged != Some(Ok(())) {
+            // The composer reports positions in more cases.
+            let problem = self.explained(&composed, request.faces).or(judged.and_then(Result::err));
+            if let Some(problem) = problem {
+                return (Answer::Bad(problem), true);
             }
-            None => false,
-        };
-        if !known && let Some(problem) = self.explained(&composed, request.faces) {
-            return (Answer::Bad(problem), true);
         }
         match self.draw(request) {
             Ok(time) if time <= SLOWEST => (Answer::Good, true),
@@ -248,22 +231,6 @@ impl Stage {
     }
 }
 
-/// Runs all systems one after the other: in a picture this small, each takes less time than passing it to
-/// another thread.
-fn on_one_thread(app: &mut App) {
-    let change = |world: &mut World| {
-        if let Some(mut schedules) = world.get_resource_mut::<Schedules>() {
-            for (_, schedule) in schedules.iter_mut() {
-                schedule.set_executor(SingleThreadedExecutor::new());
-            }
-        }
-    };
-    change(app.world_mut());
-    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-        change(render_app.world_mut());
-    }
-}
-
 /// Every light type without extent is active, so that the whole light loop is used. Light with extent calls
 /// the same functions of a model, hundreds of times.
 fn scene() -> Scene {
@@ -286,11 +253,10 @@ fn scene() -> Scene {
 
 impl Actor {
     fn new(world: &mut World, faces: bool) -> Self {
-        let mesh = world
-            .resource::<Registry>()
-            .shape("sphere")
-            .map(|shape| shape.mesh(&Values::default(), shape.tessellation(None)));
-        let mesh = mesh.map(|mesh| if faces { face_mesh(&mesh) } else { shared_mesh(&mesh) });
+        let mesh = world.resource::<Registry>().shape("sphere").map(|shape| {
+            let mesh = shape.mesh(&Values::default(), shape.tessellation(None));
+            if faces { face_mesh(&mesh) } else { shared_mesh(&mesh) }
+        });
         let mesh = mesh.map(|mesh| world.resource_mut::<Assets<Mesh>>().add(mesh));
         let shader = world.resource_mut::<Assets<Shader>>().reserve_handle();
         let at = Transform::from_translation(Scene::default().scene_size.corner() / 2.0)
@@ -311,8 +277,7 @@ impl Actor {
             gamma_naive: false,
         };
         // That of models from files.
-        let attachment = world.resource::<Attachments>().get("");
-        if let Some(attachment) = attachment {
+        if let Some(attachment) = world.resource::<Attachments>().get("") {
             (attachment.attach)(&mut world.entity_mut(entity), inputs);
         }
         Self { entity, shader, parameters }

@@ -17,11 +17,12 @@ use crate::{
     registry::Registry,
     render::{
         absorb::absorb,
-        entities::{object_transform, reconcile},
+        entities::object_transform,
         mirror::{read_light, read_object},
         parts::{
             Animated, LightColour, LightPower, SceneLight, SceneObject, SceneObserver, Surface, Tessellation,
         },
+        reconcile::reconcile,
         shown::{Shown, ShownObject, show_lights},
         typed::{PartTypes, know_types},
     },
@@ -402,6 +403,31 @@ fn document_scene_and_entities_stay_equal_whoever_changes_what() {
             }
         }
     }
+}
+
+#[test]
+fn what_was_written_is_not_read_in_the_same_frame_or_the_next() {
+    let mut lab = Lab::new();
+    lab.settle();
+    let registry = lab.0.resource::<Registry>().clone();
+    let start = lab.0.resource::<SceneEntities>().visits();
+    let visits = |lab: &mut Lab| {
+        lab.frame();
+        lab.0.resource::<SceneEntities>().visits() - start
+    };
+    let edit = Edit::set(Part::Object(2), Object::size, 0.25);
+    lab.document().edit(edit, Selection::Room, &registry).expect("legal");
+    assert_eq!([visits(&mut lab), visits(&mut lab)], [1, 1], "the edit is written");
+    let object = lab.object(2);
+    lab.get::<Transform>(object).translation.x = 400.0;
+    assert_eq!([visits(&mut lab), visits(&mut lab)], [2, 2], "the change is read, and goes back");
+    // What a system and the document change in one frame both stay.
+    lab.get::<Transform>(object).translation.x = 4.0;
+    let edit = Edit::set(Part::Object(2), Object::size, 0.5);
+    lab.document().edit(edit, Selection::Room, &registry).expect("legal");
+    assert_eq!([visits(&mut lab), visits(&mut lab)], [4, 4]);
+    lab.check("both");
+    assert_eq!((lab.document().objects[2].position.x, lab.document().objects[2].size), (4.0, 0.5));
 }
 
 #[test]

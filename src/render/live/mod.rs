@@ -3,7 +3,7 @@
 //!
 //! Each reflection model in each shading model has a separate shader: a change of a shared file that breaks
 //! one model does not affect the others. A shader is exchanged only after it was tried
-//! ([`trial`](super::trial)). Its asset stays the same, so cameras, materials and objects are not affected.
+//! ([`trial`]). Its asset stays the same, so cameras, materials and objects are not affected.
 //! The files are managed by the [`Library`].
 //!
 //! Until a shader is ready, an object keeps its old one ([`AwaitsShader`](super::swap::AwaitsShader)); a broken custom
@@ -20,13 +20,7 @@ use std::{
     time::Instant,
 };
 
-use bevy::{
-    app::{App, Plugin},
-    asset::Handle,
-    ecs::prelude::*,
-    render::error_handler::RenderErrorHandler,
-    shader::Shader,
-};
+use bevy::{prelude::*, render::error_handler::RenderErrorHandler};
 
 use super::{
     drawn::Drawn,
@@ -34,7 +28,7 @@ use super::{
     overrides::Overrides,
     schedule::{LabFrame, LabSystems},
     shown::Shown,
-    trial::{Bench, TrialPlugin},
+    trial::{self, Bench},
 };
 use crate::{
     library::{
@@ -54,16 +48,11 @@ use crate::{
 pub use ready::SPARE;
 
 /// Exchanges shaders while they are in use.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct LiveShadersPlugin;
-
-impl Plugin for LiveShadersPlugin {
-    fn build(&self, app: &mut App) {
-        app.add_plugins(TrialPlugin)
-            .init_resource::<LiveShaders>()
-            .insert_resource(RenderErrorHandler(trying::take_back))
-            .add_systems(LabFrame, exchange.in_set(LabSystems::Swap));
-    }
+pub(super) fn plugin(app: &mut App) {
+    app.add_plugins(trial::plugin)
+        .init_resource::<LiveShaders>()
+        .insert_resource(RenderErrorHandler(trying::take_back))
+        .add_systems(LabFrame, exchange.in_set(LabSystems::Swap));
 }
 
 /// The identity of a shader: model, shading model, and light types.

@@ -2,11 +2,7 @@
 
 use std::collections::HashSet;
 
-use bevy::{
-    asset::{Assets, Handle},
-    ecs::prelude::*,
-    shader::{Shader, ValidateShader},
-};
+use bevy::{prelude::*, shader::ValidateShader};
 
 use super::{
     super::trial::{Bench, COMPOSED, Verdict},
@@ -56,28 +52,18 @@ impl LiveShaders {
             self.unused.remove(path);
             self.unused_problems.remove(path);
         }
-        let mut refused = None;
-        let mut due = false;
-        let mut shown = None;
-        if self.library.is_built_in(&wanted, registry) {
-            shown = Some(wanted);
-        } else {
-            match self.try_out(world, &wanted, parts) {
-                Verdict::Good => {
-                    self.library.note_good(&wanted, registry);
-                    shown = Some(wanted);
-                }
-                Verdict::Bad(problem) => {
-                    let problem = self.blamed(problem, &wanted, parts, registry);
-                    refused = Some(Refused { composed: wanted, problem: Problem::new(problem) });
-                }
-                Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
-                    self.awaited = true;
-                    return None;
-                }
-                Verdict::NotYet => due = true,
+        let (shown, refused, due) = match self.judge(world, &wanted, parts, registry) {
+            Verdict::Good => (Some(wanted), None, false),
+            Verdict::Bad(problem) => {
+                let problem = Problem::new(problem);
+                (None, Some(Refused { composed: wanted, problem }), false)
             }
-        }
+            Verdict::NotYet if world.resource::<Bench>().is_waiting() => {
+                self.awaited = true;
+                return None;
+            }
+            Verdict::NotYet => (None, None, true),
+        };
         let (shown, replaced) = match shown {
             Some(shown) => (shown, Vec::new()),
             None => self.last_good(world, parts, registry)?,
@@ -105,17 +91,19 @@ impl LiveShaders {
     /// shader at rest, or of a removed custom model. Bevy never releases a pipeline, but rebuilds it when its
     /// shader changes; with an asset for each declaration, each would keep megabytes.
     fn taken_over(&mut self, key: Key, registry: &Registry) -> Option<Handle<Shader>> {
-        if let Some(live) = self.shaders.remove(&key) {
-            return Some(live.handle);
-        }
-        if let Some(handle) = self.resting.remove(&key) {
+        if let Some(handle) = self.take(&key) {
             return Some(handle);
         }
         // Materials of custom models are of one type, so any of them may take it.
         registry.custom_file(key.0)?;
         let gone = |known: &&Key| known.1 == key.1 && registry.model(known.0).is_none();
         let known = *self.shaders.keys().chain(self.resting.keys()).find(gone)?;
-        self.shaders.remove(&known).map(|live| live.handle).or_else(|| self.resting.remove(&known))
+        self.take(&known)
+    }
+
+    /// The asset of a shader, which no longer has one.
+    fn take(&mut self, key: &Key) -> Option<Handle<Shader>> {
+        self.shaders.remove(key).map(|live| live.handle).or_else(|| self.resting.remove(key))
     }
 
     /// Puts the shaders to rest that were out of the picture for longest, if there are many: their pipelines

@@ -20,31 +20,20 @@ impl LiveShaders {
                 troubles.push(Trouble { problem: problem.clone(), path, stale: Vec::new() });
                 troubles.len() - 1
             });
-            if let Some(name) = stale
-                && !troubles[i].stale.contains(&name)
-            {
-                troubles[i].stale.push(name);
-            }
+            let known = &mut troubles[i].stale;
+            let new = stale.filter(|name| !known.contains(name));
+            known.extend(new);
         };
-        let name = |key: &Key| match registry.model(key.0) {
-            // A file that was never valid.
-            Some(m)
-                if registry.custom_file(key.0).is_some()
-                    && registry.sources().get(m.declaration.wgsl.path).is_none() =>
-            {
-                format!("{}{STAND_IN}", m.declaration.name)
+        let name = |key: &Key| {
+            let Some(model) = registry.model(key.0) else { return key.0.to_owned() };
+            let (name, path) = (model.declaration.name, model.declaration.wgsl.path);
+            let was_never_valid =
+                registry.custom_file(key.0).is_some() && registry.sources().get(path).is_none();
+            match self.shaders[key].replaced.as_slice() {
+                paths if was_never_valid || paths.contains(&path) => format!("{name}{STAND_IN}"),
+                [] => name.to_owned(),
+                paths => format!("{name} (without {})", crate::text::listed(paths, "and")),
             }
-            Some(model) => {
-                let (name, replaced) = (model.declaration.name, &self.shaders[key].replaced);
-                match replaced.as_slice() {
-                    [] => name.to_owned(),
-                    paths if paths.contains(&model.declaration.wgsl.path) => {
-                        format!("{name}{STAND_IN}")
-                    }
-                    paths => format!("{name} (without {})", crate::text::listed(paths, "and")),
-                }
-            }
-            None => key.0.to_owned(),
         };
         let mut keys: Vec<_> = self.shaders.keys().collect();
         keys.sort_unstable();

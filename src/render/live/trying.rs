@@ -3,13 +3,11 @@
 use std::time::{Duration, Instant};
 
 use bevy::{
-    asset::Assets,
-    ecs::prelude::*,
+    prelude::*,
     render::{
         error_handler::{ErrorType, RenderError, RenderErrorHandler, RenderErrorPolicy},
         renderer::{RenderAdapter, RenderDevice},
     },
-    shader::Shader,
 };
 
 use super::{
@@ -56,16 +54,24 @@ impl LiveShaders {
         verdict
     }
 
-    /// Names the author's file if a problem appears in another one.
-    pub(super) fn blamed(
-        &self,
-        problem: Box<ShaderProblem>,
+    /// The verdict on a composed source; one that holds only what ships with this crate is not tried. Remembers the files
+    /// of a valid one, and names the author's file if a problem appears in another one.
+    pub(super) fn judge(
+        &mut self,
+        world: &mut World,
         composed: &Composed,
-        (model, shading, lights): Parts,
+        parts: Parts,
         registry: &Registry,
-    ) -> Box<ShaderProblem> {
+    ) -> Verdict {
+        let built_in = self.library.is_built_in(composed, registry);
+        let verdict = if built_in { Verdict::Good } else { self.try_out(world, composed, parts) };
+        if verdict == Verdict::Good {
+            self.library.note_good(composed, registry);
+        }
+        let Verdict::Bad(problem) = verdict else { return verdict };
+        let (model, shading, lights) = parts;
         let problem = self.library.blamed(problem, composed, registry);
-        wgsl::blamed(problem, registry, model, shading, &registry.lights_in(lights))
+        Verdict::Bad(wgsl::blamed(problem, registry, model, shading, &registry.lights_in(lights)))
     }
 
     /// Tries pending shaders for as long as a frame may take: first those in the picture; then, one per
@@ -110,14 +116,12 @@ impl LiveShaders {
         let parts = (model, shading, key.2);
         let wanted = composed(registry.sources(), parts, registry);
         let shown_already = self.shaders.get(&key).is_some_and(|live| live.shown == wanted);
-        let verdict = if shown_already || self.library.is_built_in(&wanted, registry) {
+        let verdict = if shown_already {
+            self.library.note_good(&wanted, registry);
             Verdict::Good
         } else {
-            self.try_out(world, &wanted, parts)
+            self.judge(world, &wanted, parts, registry)
         };
-        if verdict == Verdict::Good {
-            self.library.note_good(&wanted, registry);
-        }
         let asset = self.asset(&wanted, key, registry);
         let Some(live) = self.shaders.get_mut(&key) else { return };
         live.due = verdict == Verdict::NotYet;
@@ -135,9 +139,6 @@ impl LiveShaders {
                 }
             }
             Verdict::Bad(problem) => {
-                let problem = self.blamed(problem, &wanted, parts, registry);
-                let live = self.shaders.get_mut(&key);
-                let Some(live) = live else { return };
                 let problem = Problem::after(live.refused.as_ref().map(|r| &r.problem), problem);
                 live.refused = Some(Refused { composed: wanted, problem });
             }
@@ -167,18 +168,12 @@ impl LiveShaders {
         };
         let parts = (model, shading, lights);
         let composed = composed(registry.sources(), parts, registry);
-        match self.try_out(world, &composed, parts) {
-            Verdict::Good => {
-                self.unused_problems.remove(path);
-                self.library.note_good(&composed, registry);
-            }
+        match self.judge(world, &composed, parts, registry) {
+            Verdict::Good => _ = self.unused_problems.remove(path),
             Verdict::Bad(problem) => {
-                let problem = self.blamed(problem, &composed, parts, registry);
                 self.unused_problems.insert(path.to_owned(), Problem::new(problem));
             }
-            Verdict::NotYet => {
-                self.unused.insert(path.to_owned());
-            }
+            Verdict::NotYet => _ = self.unused.insert(path.to_owned()),
         }
         self.stale_status = true;
     }
@@ -222,14 +217,9 @@ pub(super) fn take_back(error: &RenderError, main: &mut World, render: &mut Worl
             let refused = std::mem::replace(&mut entry.shown, before);
             let asset = Shader::from_wgsl(entry.shown.text.clone(), path_of_asset(*key));
             let _ = shaders.insert(entry.handle.id(), asset);
-            let problem = Box::new(ShaderProblem {
-                file: file.clone(),
-                line: 1,
-                column: 1,
-                source: String::new(),
-                message: format!("the graphics driver failed while drawing with it: {what}"),
-            });
-            entry.refused = Some(Refused { composed: refused, problem: Problem::new(problem) });
+            let message = format!("the graphics driver failed while drawing with it: {what}");
+            let problem = Problem::new(Box::new(ShaderProblem::at(&file, "", 0, message)));
+            entry.refused = Some(Refused { composed: refused, problem });
             taken_back = true;
         }
         live.stale_status |= taken_back;

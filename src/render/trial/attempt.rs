@@ -3,16 +3,11 @@
 use std::{borrow::Cow, cell::Cell, panic, sync::Once};
 
 use bevy::{
-    asset::{AssetId, uuid::Uuid},
+    asset::uuid::Uuid,
     mesh::VertexBufferLayout,
-    render::{
-        render_resource::{
-            BindGroupLayout, PipelineLayoutDescriptor, RenderPipelineDescriptor, ShaderModuleDescriptor,
-            ShaderSource, VertexAttribute, VertexFormat,
-        },
-        renderer::RenderDevice,
-    },
-    shader::{Shader, ShaderCache, ShaderCacheError, ShaderCacheSource, ShaderDefVal, ShaderImport},
+    prelude::*,
+    render::{render_resource::*, renderer::RenderDevice},
+    shader::{ShaderCache, ShaderCacheError, ShaderCacheSource, ShaderDefVal, ShaderImport},
     tasks::block_on,
 };
 use naga::Module;
@@ -20,7 +15,7 @@ use naga::Module;
 use super::{
     explain::{located, offset, refusal, refused, unknown_import},
     tools::{COMPOSED, Example, Tools},
-    verdict::Refusal,
+    verdict::Verdict,
 };
 use crate::{
     caught::catch,
@@ -34,10 +29,10 @@ pub(super) fn attempt(
     faces: bool,
     example: &Example,
     tools: Tools,
-) -> Result<(), Refusal> {
+) -> Result<(), Verdict> {
     let cache = cache.get_or_insert_with(|| library(tools));
     let mut descriptor = example.descriptor.clone();
-    if faces != has_faces(&descriptor.vertex.shader_defs) {
+    if faces != descriptor.vertex.shader_defs.contains(&"FACES".into()) {
         change_faces(&mut descriptor, faces);
     }
     let mut modules = Vec::new();
@@ -59,7 +54,7 @@ pub(super) fn attempt(
     let vertex = module_of(&descriptor.vertex.shader_defs);
     let fragment = descriptor.fragment.as_ref().map(|f| module_of(&f.shader_defs)).unwrap_or_default();
     build(&descriptor, &example.layouts, vertex, fragment, tools.device)
-        .map_err(|error| Refusal::Problem(refused(composed, &error)))
+        .map_err(|error| Verdict::Bad(refused(composed, &error)))
 }
 
 thread_local! {
@@ -117,7 +112,7 @@ fn compose(
     faces: bool,
     defs: &[ShaderDefVal],
     tools: Tools,
-) -> Result<Module, Refusal> {
+) -> Result<Module, Verdict> {
     let shader = Shader::from_wgsl(composed.text.clone(), format!("{COMPOSED}candidate.wgsl"));
     let imports = shader.imports.clone();
     cache.set_shader(CANDIDATE, with_limits(shader, tools.device));
@@ -127,18 +122,12 @@ fn compose(
         Err(ShaderCacheError::ShaderImportNotYetAvailable | ShaderCacheError::ShaderNotLoaded(_)) => {
             let known = |import: &ShaderImport| tools.shaders.iter().any(|(_, s)| s.import_path == *import);
             match imports.iter().find(|import| !known(import)) {
-                Some(missing) => {
-                    Err(Refusal::Problem(unknown_import(composed, &missing.module_name(), tools)))
-                }
-                None => Err(Refusal::NotYet),
+                Some(missing) => Err(Verdict::Bad(unknown_import(composed, &missing.module_name(), tools))),
+                None => Err(Verdict::NotYet),
             }
         }
-        Err(error) => Err(Refusal::Problem(locate(composed, None, error.to_string()))),
+        Err(error) => Err(Verdict::Bad(locate(composed, None, error.to_string()))),
     }
-}
-
-fn has_faces(defs: &[ShaderDefVal]) -> bool {
-    defs.iter().any(|def| *def == "FACES".into())
 }
 
 /// Switches the example to meshes with data of their polygons, or back.
@@ -154,13 +143,9 @@ fn change_faces(descriptor: &mut RenderPipelineDescriptor, faces: bool) {
         change(&mut fragment.shader_defs);
     }
     let count = if faces { 6 } else { 3 };
-    let attributes = (0..count)
-        .map(|i| VertexAttribute {
-            format: VertexFormat::Float32x3,
-            offset: 12 * i,
-            shader_location: i as u32,
-        })
-        .collect();
+    let format = VertexFormat::Float32x3;
+    let attribute = |i| VertexAttribute { format, offset: 12 * i, shader_location: i as u32 };
+    let attributes = (0..count).map(attribute).collect();
     if let Some(buffer) = descriptor.vertex.buffers.first_mut() {
         *buffer = VertexBufferLayout { array_stride: 12 * count, attributes, ..buffer.clone() };
     }
@@ -223,8 +208,5 @@ fn build(
         cache: None,
     });
     let errors = [block_on(validation.pop()), block_on(internal.pop())];
-    match errors.into_iter().flatten().next() {
-        Some(error) => Err(error),
-        None => Ok(()),
-    }
+    errors.into_iter().flatten().next().map_or(Ok(()), Err)
 }

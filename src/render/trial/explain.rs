@@ -3,7 +3,7 @@
 use naga::{Module, Span, front::wgsl::ParseError};
 use naga_oil::compose::{ComposerError, ComposerErrorInner, ErrSource};
 
-use super::{tools::Tools, verdict::Refusal};
+use super::{tools::Tools, verdict::Verdict};
 use crate::shader::{
     check::{self, ShaderProblem, locate, reason},
     compose::{Composed, WRAPPER},
@@ -36,7 +36,7 @@ pub(super) fn unknown_import(composed: &Composed, name: &str, tools: Tools) -> B
 }
 
 /// The composer's error, in terms of the author's file.
-pub(super) fn refusal(composed: &Composed, faces: bool, error: &ComposerError) -> Refusal {
+pub(super) fn refusal(composed: &Composed, faces: bool, error: &ComposerError) -> Verdict {
     use ComposerErrorInner as Inner;
     let about_text = matches!(
         error.inner,
@@ -44,14 +44,14 @@ pub(super) fn refusal(composed: &Composed, faces: bool, error: &ComposerError) -
     );
     // The same wording as elsewhere, if the text can be parsed without the composer.
     if let Some(Err(problem)) = about_text.then(|| judged(composed, faces)).flatten() {
-        return Refusal::Problem(problem);
+        return Verdict::Bad(problem);
     }
     let offset = match &error.source {
         ErrSource::Constructing { offset, .. } => *offset,
         // In one of Bevy's own modules: the wrapper imports it.
         ErrSource::Module { name, .. } => {
             let line = composed.text.lines().position(|l| l.contains(name.as_str())).map(|l| (l + 1, 1));
-            return Refusal::Problem(locate(composed, line, error.inner.to_string()));
+            return Verdict::Bad(locate(composed, line, error.inner.to_string()));
         }
     };
     let parse = |e: &ParseError| located(composed, offset, e.labels().map(|l| l.0), e.message().to_owned());
@@ -81,7 +81,7 @@ pub(super) fn refusal(composed: &Composed, faces: bool, error: &ComposerError) -
             let span = Span::new(range.start as u32, range.end as u32);
             located(composed, 0, [span].into_iter(), error.inner.to_string())
         }
-        other => Refusal::Problem(locate(composed, None, other.to_string())),
+        other => Verdict::Bad(locate(composed, None, other.to_string())),
     }
 }
 
@@ -92,7 +92,7 @@ pub(super) fn located(
     offset: usize,
     spans: impl Iterator<Item = Span>,
     message: String,
-) -> Refusal {
+) -> Verdict {
     let text = &composed.text;
     let place = spans
         .filter_map(|span| span.to_range())
@@ -103,7 +103,7 @@ pub(super) fn located(
             let line_start = before.rfind('\n').map_or(0, |i| i + 1);
             (before.matches('\n').count() + 1, at - line_start + 1)
         });
-    Refusal::Problem(locate(composed, place, message))
+    Verdict::Bad(locate(composed, place, message))
 }
 
 /// The distance between positions in a composed module and in our text, by the majority of functions.
@@ -167,11 +167,8 @@ pub(super) fn explain(composed: &Composed, complaint: &str) -> (Option<(usize, u
         Some((line_of(&format!("@{name}")), message))
     };
     let wrapper = || {
-        let lines = 1..=composed.text.lines().count();
-        lines
-            .into_iter()
-            .find(|l| composed.map.locate(*l).is_some_and(|(f, _)| f == WRAPPER.path))
-            .map(|l| (l, 1))
+        let of_wrapper = |l: &usize| composed.map.locate(*l).is_some_and(|(f, _)| f == WRAPPER.path);
+        (1..=composed.text.lines().count()).find(of_wrapper).map(|l| (l, 1))
     };
     binding
         .or_else(location)

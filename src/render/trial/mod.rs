@@ -11,8 +11,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use bevy::{
-    app::{App, Plugin},
-    ecs::prelude::*,
+    prelude::*,
     render::{
         Render, RenderApp, RenderSystems,
         render_resource::{CachedPipelineState, PipelineCache, PipelineDescriptor},
@@ -37,7 +36,6 @@ use attempt::{attempt, quietly};
 use explain::without_place;
 use process::TrialProcess;
 use tools::Example;
-use verdict::Refusal;
 
 /// The example, filled by the renderer as soon as one exists.
 #[derive(Clone, Default, Resource)]
@@ -50,19 +48,11 @@ impl SharedExample {
 }
 
 /// Enables trials of shaders: makes [`Bench`] a resource.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct TrialPlugin;
-
-impl Plugin for TrialPlugin {
-    fn build(&self, app: &mut App) {
-        let example = SharedExample::default();
-        app.insert_resource(Bench { example: example.clone(), cache: None, process: None });
-        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app
-                .insert_resource(example)
-                .add_systems(Render, find_example.in_set(RenderSystems::Cleanup));
-        }
-    }
+pub(super) fn plugin(app: &mut App) {
+    let example = SharedExample::default();
+    app.insert_resource(Bench { example: example.clone(), cache: None, process: None });
+    let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
+    render.insert_resource(example).add_systems(Render, find_example.in_set(RenderSystems::Cleanup));
 }
 
 /// Keeps the first of our pipelines that works.
@@ -71,13 +61,10 @@ fn find_example(example: Res<SharedExample>, cache: Res<PipelineCache>) {
     if example.is_some() {
         return;
     }
-    let found = cache.pipelines().find_map(|pipeline| match (&pipeline.descriptor, &pipeline.state) {
-        (PipelineDescriptor::RenderPipelineDescriptor(d), CachedPipelineState::Ok(_))
-            if d.vertex.shader_defs.iter().any(|def| *def == MARK.into()) =>
-        {
-            Some(d)
-        }
-        _ => None,
+    let found = cache.pipelines().find_map(|pipeline| {
+        let PipelineDescriptor::RenderPipelineDescriptor(d) = &pipeline.descriptor else { return None };
+        let works = matches!(pipeline.state, CachedPipelineState::Ok(_));
+        (works && d.vertex.shader_defs.contains(&MARK.into())).then_some(d)
     });
     if let Some(descriptor) = found {
         let layouts = descriptor.layout.iter().map(|l| cache.get_bind_group_layout(l)).collect();
@@ -93,12 +80,6 @@ pub struct Bench {
     cache: Option<ShaderCache<Module, ()>>,
     /// The process that runs the trials instead, if any.
     process: Option<TrialProcess>,
-}
-
-impl std::fmt::Debug for Bench {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Bench").finish_non_exhaustive()
-    }
 }
 
 impl Bench {
@@ -148,9 +129,7 @@ impl Bench {
         let Some(example) = example.as_ref() else { return Verdict::NotYet };
         // The shader composer calls unwrap in places.
         match quietly(|| attempt(&mut self.cache, composed, faces, example, tools)) {
-            Some(Ok(())) => Verdict::Good,
-            Some(Err(Refusal::NotYet)) => Verdict::NotYet,
-            Some(Err(Refusal::Problem(problem))) => Verdict::Bad(problem),
+            Some(outcome) => outcome.err().unwrap_or(Verdict::Good),
             None => {
                 // The cache may be left in an inconsistent state.
                 self.cache = None;

@@ -226,17 +226,12 @@ struct Worker {
 impl Worker {
     /// The next shader to try; `None` if there will be no more.
     fn next(&mut self) -> Option<(u64, Request)> {
-        let mut state = self.shared.lock();
-        loop {
-            if state.closed {
-                return None;
-            }
-            if let Some(waiting) = state.queue.pop_front() {
-                state.current = Some(waiting.key);
-                return Some((waiting.key, waiting.request));
-            }
-            state = self.shared.news.wait(state).unwrap_or_else(PoisonError::into_inner);
-        }
+        let waits = |state: &mut State| !state.closed && state.queue.is_empty();
+        let state = self.shared.news.wait_while(self.shared.lock(), waits);
+        let mut state = state.unwrap_or_else(PoisonError::into_inner);
+        let waiting = state.queue.pop_front().filter(|_| !state.closed)?;
+        state.current = Some(waiting.key);
+        Some((waiting.key, waiting.request))
     }
 
     /// Tries a shader. Returns the answer, or the reason why there is none.
@@ -247,31 +242,27 @@ impl Worker {
                 Some(process) => process,
                 None => self.start()?,
             };
-            match self.fate(process, &line) {
+            let message = match self.fate(process, &line) {
                 Fate::Answered(Answer::Bad(problem)) => return Ok(Verdict::Bad(problem)),
                 Fate::Answered(_) => return Ok(Verdict::Good),
                 Fate::TooSlow => {
                     let limit = self.budget.time.as_secs_f32();
-                    let message = format!(
+                    format!(
                         "the graphics driver did not finish compiling it and drawing a small picture with it within {limit} s; is there a loop with very many iterations?"
-                    );
-                    return Ok(refused(request, message));
+                    )
                 }
                 Fate::TooLarge => {
                     let limit = self.budget.memory >> 20;
-                    let message =
-                        format!("the graphics driver needs more than {limit} MiB of memory to compile it");
-                    return Ok(refused(request, message));
+                    format!("the graphics driver needs more than {limit} MiB of memory to compile it")
                 }
                 // Somebody else may have ended the process, so it is asked once more.
-                Fate::Died(_) if attempt == 0 => {}
+                Fate::Died(_) if attempt == 0 => continue,
                 Fate::Died(status) => {
                     let how = status.map_or_else(String::new, |status| format!(" ({status})"));
-                    let message =
-                        format!("the graphics driver crashes when it compiles it or draws with it{how}");
-                    return Ok(refused(request, message));
+                    format!("the graphics driver crashes when it compiles it or draws with it{how}")
                 }
-            }
+            };
+            return Ok(refused(request, message));
         }
         Err("it ended".to_owned())
     }

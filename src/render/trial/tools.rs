@@ -1,12 +1,11 @@
 //! The parts of the renderer that trials need.
 
 use bevy::{
-    asset::Assets,
+    prelude::*,
     render::{
         render_resource::{BindGroupLayout, RenderPipelineDescriptor},
         renderer::{RenderAdapter, RenderDevice},
     },
-    shader::Shader,
 };
 
 /// Marks the pipelines of our materials, so that one can be found as an example.

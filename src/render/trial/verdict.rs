@@ -13,9 +13,3 @@ pub enum Verdict {
     /// frame.
     NotYet,
 }
-
-/// The reason why a trial did not succeed.
-pub(super) enum Refusal {
-    NotYet,
-    Problem(Box<ShaderProblem>),
-}

@@ -22,6 +22,7 @@ use crate::{
 };
 
 mod rule;
+pub use super::clause::{Rule, direction};
 pub use rule::*;
 
 /// All problems of a scene, in order; empty if it is valid.
@@ -226,7 +227,7 @@ impl Check<'_> {
         fields.each(&mut |field, held, _| match (field.kind, held.value()) {
             (Kind::Position, Some(Value::Triple(p))) => self.within(part, p.into()),
             (_, Some(value)) => {
-                self.rule(field.check(&value, registry), || (part.path().key(field.key), written(&value)));
+                self.rule(field.check(&value, registry), || (part.path().key(field.key), value.written()));
             }
             _ => {}
         });
@@ -234,7 +235,7 @@ impl Check<'_> {
 
     /// Checks that a position is in the room.
     fn within(&mut self, part: Part, p: Vec3) {
-        self.rule(position(self.room, p), || (part.path().key("position"), written(&p.into())));
+        self.rule(position(self.room, p), || (part.path().key("position"), Value::from(p).written()));
     }
 
     /// Checks that a part is not at the position of another that excludes it.
@@ -243,7 +244,7 @@ impl Check<'_> {
             let other =
                 if there == Part::Observer { Observer::WHAT.to_owned() } else { there.path().to_string() };
             let rule = format!("{other} is there; {} must not be where {} is", what(part), what(there));
-            self.problems.push(Problem::value(part.path().key("position"), written(&p.into()), rule));
+            self.problems.push(Problem::value(part.path().key("position"), Value::from(p).written(), rule));
         }
     }
 
@@ -291,7 +292,7 @@ impl Check<'_> {
         for (name, value) in &light.parameters.0 {
             let path = || part.path().key(name.clone());
             match entry.map(|e| e.parameter(name)) {
-                Some(Some(declared)) => self.rule(declared.check(value), || (path(), written(value))),
+                Some(Some(declared)) => self.rule(declared.check(value), || (path(), value.written())),
                 Some(None) => self.about(path(), presence(id, name, false)),
                 // The type is unknown, which is already reported.
                 None => {}
@@ -321,7 +322,7 @@ impl Check<'_> {
             for (name, value) in &object.shape.0 {
                 let path = || part.path().key(name.clone());
                 match shape.parameter(name) {
-                    Some(declared) => self.rule(declared.check(value), || (path(), written(value))),
+                    Some(declared) => self.rule(declared.check(value), || (path(), value.written())),
                     None => {
                         let what = with_article(&object.object_type);
                         self.about(path(), format!("is given, but {what} has no {name}"));
@@ -332,7 +333,7 @@ impl Check<'_> {
         let models = [self.scene.model_of(object), self.scene.shading_model_of(object)];
         for (name, value) in &object.material.0 {
             self.rule(material_parameter(registry, models, name, value), || {
-                (part.path().key("material").key(name.clone()), written(value))
+                (part.path().key("material").key(name.clone()), value.written())
             });
         }
         let p = object.position;
@@ -391,7 +392,7 @@ impl Check<'_> {
             let rule =
                 models.iter().try_for_each(|models| material_parameter(registry, *models, name, value));
             self.rule(rule, || {
-                (Part::Variant(index).path().key("material").key(name.clone()), written(value))
+                (Part::Variant(index).path().key("material").key(name.clone()), value.written())
             });
         }
     }
@@ -432,18 +433,6 @@ fn presence(type_id: &str, field: &str, needed: bool) -> String {
         format!("is missing; {light} light needs one")
     } else {
         format!("is given, but {light} light has no {field}")
-    }
-}
-
-/// A parameter as written in scene files.
-fn written(value: &Value) -> String {
-    match value {
-        Value::Number(v) => v.to_string(),
-        Value::Integer(v) => v.to_string(),
-        Value::Colour([r, g, b]) => format!("[{r}, {g}, {b}]"),
-        Value::Triple([r, g, b]) => format!("[{r}, {g}, {b}]"),
-        Value::Choice(v) => value.truth().map_or_else(|| quoted(v), |flag| flag.to_string()),
-        Value::File(v) => quoted(v.name()),
     }
 }
 

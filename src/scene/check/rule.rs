@@ -2,24 +2,19 @@
 
 use glam::Vec3;
 
-use crate::files::Shown as _;
 use crate::{
-    custom,
     light::MAX_LIGHTS,
     parameter::{Parameter, Value},
     registry::Registry,
-    scene::{MAX_OBJECTS, Object, Scene, SceneSize, limits, variant::MAX_VARIANTS},
+    scene::{
+        MAX_OBJECTS, Object, Scene, SceneSize,
+        clause::{Rule, must},
+        range,
+        views::MAX_VARIANTS,
+    },
     shape::ShapeEntry,
-    text::{detailed, did_you_mean},
+    text::did_you_mean,
 };
-
-/// `Ok`, or the rule that is broken.
-pub type Rule = Result<(), String>;
-
-/// `Ok` if the rule is kept.
-fn must(kept: bool, rule: impl FnOnce() -> String) -> Rule {
-    if kept { Ok(()) } else { Err(rule()) }
-}
 
 /// A position of a light, an object or the observer.
 pub fn position(room: SceneSize, position: Vec3) -> Rule {
@@ -32,17 +27,9 @@ pub fn position(room: SceneSize, position: Vec3) -> Rule {
     })
 }
 
-/// A direction of a light or the observer. It need not have length 1.
-pub fn direction(direction: Vec3) -> Rule {
-    must(direction != Vec3::ZERO, || "a direction must not be zero".to_owned())?;
-    must(direction.is_finite() && direction.try_normalize().is_some(), || {
-        "this is too long or too short to be a direction; write it with a length near 1".to_owned()
-    })
-}
-
 /// The tessellation of an object of a type.
 pub fn tessellation(shape: &ShapeEntry, count: u32) -> Rule {
-    must(limits::tessellation(shape.declaration).allows(count.into()), || tessellation_rule(shape))
+    must(range::tessellation(shape.declaration).allows(count.into()), || tessellation_rule(shape))
 }
 
 /// The rule of [`tessellation`].
@@ -133,7 +120,10 @@ impl Declared {
             }
             Self::Others(all) => {
                 let nearest = all.iter().filter_map(|p| p.nearest(value));
-                nearest.min_by(|a, b| a.distance(value).total_cmp(&b.distance(value)))
+                let distance = |one: &Value| -> f64 {
+                    one.numbers().iter().zip(value.numbers()).map(|(a, b)| (a - b).abs()).sum()
+                };
+                nearest.min_by(|a, b| distance(a).total_cmp(&distance(b)))
             }
         }
     }
@@ -145,32 +135,6 @@ fn unknown_material_parameter(registry: &Registry, name: &str) -> String {
     let also = declared.iter().flat_map(|p| [(p.label, p.name), (p.symbol, p.name)]);
     let known = declared.iter().map(|p| (p.name, p.name)).chain(also);
     format!("no model has a parameter of that name{}", did_you_mean(name, known))
-}
-
-/// The rule that an unknown reflection model breaks: the file of a custom model may have an error, or be missing.
-pub(in crate::scene) fn missing_model(registry: &Registry, id: &str, rule: String) -> String {
-    match registry.broken_model(id) {
-        Some(why) => format!("the file of that custom model has an error: {why}"),
-        None => match custom_model_missing(registry, id) {
-            Some(detail) => detailed(&rule, &detail),
-            None => rule,
-        },
-    }
-}
-
-/// Details about an id without a model in the folder of custom models: its file may be missing, or not be a
-/// model.
-fn custom_model_missing(registry: &Registry, id: &str) -> Option<String> {
-    let folder = registry.custom_folder().filter(|folder| folder.is_dir() && custom::is_id(id))?;
-    let file = folder.join(id).with_extension(custom::EXTENSION);
-    let file_shown = file.shown();
-    Some(if file.is_file() {
-        format!(
-            "{file_shown} is not a model: it neither begins with a comment /* lcm … */ nor defines fn response"
-        )
-    } else {
-        format!("the folder of custom models has no {file_shown}")
-    })
 }
 
 /// The number of variants of a scene.
@@ -208,14 +172,6 @@ mod tests {
             Vec3::NAN,
         ] {
             assert!(position(room, outside).is_err(), "{outside}");
-        }
-    }
-
-    #[test]
-    fn extreme_directions_are_refused_because_they_cannot_be_normalised() {
-        assert_eq!(direction(Vec3::new(0.0, -3.0, 0.0)), Ok(()));
-        for d in [Vec3::splat(1e-30), Vec3::splat(1e30), Vec3::splat(f32::INFINITY), Vec3::NAN] {
-            assert!(direction(d).is_err_and(|rule| rule.contains("too long or too short")), "{d}");
         }
     }
 }

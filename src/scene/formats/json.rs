@@ -3,7 +3,7 @@
 use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
 use crate::{
     registry::Registry,
-    scene::{Scene, error::LoadError, read, save::to_json, schema, syntax::check_syntax},
+    scene::{Scene, error::LoadError, read, schema, syntax::check_syntax, write::to_json},
     text::{
         after_mark,
         json::{self, STRICT},
@@ -48,7 +48,7 @@ pub(super) fn parse<'a>(
     check_syntax(text)?;
     // The two parsers agree except for half surrogate pairs, which only this one refuses.
     let root = json::parse(text, &STRICT).map_err(|(at, what)| (at, what.to_lowercase()))?;
-    Ok(root.map(|root| read::parsed(text, root, source.folder, registry, Default::default())))
+    Ok(root.map(|root| read::parsed(text, root, source, registry, Default::default())))
 }
 
 impl SceneWriter for Json {

@@ -7,6 +7,7 @@
 
 use std::{any::Any, path::Path as FilePath, sync::Arc};
 
+pub use super::error::UnknownExtension;
 use super::{Scene, error::LoadError, schema};
 use crate::{
     registry::{FormatEntry, Registry},
@@ -204,17 +205,6 @@ fn extension(path: &FilePath) -> Option<String> {
 
 fn by_extension<'r>(extension: &str, registry: &'r Registry) -> Option<&'r dyn SceneFormat> {
     all(registry).find(|format| format.extensions().contains(&extension))
-}
-
-/// The error for a file whose extension belongs to no format.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(".{extension} is not the extension of a scene; scenes are {known}")]
-#[non_exhaustive]
-pub struct UnknownExtension {
-    /// The extension, without the dot.
-    pub extension: String,
-    /// The extensions of scenes, with the names of their formats.
-    pub known: String,
 }
 
 /// The format of a file by its extension; JSON for names without one.

@@ -8,8 +8,8 @@ use crate::{
     scene::{
         Scene, beyond_room, check,
         error::{LoadError, Path, Problem},
-        load::{Defaults, Missing},
-        read::MAX_PROBLEMS,
+        problem::MAX_PROBLEMS,
+        reading::{Defaults, Missing},
     },
     text::place::Place,
 };

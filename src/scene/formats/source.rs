@@ -3,6 +3,7 @@
 use std::{cell::OnceCell, path::Path as FilePath};
 
 use crate::{
+    parameter::Outside,
     scene::{encoding::decode, error::LoadError},
     text::{after_mark, place::Place},
 };
@@ -17,12 +18,18 @@ pub struct Source<'a> {
     pub name: &'a str,
     /// The folder of the files that a scene may name.
     pub folder: &'a FilePath,
+    /// The files outside that folder that it may name.
+    pub outside: &'a Outside,
     derived: OnceCell<String>,
 }
 
 impl<'a> Source<'a> {
-    pub(in crate::scene) fn new(bytes: &'a [u8], (name, folder): (&'a str, &'a FilePath)) -> Self {
-        Self { bytes, name, folder, derived: OnceCell::new() }
+    pub(in crate::scene) fn new(
+        bytes: &'a [u8],
+        (name, folder): (&'a str, &'a FilePath),
+        outside: &'a Outside,
+    ) -> Self {
+        Self { bytes, name, folder, outside, derived: OnceCell::new() }
     }
 
     /// The content as text, without the byte order mark that some programs write: positions do not count it.

@@ -4,11 +4,13 @@
 use std::{collections::HashSet, path::Path as FilePath};
 
 use super::{
-    error::{Path, Problem},
-    formats::{Located, Parsed},
-    load::Missing,
+    error::Path,
+    formats::{Located, Parsed, Source},
+    problem::{MAX_PROBLEMS, Problem},
+    reading::Missing,
 };
 use crate::{
+    parameter::Outside,
     registry::Registry,
     text::{
         json::{self, Ast, Cursor, ObjectProp, STRICT},
@@ -24,20 +26,16 @@ mod values;
 /// Maximum number of unknown keys with a suggestion; more would take too long in a hostile file.
 pub(super) const MAX_SUGGESTIONS: usize = 200;
 
-/// Maximum number of problems listed. A scene within the limits of lights and objects with errors in every
-/// field has fewer; a hostile file could have millions.
-pub(super) const MAX_PROBLEMS: usize = 200_000;
-
 /// The scene in a tree of values, from JSON or made by another format. `before` are problems found while the
 /// tree was made, each with its byte index.
 pub(super) fn parsed<'a>(
     text: &'a str,
     root: Ast<'a>,
-    folder: &'a FilePath,
+    source: &Source<'a>,
     registry: &'a Registry,
     before: (Vec<(usize, Problem)>, usize),
 ) -> Parsed<'a> {
-    let mut reader = Reader::new(text, folder, registry);
+    let mut reader = Reader::new(text, (source.folder, source.outside), registry);
     (reader.problems, reader.unlisted) = before;
     let scene = reader.scene(Cursor::root(&root));
     let Reader { problems, reported, missing, unlisted, lines, .. } = reader;
@@ -60,7 +58,7 @@ pub(super) fn alone<T>(
 ) -> Result<T, Vec<Problem>> {
     let root = json::parse(text, &STRICT).ok().flatten();
     let root = root.ok_or_else(|| vec![Problem::about(Path::root(), "is not JSON")])?;
-    let mut reader = Reader::new(text, FilePath::new(""), registry);
+    let mut reader = Reader::new(text, (FilePath::new(""), Outside::NONE), registry);
     let part = read(&mut reader, Cursor::root(&root));
     let problems: Vec<_> = reader.problems.into_iter().map(|(_, problem)| problem).collect();
     if problems.is_empty() { Ok(part) } else { Err(problems) }
@@ -71,6 +69,8 @@ pub(super) struct Reader<'a> {
     text: &'a str,
     /// The folder of the files that the scene names.
     folder: &'a FilePath,
+    /// The files outside that folder that it may name.
+    outside: &'a Outside,
     registry: &'a Registry,
     /// Problems, each with its byte index.
     problems: Vec<(usize, Problem)>,
@@ -87,10 +87,11 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn new(text: &'a str, folder: &'a FilePath, registry: &'a Registry) -> Self {
+    fn new(text: &'a str, (folder, outside): (&'a FilePath, &'a Outside), registry: &'a Registry) -> Self {
         Self {
             text,
             folder,
+            outside,
             registry,
             problems: Vec::new(),
             reported: HashSet::new(),

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::{Reader, keys::scene_keys};
 use crate::{
     light::LightEntry,
-    parameter::{Parameter, Value, Values},
+    parameter::{Parameter, Value, Values, kind::colour},
     scene::{
         Field, Light, Object, Scene, Variant, check,
         field::{Absent, Ids, Kind},
@@ -140,7 +140,7 @@ impl Reader<'_> {
                 Some(text.into())
             }
             Kind::Position | Kind::Direction | Kind::Rotation => Some(self.vector(value, rule).into()),
-            Kind::Colour => self.colour(value, &rule()).map(Value::Colour),
+            Kind::Colour => colour::read(self, value, &rule()).map(Value::Colour),
             Kind::Material | Kind::Parameters | Kind::Part | Kind::Parts => None,
         }
     }

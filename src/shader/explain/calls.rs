@@ -7,27 +7,12 @@ use super::{
 use crate::text::{listed, plural};
 
 /// WGSL functions as called, for messages.
-const USAGE: &[&str] = &[
-    "atan2(y, x)",
-    "clamp(x, low, high)",
-    "cross(a, b)",
-    "distance(a, b)",
-    "dot(a, b)",
-    "max(a, b)",
-    "min(a, b)",
-    "mix(a, b, t)",
-    "pow(base, exponent)",
-    "reflect(direction, normal)",
-    "refract(direction, normal, ratio)",
-    "select(if_false, if_true, condition)",
-    "smoothstep(low, high, x)",
-    "step(edge, x)",
-];
+const USAGE: &str = include_str!("usage.txt");
 
 /// A WGSL function as called; only its name if that is sufficient.
 fn usage(name: &str) -> &str {
-    let with = |usage: &&&str| usage.strip_prefix(name).is_some_and(|rest| rest.starts_with('('));
-    USAGE.iter().find(with).copied().unwrap_or(name)
+    let with = |usage: &&str| usage.strip_prefix(name).is_some_and(|rest| rest.starts_with('('));
+    USAGE.lines().find(with).unwrap_or(name)
 }
 
 /// The explanation of a complaint about values.

@@ -296,9 +296,9 @@ pub(super) fn result(scan: &Scan, function: &str, expected: Option<&str>, got: &
     /// The way to return a single term of a struct that has several.
     const ONE_TERM: (&str, &str) = ("Terms", "Terms(vec3(0.0), …, vec3(0.0))");
     let Some(expected) = expected else {
+        let returned = called(got);
         return format!(
-            "{function} declares no result, but returns {}; write `-> TYPE` before its {{",
-            called(got)
+            "{function} declares no result, but returns {returned}; write `-> TYPE` before its {{"
         );
     };
     let Some(of) = scan.declared(expected) else {
@@ -309,9 +309,7 @@ pub(super) fn result(scan: &Scan, function: &str, expected: Option<&str>, got: &
         code => code,
     };
     let example = match (expected == ONE_TERM.0, of.fields.first()) {
-        (true, Some((_, part))) => {
-            format!("; write `return {};`", ONE_TERM.1.replace('…', &one(part)))
-        }
+        (true, Some((_, part))) => format!("; write `return {};`", ONE_TERM.1.replace('…', &one(part))),
         _ => String::new(),
     };
     let must = format!("{function} must return {}{}", of.call(), of.each());

@@ -12,6 +12,7 @@ use super::{
     Explained,
     scan::{Scan, called, given, misfit, remedy, result, shown},
 };
+use crate::shader::blocks::{Expr, blocks};
 
 /// The explanation of an error, if it is in a function.
 pub(super) fn explained(scan: &Scan, module: &Module, error: &ValidationError) -> Option<Explained> {
@@ -60,13 +61,13 @@ impl<'a> Values<'a> {
         Self { scan, module, name, function, types, known }
     }
 
-    fn of(&self, value: Handle<Expression>) -> Option<String> {
+    fn of(&self, value: Expr) -> Option<String> {
         (value.index() < self.known)
             .then(|| self.module.to_ctx().type_resolution_to_string(&self.types[value]))
     }
 
     /// The name of a value, or its text.
-    fn source(&self, value: Handle<Expression>) -> &'a str {
+    fn source(&self, value: Expr) -> &'a str {
         let function = self.function;
         let named = match &function.expressions[value] {
             Expression::FunctionArgument(index) => function.arguments[*index as usize].name.as_deref(),
@@ -80,14 +81,14 @@ impl<'a> Values<'a> {
         })
     }
 
-    fn place(&self, value: Handle<Expression>) -> Option<usize> {
+    fn place(&self, value: Expr) -> Option<usize> {
         Some(self.function.expressions.get_span(value).to_range()?.start)
     }
 
     /// The explanation of an invalid expression.
-    fn expression(&self, wrong: Handle<Expression>) -> Option<Explained> {
+    fn expression(&self, wrong: Expr) -> Option<Explained> {
         let expressions = &self.function.expressions;
-        let uses = |expression: &Expression, used: &Handle<Expression>| match expression {
+        let uses = |expression: &Expression, used: &Expr| match expression {
             Expression::Binary { left, right, .. } => [left, right].contains(&used),
             Expression::Compose { components, .. } => components.contains(used),
             Expression::Splat { value, .. } => value == used,
@@ -120,18 +121,11 @@ impl<'a> Values<'a> {
             Expression::Select { condition, accept, reject } => {
                 let of = self.of(*condition)?;
                 if of.ends_with("bool") || of.ends_with("bool>") {
-                    let (a, b) = (self.of(*reject)?, self.of(*accept)?);
-                    format!(
-                        "the two values of select must have the same type, but are {} and {}",
-                        called(&a),
-                        called(&b)
-                    )
+                    let (a, b) = (called(&self.of(*reject)?), called(&self.of(*accept)?));
+                    format!("the two values of select must have the same type, but are {a} and {b}")
                 } else {
-                    let value = self.source(*condition);
-                    format!(
-                        "the condition of select must be true or false, but {}",
-                        misfit("bool", &of, value)
-                    )
+                    let misfit = misfit("bool", &of, self.source(*condition));
+                    format!("the condition of select must be true or false, but {misfit}")
                 }
             }
             Expression::Access { index, .. } => {
@@ -144,33 +138,9 @@ impl<'a> Values<'a> {
     }
 
     /// The message about two values that an operator does not accept.
-    fn combined(
-        &self,
-        op: BinaryOperator,
-        left: Handle<Expression>,
-        right: Handle<Expression>,
-    ) -> Option<String> {
+    fn combined(&self, op: BinaryOperator, left: Expr, right: Expr) -> Option<String> {
         use BinaryOperator as Op;
-        let sign = match op {
-            Op::Add => "+",
-            Op::Subtract => "-",
-            Op::Multiply => "*",
-            Op::Divide => "/",
-            Op::Modulo => "%",
-            Op::Equal => "==",
-            Op::NotEqual => "!=",
-            Op::Less => "<",
-            Op::LessEqual => "<=",
-            Op::Greater => ">",
-            Op::GreaterEqual => ">=",
-            Op::And => "&",
-            Op::ExclusiveOr => "^",
-            Op::InclusiveOr => "|",
-            Op::LogicalAnd => "&&",
-            Op::LogicalOr => "||",
-            Op::ShiftLeft => "<<",
-            Op::ShiftRight => ">>",
-        };
+        let sign = naga::back::binary_operation_str(op);
         let (a, b) = (self.of(left)?, self.of(right)?);
         let (first, second) = (self.source(left), self.source(right));
         let logical = matches!(op, Op::And | Op::InclusiveOr | Op::LogicalAnd | Op::LogicalOr);
@@ -196,22 +166,13 @@ impl<'a> Values<'a> {
         } else {
             remedy(&a, &b, second)
         };
-        Some(format!(
-            "{sign} cannot combine {}, {}, with {}, {}{hint}",
-            shown(first),
-            called(&a),
-            shown(second),
-            called(&b)
-        ))
+        let [a, b] =
+            [(first, a), (second, b)].map(|(value, of)| format!("{}, {}", shown(value), called(&of)));
+        Some(format!("{sign} cannot combine {a}, with {b}{hint}"))
     }
 
     /// The explanation of a struct or a vector constructed from the wrong values.
-    fn composed(
-        &self,
-        at: usize,
-        ty: Handle<naga::Type>,
-        components: &[Handle<Expression>],
-    ) -> Option<Explained> {
+    fn composed(&self, at: usize, ty: Handle<naga::Type>, components: &[Expr]) -> Option<Explained> {
         let types: Vec<_> = components.iter().map(|value| self.of(*value)).collect::<Option<_>>()?;
         let called_at = self.scan.at(at);
         match &self.module.types[ty].inner {
@@ -222,10 +183,8 @@ impl<'a> Values<'a> {
                 }
                 let wrong =
                     types.iter().zip(&declared.fields).position(|(got, (_, of))| got != &plain(of))?;
-                let value = self
-                    .argument(called_at, wrong)
-                    .map_or(self.source(components[wrong]), |(_, value)| value);
-                let place = self.argument(called_at, wrong).map_or(at, |(at, _)| at);
+                let written = || (at, self.source(components[wrong]));
+                let (place, value) = self.argument(called_at, wrong).unwrap_or_else(written);
                 Some((Some(place), declared.wants_other(wrong, &types[wrong], value)?))
             }
             TypeInner::Vector { size, .. } => {
@@ -237,11 +196,8 @@ impl<'a> Values<'a> {
                     return Some((Some(at), format!("{takes}, but {}", given(count))));
                 }
                 let wrong = types.iter().position(|of| matches!(of.as_str(), "i32" | "u32" | "bool"))?;
-                let value = self.source(components[wrong]);
-                Some((
-                    Some(at),
-                    format!("a vec{size} is made of numbers, but {}", misfit("f32", &types[wrong], value)),
-                ))
+                let misfit = misfit("f32", &types[wrong], self.source(components[wrong]));
+                Some((Some(at), format!("a vec{size} is made of numbers, but {misfit}")))
             }
             _ => None,
         }
@@ -257,6 +213,7 @@ impl<'a> Values<'a> {
     fn statement(&self, error: &FunctionError) -> Option<Explained> {
         let begins =
             |wanted: &dyn Fn(&Statement) -> bool| Some(find(&self.function.body, wanted)?.to_range()?.start);
+        let said = |what: &str| Some((None, what.to_owned()));
         match error {
             FunctionError::InvalidReturnType { expression: Some(value), expected_ty } => {
                 let at = begins(&|s| matches!(s, Statement::Return { value: Some(v) } if v == value));
@@ -269,10 +226,8 @@ impl<'a> Values<'a> {
                 if let Some(at) = bare.filter(|at| self.scan.text[*at..].starts_with("return")) {
                     let of = self.module.to_ctx().type_to_string(*ty);
                     let of = self.scan.declared(&of).map_or_else(|| called(&of), |declared| declared.call());
-                    return Some((
-                        Some(at),
-                        format!("{} must return {of}, but this returns nothing", self.name),
-                    ));
+                    let what = format!("{} must return {of}, but this returns nothing", self.name);
+                    return Some((Some(at), what));
                 }
                 let named = |f: &Function| f.name.as_deref() == Some(self.name);
                 let (function, _) = self.module.functions.iter().find(|(_, f)| named(f))?;
@@ -286,10 +241,8 @@ impl<'a> Values<'a> {
                 if target.is_empty()
                     || matches!(&self.function.expressions[*pointer], Expression::LocalVariable(v) if self.function.local_variables[*v].name.is_none())
                 {
-                    return Some((
-                        at,
-                        format!("&& and || need true or false, but {}", misfit("bool", &got, text)),
-                    ));
+                    let misfit = misfit("bool", &got, text);
+                    return Some((at, format!("&& and || need true or false, but {misfit}")));
                 }
                 let of = self.of(*pointer)?;
                 let of = of.split_once(", ").map_or("", |(_, of)| of.trim_end_matches('>'));
@@ -305,19 +258,13 @@ impl<'a> Values<'a> {
                 } else {
                     remedy("bool", &of, text)
                 };
-                Some((
-                    at,
-                    format!(
-                        "a condition must be true or false, but {} is {}{hint}",
-                        shown(text),
-                        called(&of)
-                    ),
-                ))
+                let is = format!("{} is {}", shown(text), called(&of));
+                Some((at, format!("a condition must be true or false, but {is}{hint}")))
             }
-            FunctionError::LocalVariable { name, .. } => Some((
-                None,
-                format!("`{name}` cannot have this type; an array needs its length: `array<f32, 3>`"),
-            )),
+            FunctionError::LocalVariable { name, .. } => {
+                let rule = "an array needs its length: `array<f32, 3>`";
+                Some((None, format!("`{name}` cannot have this type; {rule}")))
+            }
             FunctionError::InvalidCall { function, error } => {
                 let name = self.module.functions[*function].name.as_deref()?;
                 if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&name) {
@@ -340,15 +287,9 @@ impl<'a> Values<'a> {
                     _ => None,
                 }
             }
-            FunctionError::BreakOutsideOfLoopOrSwitch => {
-                Some((None, "break can only stand in a loop or a switch".to_owned()))
-            }
-            FunctionError::ContinueOutsideOfLoop => {
-                Some((None, "continue can only stand in a loop".to_owned()))
-            }
-            FunctionError::MissingDefaultCase => {
-                Some((None, "this switch needs a `default: { … }`".to_owned()))
-            }
+            FunctionError::BreakOutsideOfLoopOrSwitch => said("break can only stand in a loop or a switch"),
+            FunctionError::ContinueOutsideOfLoop => said("continue can only stand in a loop"),
+            FunctionError::MissingDefaultCase => said("this switch needs a `default: { … }`"),
             _ => None,
         }
     }
@@ -373,14 +314,6 @@ fn find(block: &Block, wanted: &dyn Fn(&Statement) -> bool) -> Option<Span> {
         if wanted(statement) {
             return Some(*span);
         }
-        match statement {
-            Statement::Block(inner) => find(inner, wanted),
-            Statement::If { accept, reject, .. } => find(accept, wanted).or_else(|| find(reject, wanted)),
-            Statement::Switch { cases, .. } => cases.iter().find_map(|case| find(&case.body, wanted)),
-            Statement::Loop { body, continuing, .. } => {
-                find(body, wanted).or_else(|| find(continuing, wanted))
-            }
-            _ => None,
-        }
+        blocks(statement).find_map(|inner| find(inner, wanted))
     })
 }

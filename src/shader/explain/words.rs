@@ -4,53 +4,13 @@ use super::scan::Scan;
 use crate::text::{listed, nearest};
 
 /// Names from GLSL, HLSL, C and the equations, with their equivalents here.
-const MEANT: &[(&str, &str)] = &[
-    ("float", "f32"),
-    ("double", "f32"),
-    ("half", "f32"),
-    ("int", "i32"),
-    ("uint", "u32"),
-    ("float2", "vec2<f32>"),
-    ("float3", "vec3<f32>"),
-    ("float4", "vec4<f32>"),
-    ("ivec2", "vec2<i32>"),
-    ("ivec3", "vec3<i32>"),
-    ("mat2", "mat2x2<f32>"),
-    ("mat3", "mat3x3<f32>"),
-    ("mat4", "mat4x4<f32>"),
-    ("lerp", "mix"),
-    ("frac", "fract"),
-    ("rsqrt", "inverseSqrt"),
-    ("mod", "x % y"),
-    ("fmod", "x % y"),
-    ("fabs", "abs"),
-    ("powf", "pow"),
-    ("pi", "PI"),
-    ("M_PI", "PI"),
-    ("N", "frame.n"),
-    ("n", "frame.n"),
-    ("normal", "frame.n"),
-    ("T", "frame.t"),
-    ("tangent", "frame.t"),
-    ("B", "frame.b"),
-    ("bitangent", "frame.b"),
-    ("L", "l"),
-    ("light", "l"),
-    ("light_dir", "l"),
-    ("V", "v"),
-    ("view", "v"),
-    ("view_dir", "v"),
-    ("eye", "v"),
-    ("H", "half_vector(l, v)"),
-    ("h", "half_vector(l, v)"),
-    ("R", "mirror(l, frame.n)"),
-    ("r", "mirror(l, frame.n)"),
-    ("albedo", "m.base_colour"),
-    ("fresnel", "schlick"),
-    ("fresnelSchlick", "schlick"),
-    ("Params", "Parameters"),
-    ("M", "m"),
-];
+const MEANT: &str = include_str!("meant.txt");
+
+/// The equivalent of a name.
+fn meant(word: &str) -> Option<&'static str> {
+    MEANT.lines().find_map(|line| line.strip_prefix(word)?.strip_prefix(' '))
+}
+
 /// The parameters of `response`.
 const RECEIVED: &[(&str, &str)] =
     &[("l", "vec3<f32>"), ("v", "vec3<f32>"), ("frame", "Frame"), ("m", "Parameters")];
@@ -59,7 +19,7 @@ const RECEIVED: &[(&str, &str)] =
 pub(super) fn wgsl_type(word: &str) -> String {
     match word {
         "vec2" | "vec3" | "vec4" => format!("{word}<f32>"),
-        word => MEANT.iter().find(|(other, _)| *other == word).map_or(word, |(_, here)| here).to_owned(),
+        word => meant(word).unwrap_or(word).to_owned(),
     }
 }
 
@@ -77,8 +37,8 @@ pub(super) fn unknown(scan: &Scan, i: usize, name: &str) -> String {
     let fields: Vec<_> = parameters.iter().map(|(field, _)| (*field, format!("m.{field}"))).collect();
     let fields = fields.iter().map(|(field, code)| (*field, &**code));
     let spelling = name.replace("color", "colour");
-    let exact = fields.clone().find(|(field, _)| *field == spelling);
-    let exact = exact.or_else(|| MEANT.iter().find(|(other, _)| *other == name).copied());
+    let exact =
+        fields.clone().find(|(field, _)| *field == spelling).map(|(_, code)| code).or_else(|| meant(name));
     let near = || {
         let defines =
             |j: &usize| matches!(scan.before(*j, 1), "let" | "var" | "const" | "fn" | "struct" | "alias");
@@ -98,7 +58,7 @@ pub(super) fn unknown(scan: &Scan, i: usize, name: &str) -> String {
         );
         near.filter(|_| name.len() > 2)
     };
-    if let Some(code) = exact.map(|(_, code)| code).or_else(near) {
+    if let Some(code) = exact.or_else(near) {
         return format!("`{name}` is not defined; did you mean `{code}`?");
     }
     // Functions with a longer or a shorter name: fresnel_schlick is schlick here.

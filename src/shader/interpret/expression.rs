@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use naga::{BinaryOperator, Expression, Handle, RelationalFunction, ScalarKind, TypeInner, UnaryOperator};
+use naga::{BinaryOperator, Expression, RelationalFunction, ScalarKind, TypeInner, UnaryOperator};
 
 use super::{
     builder::Operand,
@@ -10,6 +10,7 @@ use super::{
     lower::{Frame, Lowering, Place, Result, Value, literal, unsupported},
     shape::{self, Layout},
 };
+use crate::shader::blocks::Expr;
 
 type Words = Rc<[Operand]>;
 
@@ -32,7 +33,7 @@ pub(super) fn kind_of(inner: &TypeInner) -> ScalarKind {
 
 impl<'m> Lowering<'m> {
     /// Calculates an expression.
-    pub(super) fn expression(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Value> {
+    pub(super) fn expression(&mut self, frame: &mut Frame<'m>, handle: Expr) -> Result<Value> {
         let function = frame.function;
         let words: Words = match function.expressions[handle] {
             Expression::Literal(value) => match literal(value) {
@@ -115,12 +116,7 @@ impl<'m> Lowering<'m> {
         Ok(Value::Words(words))
     }
 
-    fn access(
-        &mut self,
-        frame: &mut Frame<'m>,
-        base: Handle<Expression>,
-        index: Handle<Expression>,
-    ) -> Result<Value> {
+    fn access(&mut self, frame: &mut Frame<'m>, base: Expr, index: Expr) -> Result<Value> {
         let index = match self.word(frame, index)? {
             Operand::Constant(bits) => return self.access_index(frame, base, bits as usize),
             register @ Operand::Register(_) => register,
@@ -155,12 +151,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    fn access_index(
-        &mut self,
-        frame: &mut Frame<'m>,
-        base: Handle<Expression>,
-        index: usize,
-    ) -> Result<Value> {
+    fn access_index(&mut self, frame: &mut Frame<'m>, base: Expr, index: usize) -> Result<Value> {
         let value = self.value(frame, base)?;
         let inner = self.type_of(frame, base);
         match value {
@@ -185,7 +176,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    fn load(&mut self, frame: &mut Frame<'m>, pointer: Handle<Expression>) -> Result<Words> {
+    fn load(&mut self, frame: &mut Frame<'m>, pointer: Expr) -> Result<Words> {
         let place = self.place(frame, pointer)?;
         let offsets = shape::offsets(self.module, self.type_of(frame, pointer), place.layout)?;
         let mut words = Vec::with_capacity(offsets.len());
@@ -200,7 +191,7 @@ impl<'m> Lowering<'m> {
         Ok(words.into())
     }
 
-    fn unary(&mut self, frame: &mut Frame<'m>, op: UnaryOperator, expr: Handle<Expression>) -> Result<Words> {
+    fn unary(&mut self, frame: &mut Frame<'m>, op: UnaryOperator, expr: Expr) -> Result<Words> {
         let kind = kind_of(self.type_of(frame, expr));
         let operation = match (op, kind) {
             (UnaryOperator::Negate, ScalarKind::Float) => O::NegF,
@@ -216,8 +207,8 @@ impl<'m> Lowering<'m> {
         &mut self,
         frame: &mut Frame<'m>,
         op: BinaryOperator,
-        left: Handle<Expression>,
-        right: Handle<Expression>,
+        left: Expr,
+        right: Expr,
     ) -> Result<Words> {
         use BinaryOperator as B;
         let (a, b) = (self.words(frame, left)?, self.words(frame, right)?);
@@ -227,37 +218,30 @@ impl<'m> Lowering<'m> {
         {
             return self.matrix_product(&a, &b, sizes);
         }
-        let kind = kind_of(left);
-        let float = kind == ScalarKind::Float;
-        let signed = kind == ScalarKind::Sint;
-        let choose = |f: O, s: O, u: O| {
-            if float {
-                f
-            } else if signed {
-                s
-            } else {
-                u
-            }
+        let kind = match kind_of(left) {
+            ScalarKind::Float => 0,
+            ScalarKind::Sint => 1,
+            _ => 2,
         };
-        let (operation, swapped) = match op {
-            B::Add => (choose(O::AddF, O::AddI, O::AddI), false),
-            B::Subtract => (choose(O::SubF, O::SubI, O::SubI), false),
-            B::Multiply => (choose(O::MulF, O::MulI, O::MulI), false),
-            B::Divide => (choose(O::DivF, O::DivS, O::DivU), false),
-            B::Modulo => (choose(O::RemF, O::RemS, O::RemU), false),
-            B::Equal => (choose(O::EqualF, O::EqualI, O::EqualI), false),
-            B::NotEqual => (choose(O::NotEqualF, O::NotEqualI, O::NotEqualI), false),
-            B::Less => (choose(O::LessF, O::LessS, O::LessU), false),
-            B::LessEqual => (choose(O::LessEqualF, O::LessEqualS, O::LessEqualU), false),
-            B::Greater => (choose(O::LessF, O::LessS, O::LessU), true),
-            B::GreaterEqual => (choose(O::LessEqualF, O::LessEqualS, O::LessEqualU), true),
-            B::And | B::LogicalAnd => (O::And, false),
-            B::InclusiveOr | B::LogicalOr => (O::Or, false),
-            B::ExclusiveOr => (O::Xor, false),
-            B::ShiftLeft => (O::ShiftLeft, false),
-            B::ShiftRight => (if signed { O::ShiftRightS } else { O::ShiftRightU }, false),
+        // For floats, for signed and for unsigned integers.
+        let operations = match op {
+            B::Add => [O::AddF, O::AddI, O::AddI],
+            B::Subtract => [O::SubF, O::SubI, O::SubI],
+            B::Multiply => [O::MulF, O::MulI, O::MulI],
+            B::Divide => [O::DivF, O::DivS, O::DivU],
+            B::Modulo => [O::RemF, O::RemS, O::RemU],
+            B::Equal => [O::EqualF, O::EqualI, O::EqualI],
+            B::NotEqual => [O::NotEqualF, O::NotEqualI, O::NotEqualI],
+            B::Less | B::Greater => [O::LessF, O::LessS, O::LessU],
+            B::LessEqual | B::GreaterEqual => [O::LessEqualF, O::LessEqualS, O::LessEqualU],
+            B::And | B::LogicalAnd => [O::And; 3],
+            B::InclusiveOr | B::LogicalOr => [O::Or; 3],
+            B::ExclusiveOr => [O::Xor; 3],
+            B::ShiftLeft => [O::ShiftLeft; 3],
+            B::ShiftRight => [O::ShiftRightU, O::ShiftRightS, O::ShiftRightU],
         };
-        if swapped { self.map(operation, &[&b, &a]) } else { self.map(operation, &[&a, &b]) }
+        let sides = if matches!(op, B::Greater | B::GreaterEqual) { [&*b, &*a] } else { [&*a, &*b] };
+        self.map(operations[kind], &sides)
     }
 
     /// Applies an operation word by word; single words are combined with each word of the others.
@@ -317,9 +301,9 @@ impl<'m> Lowering<'m> {
     fn select(
         &mut self,
         frame: &mut Frame<'m>,
-        condition: Handle<Expression>,
-        accept: Handle<Expression>,
-        reject: Handle<Expression>,
+        condition: Expr,
+        accept: Expr,
+        reject: Expr,
     ) -> Result<Words> {
         let condition = self.words(frame, condition)?;
         let (accept, reject) = (self.words(frame, accept)?, self.words(frame, reject)?);
@@ -334,7 +318,7 @@ impl<'m> Lowering<'m> {
         &mut self,
         frame: &mut Frame<'m>,
         fun: RelationalFunction,
-        argument: Handle<Expression>,
+        argument: Expr,
     ) -> Result<Words> {
         let words = self.words(frame, argument)?;
         let operation = match fun {
@@ -357,7 +341,7 @@ impl<'m> Lowering<'m> {
     fn cast(
         &mut self,
         frame: &mut Frame<'m>,
-        expr: Handle<Expression>,
+        expr: Expr,
         to: ScalarKind,
         convert: Option<u8>,
     ) -> Result<Words> {

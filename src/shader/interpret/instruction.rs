@@ -18,48 +18,27 @@ trait Bits: Copy {
     fn write(self) -> f32;
 }
 
-impl Bits for u32 {
-    #[inline(always)]
-    fn read(word: f32) -> Self {
-        word.to_bits()
-    }
-    #[inline(always)]
-    fn write(self) -> f32 {
-        f32::from_bits(self)
-    }
+macro_rules! bits {
+    ($($Type:ident: |$word:ident| $read:expr, |$value:ident| $write:expr;)*) => {
+        $(impl Bits for $Type {
+            #[inline(always)]
+            fn read($word: f32) -> Self {
+                $read
+            }
+            #[inline(always)]
+            fn write(self) -> f32 {
+                let $value = self;
+                $write
+            }
+        })*
+    };
 }
 
-impl Bits for i32 {
-    #[inline(always)]
-    fn read(word: f32) -> Self {
-        word.to_bits().cast_signed()
-    }
-    #[inline(always)]
-    fn write(self) -> f32 {
-        f32::from_bits(self.cast_unsigned())
-    }
-}
-
-impl Bits for f32 {
-    #[inline(always)]
-    fn read(word: f32) -> Self {
-        word
-    }
-    #[inline(always)]
-    fn write(self) -> f32 {
-        self
-    }
-}
-
-impl Bits for bool {
-    #[inline(always)]
-    fn read(word: f32) -> Self {
-        word.to_bits() != 0
-    }
-    #[inline(always)]
-    fn write(self) -> f32 {
-        f32::from_bits(u32::from(self))
-    }
+bits! {
+    u32: |word| word.to_bits(), |bits| f32::from_bits(bits);
+    i32: |word| word.to_bits().cast_signed(), |number| f32::from_bits(number.cast_unsigned());
+    f32: |word| word, |number| number;
+    bool: |word| word.to_bits() != 0, |flag| f32::from_bits(u32::from(flag));
 }
 
 /// A function of one to three words without side effects.
@@ -69,28 +48,22 @@ trait Pure<Types> {
     fn apply(self, word: impl Fn(usize) -> f32) -> f32;
 }
 
-impl<A: Bits, R: Bits, F: Fn(A) -> R> Pure<(A, R)> for F {
-    const ARITY: usize = 1;
-    #[inline(always)]
-    fn apply(self, word: impl Fn(usize) -> f32) -> f32 {
-        self(A::read(word(0))).write()
-    }
+macro_rules! pure {
+    ($($arity:literal: $($Argument:ident $index:literal)*;)*) => {
+        $(impl<$($Argument: Bits,)* R: Bits, F: Fn($($Argument),*) -> R> Pure<($($Argument,)* R)> for F {
+            const ARITY: usize = $arity;
+            #[inline(always)]
+            fn apply(self, word: impl Fn(usize) -> f32) -> f32 {
+                self($($Argument::read(word($index))),*).write()
+            }
+        })*
+    };
 }
 
-impl<A: Bits, B: Bits, R: Bits, F: Fn(A, B) -> R> Pure<(A, B, R)> for F {
-    const ARITY: usize = 2;
-    #[inline(always)]
-    fn apply(self, word: impl Fn(usize) -> f32) -> f32 {
-        self(A::read(word(0)), B::read(word(1))).write()
-    }
-}
-
-impl<A: Bits, B: Bits, C: Bits, R: Bits, F: Fn(A, B, C) -> R> Pure<(A, B, C, R)> for F {
-    const ARITY: usize = 3;
-    #[inline(always)]
-    fn apply(self, word: impl Fn(usize) -> f32) -> f32 {
-        self(A::read(word(0)), B::read(word(1)), C::read(word(2))).write()
-    }
+pure! {
+    1: A 0;
+    2: A 0 B 1;
+    3: A 0 B 1 C 2;
 }
 
 fn arity<Types, F: Pure<Types>>(_: F) -> usize {

@@ -15,6 +15,7 @@ use super::{
     builder::{Builder, Operand},
     shape::{self, Layout},
 };
+use crate::shader::blocks::{Expr, blocks};
 
 pub(super) type Result<T> = std::result::Result<T, Unsupported>;
 
@@ -80,7 +81,7 @@ pub(super) struct Lowering<'m> {
     /// The buffer used as input, and its first register.
     pub(super) row: Option<(Handle<GlobalVariable>, u16)>,
     /// The `let`s of the outermost function whose values are kept, and their registers.
-    pub(super) watched: HashMap<Handle<Expression>, Vec<u16>>,
+    pub(super) watched: HashMap<Expr, Vec<u16>>,
     /// True while inside the outermost function.
     is_inside: bool,
 }
@@ -101,15 +102,8 @@ pub(super) fn literal(literal: Literal) -> Option<u32> {
 /// True if a function has no `return`, or only one as its last statement.
 fn returns_last(function: &Function) -> bool {
     fn returns(block: &Block) -> usize {
-        let of = |statement: &Statement| match statement {
-            Statement::Return { .. } => 1,
-            Statement::Block(block) => returns(block),
-            Statement::If { accept, reject, .. } => returns(accept) + returns(reject),
-            Statement::Switch { cases, .. } => cases.iter().map(|case| returns(&case.body)).sum(),
-            Statement::Loop { body, continuing, .. } => returns(body) + returns(continuing),
-            _ => 0,
-        };
-        block.iter().map(of).sum()
+        let own = |statement: &Statement| usize::from(matches!(statement, Statement::Return { .. }));
+        block.iter().map(|statement| own(statement) + blocks(statement).map(returns).sum::<usize>()).sum()
     }
     match returns(&function.body) {
         0 => true,
@@ -140,7 +134,7 @@ impl<'m> Lowering<'m> {
 
     /// The value of a constant expression of the module, whose operands come before it.
     fn constant_expression(&self, expression: &Expression) -> Option<Rc<[Operand]>> {
-        let known = |handle: Handle<Expression>| self.constants.get(handle.index())?.clone();
+        let known = |handle: Expr| self.constants.get(handle.index())?.clone();
         match expression {
             Expression::Literal(v) => Some(Rc::new([Operand::Constant(literal(*v)?)])),
             Expression::Constant(constant) => known(self.module.constants[*constant].init),
@@ -187,9 +181,8 @@ impl<'m> Lowering<'m> {
             }
             AddressSpace::Handle => return unsupported(format!("it uses the texture or sampler {name}")),
             _ => {
-                return unsupported(format!(
-                    "it uses the variable {name}, which belongs to a stage of the pipeline"
-                ));
+                let why = "which belongs to a stage of the pipeline";
+                return unsupported(format!("it uses the variable {name}, {why}"));
             }
         }
         let place = |base: u16| Place { base: usize::from(base), offset: None, layout: Layout::Packed };
@@ -203,9 +196,8 @@ impl<'m> Lowering<'m> {
             Some(init) => match self.constants.get(init.index()) {
                 Some(Some(value)) => value.clone(),
                 _ => {
-                    return unsupported(format!(
-                        "it uses the variable {name}, which does not start with a constant"
-                    ));
+                    let why = "which does not start with a constant";
+                    return unsupported(format!("it uses the variable {name}, {why}"));
                 }
             },
         };
@@ -238,11 +230,7 @@ impl<'m> Lowering<'m> {
     }
 
     /// The number of words of an expression of a function, if it is a float or a vector of them.
-    pub(super) fn floats_of(
-        &mut self,
-        function: Handle<Function>,
-        handle: Handle<Expression>,
-    ) -> Result<Option<usize>> {
+    pub(super) fn floats_of(&mut self, function: Handle<Function>, handle: Expr) -> Result<Option<usize>> {
         let types = self.types(function)?;
         Ok(match types.get(handle, &self.module.types) {
             TypeInner::Scalar(scalar) if *scalar == Scalar::F32 => Some(1),
@@ -290,7 +278,7 @@ impl<'m> Lowering<'m> {
     }
 
     /// Keeps the value of a watched `let`. Values in branches that are not taken stay NaN.
-    pub(super) fn watch(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<()> {
+    pub(super) fn watch(&mut self, frame: &mut Frame<'m>, handle: Expr) -> Result<()> {
         if !frame.is_outermost {
             return Ok(());
         }
@@ -321,7 +309,7 @@ impl<'m> Lowering<'m> {
     }
 
     /// The type of an expression.
-    pub(super) fn type_of<'f>(&'f self, frame: &'f Frame<'m>, handle: Handle<Expression>) -> &'f TypeInner {
+    pub(super) fn type_of<'f>(&'f self, frame: &'f Frame<'m>, handle: Expr) -> &'f TypeInner {
         match frame.types.get(handle, &self.module.types) {
             TypeInner::Pointer { base, .. } => &self.module.types[*base].inner,
             inner => inner,
@@ -329,7 +317,7 @@ impl<'m> Lowering<'m> {
     }
 
     /// The value of an expression: calculated before, or available without calculation.
-    pub(super) fn value(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Value> {
+    pub(super) fn value(&mut self, frame: &mut Frame<'m>, handle: Expr) -> Result<Value> {
         if let Some(value) = &frame.values[handle.index()] {
             return Ok(value.clone());
         }
@@ -340,11 +328,7 @@ impl<'m> Lowering<'m> {
     }
 
     /// The words of a value.
-    pub(super) fn words(
-        &mut self,
-        frame: &mut Frame<'m>,
-        handle: Handle<Expression>,
-    ) -> Result<Rc<[Operand]>> {
+    pub(super) fn words(&mut self, frame: &mut Frame<'m>, handle: Expr) -> Result<Rc<[Operand]>> {
         match self.value(frame, handle)? {
             Value::Words(words) => Ok(words),
             Value::Place(_) => unsupported("it uses a pointer as a value"),
@@ -352,7 +336,7 @@ impl<'m> Lowering<'m> {
     }
 
     /// The single word of a value.
-    pub(super) fn word(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Operand> {
+    pub(super) fn word(&mut self, frame: &mut Frame<'m>, handle: Expr) -> Result<Operand> {
         match self.words(frame, handle)?.first() {
             Some(word) => Ok(*word),
             None => unsupported("it uses a value of no size"),
@@ -360,7 +344,7 @@ impl<'m> Lowering<'m> {
     }
 
     /// The target of a pointer.
-    pub(super) fn place(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Place> {
+    pub(super) fn place(&mut self, frame: &mut Frame<'m>, handle: Expr) -> Result<Place> {
         match self.value(frame, handle)? {
             Value::Place(place) => Ok(place),
             Value::Words(_) => unsupported("it uses a value as a pointer"),

@@ -18,45 +18,23 @@ fn number(value: f32) -> Operand {
 
 /// Componentwise functions of floats.
 fn of_floats(fun: M) -> Option<O> {
-    Some(match fun {
-        M::Abs => O::AbsF,
-        M::Min => O::MinF,
-        M::Max => O::MaxF,
-        M::Clamp => O::ClampF,
-        M::Sign => O::SignF,
-        M::Cos => O::Cos,
-        M::Cosh => O::Cosh,
-        M::Sin => O::Sin,
-        M::Sinh => O::Sinh,
-        M::Tan => O::Tan,
-        M::Tanh => O::Tanh,
-        M::Acos => O::Acos,
-        M::Asin => O::Asin,
-        M::Atan => O::Atan,
-        M::Atan2 => O::Atan2,
-        M::Asinh => O::Asinh,
-        M::Acosh => O::Acosh,
-        M::Atanh => O::Atanh,
-        M::Radians => O::Radians,
-        M::Degrees => O::Degrees,
-        M::Ceil => O::Ceil,
-        M::Floor => O::Floor,
-        M::Round => O::Round,
-        M::Fract => O::Fract,
-        M::Trunc => O::Trunc,
-        M::Ldexp => O::Ldexp,
-        M::Exp => O::Exp,
-        M::Exp2 => O::Exp2,
-        M::Log => O::Log,
-        M::Log2 => O::Log2,
-        M::Pow => O::Pow,
-        M::Fma => O::MulAddF,
-        M::Mix => O::Mix,
-        M::Step => O::Step,
-        M::SmoothStep => O::SmoothStep,
-        M::Sqrt => O::Sqrt,
-        M::InverseSqrt => O::InverseSqrt,
-        _ => return None,
+    macro_rules! operation {
+        ($($same:ident)*) => {
+            match fun {
+                $(M::$same => O::$same,)*
+                M::Abs => O::AbsF,
+                M::Min => O::MinF,
+                M::Max => O::MaxF,
+                M::Clamp => O::ClampF,
+                M::Sign => O::SignF,
+                M::Fma => O::MulAddF,
+                _ => return None,
+            }
+        };
+    }
+    Some(operation! {
+        Cos Cosh Sin Sinh Tan Tanh Acos Asin Atan Atan2 Asinh Acosh Atanh Radians Degrees Ceil
+        Floor Round Fract Trunc Ldexp Exp Exp2 Log Log2 Pow Mix Step SmoothStep Sqrt InverseSqrt
     })
 }
 

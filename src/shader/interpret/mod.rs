@@ -21,8 +21,6 @@ mod instruction;
 mod lower;
 mod maths;
 mod optimise;
-#[cfg(test)]
-mod random;
 mod shape;
 mod statement;
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use naga::{Block, Expression, Handle, Statement, SwitchValue};
+use naga::{Block, Statement, SwitchValue};
 
 use super::{
     builder::Operand,
@@ -10,6 +10,7 @@ use super::{
     lower::{Around, Frame, Lowering, Result, Value, unsupported},
     shape::Layout,
 };
+use crate::shader::blocks::Expr;
 
 /// True if nothing after a statement runs.
 fn leaves(block: &Block) -> bool {
@@ -98,7 +99,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    fn give_back(&mut self, frame: &mut Frame<'m>, value: Option<Handle<Expression>>) -> Result<()> {
+    fn give_back(&mut self, frame: &mut Frame<'m>, value: Option<Expr>) -> Result<()> {
         let words = match value {
             Some(value) => self.words(frame, value)?,
             None => Rc::new([]),
@@ -117,7 +118,7 @@ impl<'m> Lowering<'m> {
     fn branch(
         &mut self,
         frame: &mut Frame<'m>,
-        condition: Handle<Expression>,
+        condition: Expr,
         accept: &'m Block,
         reject: &'m Block,
     ) -> Result<()> {
@@ -141,12 +142,7 @@ impl<'m> Lowering<'m> {
         Ok(())
     }
 
-    fn switch(
-        &mut self,
-        frame: &mut Frame<'m>,
-        selector: Handle<Expression>,
-        cases: &'m [naga::SwitchCase],
-    ) -> Result<()> {
+    fn switch(&mut self, frame: &mut Frame<'m>, selector: Expr, cases: &'m [naga::SwitchCase]) -> Result<()> {
         let selector = self.word(frame, selector)?;
         let selector = self.builder.register(selector)?;
         let mut tests = vec![None; cases.len()];
@@ -192,7 +188,7 @@ impl<'m> Lowering<'m> {
         frame: &mut Frame<'m>,
         body: &'m Block,
         continuing: &'m Block,
-        break_if: Option<Handle<Expression>>,
+        break_if: Option<Expr>,
     ) -> Result<()> {
         let top = self.builder.here();
         frame.around.push(Around { breaks: Vec::new(), continues: Some(Vec::new()) });
@@ -215,12 +211,7 @@ impl<'m> Lowering<'m> {
         Ok(())
     }
 
-    fn assign(
-        &mut self,
-        frame: &mut Frame<'m>,
-        pointer: Handle<Expression>,
-        value: Handle<Expression>,
-    ) -> Result<()> {
+    fn assign(&mut self, frame: &mut Frame<'m>, pointer: Expr, value: Expr) -> Result<()> {
         let words = self.words(frame, value)?;
         let place = self.place(frame, pointer)?;
         if place.layout == Layout::Buffer {

@@ -7,6 +7,8 @@ use naga::{
 
 use super::*;
 
+mod random;
+
 fn module(text: &str) -> Module {
     let module = wgsl::parse_str(text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(text)));
     Validator::new(ValidationFlags::all(), Capabilities::all())
@@ -16,7 +18,7 @@ fn module(text: &str) -> Module {
 }
 
 /// True if a text is valid WGSL.
-pub(super) fn valid(text: &str) -> bool {
+fn valid(text: &str) -> bool {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
     wgsl::parse_str(text).is_ok_and(|module| validator.validate(&module).is_ok())
 }
@@ -26,7 +28,7 @@ fn program(text: &str) -> Program {
     Program::new(&module(text), "f").unwrap_or_else(|e| panic!("{e}: {text}"))
 }
 
-pub(super) fn run(text: &str, arguments: &[u32]) -> Vec<u32> {
+fn run(text: &str, arguments: &[u32]) -> Vec<u32> {
     let program = program(text);
     assert_eq!(program.argument_words(), arguments.len(), "{text}");
     let mut results = vec![0; program.result_words()];

@@ -5,7 +5,7 @@
 use std::{cell::Cell, collections::HashMap};
 
 use super::{
-    Limits, Refusal,
+    Limits, Refusal, limited,
     token::{Finding, Kind, Token},
 };
 
@@ -53,15 +53,8 @@ const STEPS: u32 = 1 << 20;
 
 /// Checks the declarations of a text.
 pub(super) fn check(tokens: &[Token], limits: &Limits) -> Result<(), Refusal> {
-    let most = limits.declarations;
     let (declarations, values) = declarations(tokens);
-    if declarations.len() > most {
-        let what = format!(
-            "the composed shader has {} declarations; at most {most} are allowed",
-            declarations.len()
-        );
-        return Err(Refusal::Whole(what));
-    }
+    limited(declarations.len(), limits.declarations, "declarations")?;
     let mut by_name: HashMap<_, Vec<_>> = HashMap::with_capacity(declarations.len());
     for (i, declaration) in declarations.iter().enumerate() {
         by_name.entry(declaration.name).or_default().push(i);

@@ -47,6 +47,14 @@ impl From<Finding> for Refusal {
 /// Stack size for parsing and checking anything within the limits, in bytes: twice that of Bevy's threads.
 const STACK: usize = 4 << 20;
 
+/// Refuses a shader with too many of something.
+fn limited(found: usize, most: usize, what: &str) -> Result<(), Refusal> {
+    if found <= most {
+        return Ok(());
+    }
+    Err(Refusal::Whole(format!("the composed shader has {found} {what}; at most {most} are allowed")))
+}
+
 /// Checks a composed text before it is parsed.
 ///
 /// # Errors

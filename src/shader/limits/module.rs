@@ -75,11 +75,10 @@ fn constants(module: &Module, limits: &Limits) -> Result<()> {
         }
         let span = module.global_expressions.get_span(handle);
         // One word of the text may produce three expressions.
-        if depth + 1 > 4 * limits.chain {
-            let what = format!(
-                "this constant depends on a chain of {depth} others; at most {} are allowed",
-                4 * limits.chain
-            );
+        let most = 4 * limits.chain;
+        if depth + 1 > most {
+            let what =
+                format!("this constant depends on a chain of {depth} others; at most {most} are allowed");
             return Err((span, what));
         }
         depths.push(depth + 1);
@@ -181,13 +180,10 @@ impl<'a> Walk<'a> {
             self.cost.steps += steps;
             self.check_steps(span(handle))?;
         }
-        let count = function.expressions.len();
-        if count > limits.expressions {
+        let (count, most) = (function.expressions.len(), limits.expressions);
+        if count > most {
             let last = function.expressions.iter().last().map_or(Span::UNDEFINED, |(h, _)| span(h));
-            return Err((
-                last,
-                format!("this function has {count} expressions; at most {} are allowed", limits.expressions),
-            ));
+            return Err((last, format!("this function has {count} expressions; at most {most} are allowed")));
         }
         Ok(())
     }
@@ -213,12 +209,9 @@ impl<'a> Walk<'a> {
                     self.block(reject, loops)?;
                 }
                 Statement::Switch { cases, .. } => {
-                    if cases.len() > self.limits.cases + 1 {
-                        let what = format!(
-                            "this switch has {} cases; at most {} are allowed",
-                            cases.len(),
-                            self.limits.cases
-                        );
+                    let (count, most) = (cases.len(), self.limits.cases);
+                    if count > most + 1 {
+                        let what = format!("this switch has {count} cases; at most {most} are allowed");
                         return Err((*span, what));
                     }
                     for case in cases {
@@ -228,10 +221,8 @@ impl<'a> Walk<'a> {
                 }
                 Statement::Loop { body, continuing, .. } => {
                     if loops == self.limits.loops {
-                        let what = format!(
-                            "this loop is within {loops} others; at most {} may be nested",
-                            self.limits.loops
-                        );
+                        let what =
+                            format!("this loop is within {loops} others; at most {loops} may be nested");
                         return Err((*span, what));
                     }
                     self.block(body, loops + 1)?;
@@ -241,31 +232,31 @@ impl<'a> Walk<'a> {
                     let called = self.costs.get(function.index()).copied().unwrap_or_default();
                     self.cost.steps = self.cost.steps.saturating_add(called.steps);
                     self.cost.bytes = self.cost.bytes.saturating_add(called.bytes);
-                    within(
-                        self.cost.bytes,
-                        self.limits.variable_bytes,
-                        *span,
-                        "bytes of variables in this function and those it calls",
-                    )?;
+                    let what = "bytes of variables in this function and those it calls";
+                    within(self.cost.bytes, self.limits.variable_bytes, *span, what)?;
                 }
-                Statement::ControlBarrier(_)
-                | Statement::MemoryBarrier(_)
-                | Statement::WorkGroupUniformLoad { .. } => {
-                    return Err((*span, "barriers are not available to a model".to_owned()));
+                other => {
+                    if let Some(what) = unavailable(other) {
+                        return Err((*span, format!("{what} are not available to a model")));
+                    }
                 }
-                Statement::Atomic { .. } | Statement::ImageAtomic { .. } => {
-                    return Err((*span, "atomics are not available to a model".to_owned()));
-                }
-                Statement::SubgroupBallot { .. }
-                | Statement::SubgroupGather { .. }
-                | Statement::SubgroupCollectiveOperation { .. } => {
-                    return Err((*span, "subgroup operations are not available to a model".to_owned()));
-                }
-                _ => {}
             }
             self.check_steps(*span)?;
         }
         Ok(())
+    }
+}
+
+/// What a model has no use for and might hang.
+fn unavailable(statement: &Statement) -> Option<&'static str> {
+    use Statement as S;
+    match statement {
+        S::ControlBarrier(_) | S::MemoryBarrier(_) | S::WorkGroupUniformLoad { .. } => Some("barriers"),
+        S::Atomic { .. } | S::ImageAtomic { .. } => Some("atomics"),
+        S::SubgroupBallot { .. } | S::SubgroupGather { .. } | S::SubgroupCollectiveOperation { .. } => {
+            Some("subgroup operations")
+        }
+        _ => None,
     }
 }
 

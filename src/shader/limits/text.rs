@@ -3,23 +3,17 @@
 //! is long.
 
 use super::{
-    Limits, Refusal, expansion,
+    Limits, Refusal, expansion, limited,
     token::{Finding, Kind, Token, tokens},
 };
 
 /// Finds anything beyond a limit. `binds` is true for bytes at which bindings may be declared.
 pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) -> Result<(), Refusal> {
-    if text.len() > limits.bytes {
-        let what =
-            format!("the composed shader has {} bytes; at most {} are allowed", text.len(), limits.bytes);
-        return Err(Refusal::Whole(what));
-    }
+    limited(text.len(), limits.bytes, "bytes")?;
     let tokens = tokens(text, limits.tokens)?.list;
     if tokens.len() > limits.tokens {
-        let what = format!(
-            "the composed shader has more than {} words and symbols, the most allowed",
-            limits.tokens
-        );
+        let most = limits.tokens;
+        let what = format!("the composed shader has more than {most} words and symbols, the most allowed");
         return Err(Refusal::Whole(what));
     }
     let mut walk = Walk { limits, groups: vec![Group::new(b'{', 0, 0)], sections: Vec::new(), statements: 0 };
@@ -29,13 +23,7 @@ pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) 
             resource(&tokens, i, &binds)?;
         }
     }
-    if walk.statements > limits.statements {
-        let what = format!(
-            "the composed shader has {} statements; at most {} are allowed",
-            walk.statements, limits.statements
-        );
-        return Err(Refusal::Whole(what));
-    }
+    limited(walk.statements, limits.statements, "statements")?;
     if let Some((at, _)) = walk.sections.last() {
         return Err(Refusal::At(*at, "this condition has no #endif".to_owned()));
     }
@@ -43,6 +31,7 @@ pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) 
 }
 
 /// A part in brackets, or in the braces of a block.
+#[derive(Default)]
 struct Group {
     open: u8,
     /// The depth of the enclosing trees down to here, without braces in between.
@@ -65,17 +54,7 @@ struct Group {
 
 impl Group {
     fn new(open: u8, above: usize, nesting: usize) -> Self {
-        Self {
-            open,
-            above,
-            nesting,
-            operators: 0,
-            deepest: 0,
-            worst: 0,
-            chain: 0,
-            cases: 0,
-            selectors: false,
-        }
+        Self { open, above, nesting, ..Self::default() }
     }
 
     /// Ends a tree at a comma, or a statement at a semicolon.
@@ -197,10 +176,8 @@ impl Walk<'_> {
         let blocks = group.nesting + group.chain + 1;
         let most = self.limits.blocks;
         if blocks > most {
-            return Err((
-                token.at,
-                format!("this block is nested {blocks} deep; at most {most} are allowed"),
-            ));
+            let what = format!("this block is nested {blocks} deep; at most {most} are allowed");
+            return Err((token.at, what));
         }
         self.groups.push(Group::new(b'{', 0, blocks));
         Ok(())
@@ -294,9 +271,9 @@ fn resource(tokens: &[Token], i: usize, binds: impl Fn(usize) -> bool) -> Result
     }
     let attribute = i > 0 && tokens[i - 1].kind == Kind::Attribute;
     if attribute && token.text == "binding" && !binds(token.at) {
+        let number = next(2);
         let what = format!(
-            "@binding({}) is not available to a model: it has no buffers or textures; its input comes as parameters",
-            next(2)
+            "@binding({number}) is not available to a model: it has no buffers or textures; its input comes as parameters"
         );
         return Err((tokens[i - 1].at, what));
     }

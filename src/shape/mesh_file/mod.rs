@@ -2,7 +2,7 @@
 
 use super::{Declaration, ObjectType, PolygonMesh};
 use crate::{
-    parameter::{FileFormat, FileProblem, Parameter, ParameterKind},
+    parameter::{FileFormat, FileProblem, Parameter},
     parameters,
 };
 
@@ -47,28 +47,21 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     builder.numbers().map_err(whole)
 }
 
-const PATH: Parameter = Parameter {
-    name: "path",
-    symbol: "",
-    label: "model file",
-    unit: "",
-    help: "The glTF binary (.glb), OBJ or PLY file with the polygons; relative to the folder of the scene.",
-    kind: ParameterKind::File { format: &FORMAT, default: "knot.glb" },
-    used_when: None,
-};
+const PATH: Parameter = Parameter::file("path", &FORMAT, "knot.glb")
+    .symbol("")
+    .label("model file")
+    .help("The glTF binary (.glb), OBJ or PLY file with the polygons; relative to the folder of the scene.");
 
-const NORMALS: Parameter = Parameter {
-    name: "normals",
-    symbol: "",
-    label: "vertex normals",
-    unit: "",
-    help: "The mean of the normals of the polygons that meet in a vertex, or those of the file, where it has them.",
-    kind: ParameterKind::Choice {
-        options: &[("computed", "Mean of the polygons"), ("file", "From the file")],
-        default: 0,
-    },
-    used_when: None,
-};
+const NORMALS: Parameter = Parameter::choice(
+    "normals",
+    &[("computed", "Mean of the polygons"), ("file", "From the file")],
+    0,
+)
+.symbol("")
+.label("vertex normals")
+.help(
+    "The mean of the normals of the polygons that meet in a vertex, or those of the file, where it has them.",
+);
 
 parameters! {
     /// **Mesh**: the polygons of a [file](FORMAT). They are scaled and moved so that the largest extent of the box around
@@ -87,15 +80,10 @@ parameters! {
 }
 
 impl ObjectType for MeshFile {
-    const DECLARATION: Declaration = Declaration {
-        id: "mesh",
-        name: "Mesh",
-        summary: "The polygons of a file: any shape, as modelling programs write it.",
-        glyph: "▲",
-        tessellation_help: "Its polygons are those of the file.",
-        tessellation: 1..=1,
-        default_tessellation: 1,
-    };
+    const DECLARATION: Declaration = Declaration::new("mesh", "Mesh")
+        .summary("The polygons of a file: any shape, as modelling programs write it.")
+        .glyph("▲")
+        .tessellation(1..=1, 1, "Its polygons are those of the file.");
 
     fn mesh(&self, _: u32) -> PolygonMesh {
         Model::new(&self.path.numbers).map(|model| model.mesh(self.normals == 1)).unwrap_or_default()

@@ -5,22 +5,22 @@ use std::{f32::consts::PI, sync::Arc};
 use glam::{Vec2, Vec3};
 
 use super::{
-    super::{Lab, Setting, StudyError, alpha, choice, number},
+    super::{Lab, StudyError, alpha, set},
     ltc::{self, Fitted},
     split_sum::Filter,
 };
 use crate::{
     light::{Emitter, LightRecord, extent::sides},
     optics::{Frame, Terms, albedo::AlbedoCurve, equivalence::alpha_of_exponent},
-    parameter::Value,
     reference::Leaving,
     reflection::Surface,
     registry::Registry,
     scene::{Light, Scene, emitter},
 };
 
-/// Gold's optical constants at 630, 532 and 465 nm, as in the chapter on gold.
-const GOLD: [[f32; 3]; 2] = [[0.18836, 0.54386, 1.33185], [3.4034, 2.2309, 1.8693]];
+/// Gold by its optical constants at 630, 532 and 465 nm, as in the chapter on gold.
+const GOLD: &str =
+    "fresnel=conductor diffuse=none ior=0.18836,0.54386,1.33185 extinction=3.4034,2.2309,1.8693";
 /// The roughness of gold, that of the brushed metal on its model's scale, and the exponent of the plastic.
 pub(super) const GOLD_ALPHA: f64 = 0.12;
 pub(super) const BRUSHED: f64 = 0.45;
@@ -33,7 +33,7 @@ pub(super) struct Subject {
     /// Name in sentences.
     pub(super) short: &'static str,
     model: &'static str,
-    settings: Vec<Setting>,
+    settings: String,
     /// The roughness α of the isotropic GGX lobe with which approximations replace the model's own.
     pub(super) alpha: f64,
 }
@@ -41,37 +41,28 @@ pub(super) struct Subject {
 /// The three subjects: GGX as used by approximations, GGX that is wider in one direction, and a model without
 /// microfacets.
 pub(super) fn all() -> [Subject; 3] {
-    let [n, k] = GOLD.map(Value::Triple);
-    let gold = [choice("fresnel", "conductor"), choice("diffuse", "none"), ("ior", n), ("extinction", k)];
     [
         Subject {
             name: "Gold: microfacet model, GGX",
             short: "gold (GGX)",
             model: "microfacet",
-            settings: gold.into_iter().chain(alpha(GOLD_ALPHA)).collect(),
+            settings: format!("{GOLD} {}", alpha(GOLD_ALPHA)),
             alpha: GOLD_ALPHA,
         },
         Subject {
             name: "Brushed metal: Disney’s model, anisotropic GGX",
             short: "brushed metal (Disney)",
             model: "disney",
-            settings: vec![
-                ("base_colour", Value::Colour([200, 206, 214])),
-                number("metallic", 1.0),
-                number("roughness", BRUSHED),
-                number("anisotropic", ANISOTROPY),
-            ],
+            settings: format!(
+                "base_colour=200,206,214 metallic=1 roughness={BRUSHED} anisotropic={ANISOTROPY}"
+            ),
             alpha: BRUSHED * BRUSHED,
         },
         Subject {
             name: "Plastic: normalised Blinn–Phong",
             short: "plastic (Blinn–Phong)",
             model: "blinn_phong_normalised",
-            settings: vec![
-                ("base_colour", Value::Colour([196, 58, 44])),
-                number("k_s", 0.3),
-                ("alpha", Value::Integer(EXPONENT)),
-            ],
+            settings: format!("base_colour=196,58,44 k_s=0.3 alpha={EXPONENT}"),
             alpha: f64::from(alpha_of_exponent(EXPONENT as f32)),
         },
     ]
@@ -83,23 +74,20 @@ impl Subject {
     }
 
     /// A scene with this model for every object.
-    pub(super) fn put(&self, scene: &Scene) -> Scene {
+    pub(super) fn put(&self, scene: &Scene, registry: &Registry) -> Result<Scene, StudyError> {
+        let (_, values) = set(registry, self.model, &self.settings)?;
         let mut scene = scene.clone();
         for object in &mut scene.objects {
             object.reflection_model = Some(self.model.to_owned());
-            for (name, value) in &self.settings {
-                object.material.set(*name, value.clone());
-            }
+            object.material.0.extend(values.0.clone());
         }
-        scene
+        Ok(scene)
     }
 
     /// The data that approximations use, with this many samples of the light for each of their means.
     pub(super) fn known(&self, lab: &Lab, samples: u32) -> Result<Known, StudyError> {
-        let ggx = lab.surface(
-            "microfacet",
-            &[&[choice("fresnel", "none"), choice("distribution", "ggx")][..], &alpha(self.alpha)].concat(),
-        )?;
+        let ggx = format!("fresnel=none distribution=ggx {}", alpha(self.alpha));
+        let ggx = lab.surface("microfacet", &ggx)?;
         let anisotropic = lab.registry.model(self.model).is_some_and(|m| m.declaration.anisotropic);
         let filter = Filter::ggx(self.alpha as f32, samples);
         Ok(Known {

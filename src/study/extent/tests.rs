@@ -3,7 +3,7 @@ use std::{f64::consts::PI, sync::Arc};
 use glam::{DMat3, DVec3, Vec3};
 
 use super::{
-    super::{Lab, Settings, number},
+    super::{Lab, Settings},
     SCENE,
     ltc::{Fitted, cosine_share, density, diffuse_share},
     split_sum::Filter,
@@ -87,9 +87,7 @@ fn the_share_of_a_polygon_is_that_of_the_closed_forms() {
 #[test]
 fn the_identity_is_lamberts_law() {
     let registry = Registry::builtin();
-    let lambert = lab(&registry)
-        .surface("lambert", &[("base_colour", Value::Colour([255; 3]))])
-        .expect("it can be made");
+    let lambert = lab(&registry).surface("lambert", "base_colour=255,255,255").expect("it can be made");
     let v = direction(40.0, 0.0);
     let identity = Fitted::of(DMat3::IDENTITY);
     for (i, softbox) in softboxes(&registry).iter().enumerate() {
@@ -134,8 +132,7 @@ fn fitted_lobes_are_near_to_ggx_and_far_from_another_width() {
     let registry = Registry::builtin();
     let lab = lab(&registry);
     let ggx = |alpha: f64| {
-        let settings =
-            [super::super::choice("fresnel", "none"), number("alpha_x", alpha), number("alpha_y", alpha)];
+        let settings = format!("fresnel=none alpha_x={alpha} alpha_y={alpha}");
         lab.surface("microfacet", &settings).expect("it can be made")
     };
     let (right, wrong) = (Fitted::new(&*ggx(0.25), 0.25), Fitted::new(&*ggx(0.35), 0.35));

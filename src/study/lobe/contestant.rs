@@ -3,12 +3,11 @@
 use crate::{
     curves::draw::{Line, Mark},
     optics::{Frame, colour::Encoding, equivalence},
-    parameter::{Value, Values},
     registry::Registry,
     study::{
-        Lab, Setting, StudyError, alpha, choice,
+        Lab, StudyError, alpha,
         fit::{self, Fit, Sample},
-        number,
+        set,
     },
 };
 
@@ -19,57 +18,38 @@ const WIDTHS: (f64, f64) = (0.002, 1.0);
 pub(in crate::study) struct Contestant {
     pub(in crate::study) name: &'static str,
     id: &'static str,
-    pub(super) settings: Vec<Setting>,
+    pub(super) settings: String,
     /// Alternative settings, used if they fit better.
-    pub(super) instead: Option<Vec<Setting>>,
-    width: fn(f64) -> Vec<Setting>,
+    pub(super) instead: Option<String>,
+    width: fn(f64) -> String,
     /// Colour, line and mark in plots.
     pub(super) style: (usize, Line, Mark),
 }
 
-fn exponent(width: f64) -> Vec<Setting> {
-    let n = equivalence::exponent_of_alpha(width as f32).round();
-    vec![("alpha", Value::Integer(n as i64))]
-}
-
-fn both(width: f64) -> Vec<Setting> {
-    alpha(width).to_vec()
+fn exponent(width: f64) -> String {
+    format!("alpha={}", equivalence::exponent_of_alpha(width as f32).round())
 }
 
 impl Contestant {
     fn microfacet(name: &'static str, d: &'static str, g: &'static str, style: (usize, Line, Mark)) -> Self {
-        let settings = |f| {
-            vec![
-                choice("distribution", d),
-                choice("masking", g),
-                choice("fresnel", f),
-                choice("diffuse", "none"),
-                ("ior", Value::Triple([1.5; 3])),
-            ]
-        };
-        Self {
-            name,
-            id: "microfacet",
-            settings: settings("dielectric"),
-            instead: Some(settings("none")),
-            width: both,
-            style,
-        }
+        let settings = |f| format!("distribution={d} masking={g} fresnel={f} diffuse=none ior=1.5");
+        let (settings, instead) = (settings("dielectric"), Some(settings("none")));
+        Self { name, id: "microfacet", settings, instead, width: alpha, style }
     }
 
     /// The four models of the comparison.
     pub(in crate::study) fn all() -> Vec<Self> {
-        let simple =
-            |name, id, settings, width, style| Self { name, id, settings, instead: None, width, style };
+        let simple = |name, id, width, style| Self {
+            name,
+            id,
+            settings: "k_s=1".to_owned(),
+            instead: None,
+            width,
+            style,
+        };
         vec![
-            simple(
-                "Blinn–Phong",
-                "blinn_phong",
-                vec![number("k_s", 1.0)],
-                exponent,
-                (1, Line::Dashed, Mark::Triangle),
-            ),
-            simple("Ward", "ward", vec![number("k_s", 1.0)], both, (4, Line::Dotted, Mark::Square)),
+            simple("Blinn–Phong", "blinn_phong", exponent, (1, Line::Dashed, Mark::Triangle)),
+            simple("Ward", "ward", alpha, (4, Line::Dotted, Mark::Square)),
             Self::microfacet("Cook–Torrance", "beckmann", "v_cavity", (2, Line::Dashed, Mark::Cross)),
             Self::microfacet("GGX", "ggx", "smith_height_correlated", (0, Line::Solid, Mark::Disc)),
         ]
@@ -87,21 +67,16 @@ impl Contestant {
 
     /// Refuses settings that the model does not have.
     pub(super) fn check(&self, lab: &Lab) -> Result<(), StudyError> {
-        for settings in [Some(&self.settings), self.instead.as_ref()].into_iter().flatten() {
-            let mut settings = settings.clone();
-            settings.extend((self.width)(0.1));
-            lab.surface(self.id, &settings)?;
+        for settings in [&self.settings].into_iter().chain(&self.instead) {
+            set(lab.registry, self.id, &format!("{settings} {}", (self.width)(0.1)))?;
         }
         Ok(())
     }
 
     /// The specular lobe as a BRDF at every sample.
-    fn lobe(&self, registry: &Registry, settings: &[Setting], width: f64, samples: &[Sample]) -> Vec<f64> {
-        let mut values = Values::default();
-        for (name, value) in settings.iter().cloned().chain((self.width)(width)) {
-            values.set(name, value);
-        }
-        let Some(model) = registry.model(self.id) else { return vec![0.0; samples.len()] };
+    fn lobe(&self, registry: &Registry, settings: &str, width: f64, samples: &[Sample]) -> Vec<f64> {
+        let set = set(registry, self.id, &format!("{settings} {}", (self.width)(width)));
+        let Ok((model, values)) = set else { return vec![0.0; samples.len()] };
         let surface = model.instantiate(&values, Encoding::Srgb);
         let f = |s: &Sample| {
             let specular = surface.response(s.l, s.v, &Frame::LOCAL).specular.y;
@@ -119,7 +94,7 @@ impl Contestant {
     pub(super) fn fit_freely(&self, registry: &Registry, samples: &[Sample]) -> Found {
         let first = self.fit(registry, samples);
         let bound = first.error;
-        let found = |fit, settings: &[Setting]| Found { fit, settings: settings.to_vec(), bound };
+        let found = |fit, settings: &str| Found { fit, settings: settings.to_owned(), bound };
         let Some(instead) = &self.instead else { return found(first, &self.settings) };
         let second = fit::fit(samples, WIDTHS, |width, samples| self.lobe(registry, instead, width, samples));
         if second.error < bound { found(second, instead) } else { found(first, &self.settings) }
@@ -129,7 +104,7 @@ impl Contestant {
     pub(super) fn predict(
         &self,
         registry: &Registry,
-        settings: &[Setting],
+        settings: &str,
         fit: &Fit,
         samples: &[Sample],
     ) -> Vec<f64> {
@@ -148,7 +123,7 @@ impl Contestant {
 pub(super) struct Found {
     pub(super) fit: Fit,
     /// The chosen settings.
-    pub(super) settings: Vec<Setting>,
+    pub(super) settings: String,
     /// The error without the choice of the Fresnel term.
     pub(super) bound: f64,
 }

@@ -7,15 +7,16 @@ use super::contestant::{Contestant, Found};
 use crate::{
     curves::{
         data::{LARGEST_ANGLE, Sgd},
-        draw::{Axis, Line, Mark, Plot, Series},
+        draw::{Axis, Line, Mark, Plot},
     },
     matching,
     optics::geometry::direction,
     registry::Registry,
     study::{
-        Lab, StudyError, Table,
+        Lab, Table,
         fit::{self, Sample},
-        fixed, grid, svg, words,
+        fixed, grid, plot, series, svg,
+        text::{Values, values},
     },
 };
 
@@ -141,116 +142,73 @@ impl Merl {
     }
 
     /// The table, the chart, the lobes, and the errors for each material.
-    pub(super) fn results(&self, lab: &mut Lab) -> Result<Markup, StudyError> {
-        let table = self.table(lab);
-        let chart = self.chart(lab)?;
-        let panels = self.panels(lab)?;
-        let details: Vec<Vec<String>> = self
-            .fits
-            .iter()
-            .map(|f| {
-                let mut row = vec![f.name.to_owned()];
-                row.extend(f.fits.iter().map(|f| fixed(f.fit.error, 3)));
-                row
-            })
-            .collect();
+    pub(super) fn values(&self, lab: &Lab) -> Values {
         let mut head = vec!["Material"];
         head.extend(self.contestants.iter().map(|c| c.name));
-        Ok(html! {
-            (table)
-            (chart)
-            @if let Some(panels) = panels { (panels) }
-            details {
-                summary { "Log error for each of the " (self.fits.len()) " materials" }
-                (grid(&head, &details))
-            }
-        })
+        let errors = |f: &MerlFit| {
+            let errors = f.fits.iter().map(|f| fixed(f.fit.error, 3));
+            [f.name.to_owned()].into_iter().chain(errors).collect()
+        };
+        let errors: Vec<Vec<String>> = self.fits.iter().map(errors).collect();
+        let panels = self.panels(lab);
+        values! {
+            fits: self.fits.len(), materials: self.flat + self.fits.len(), flat: self.flat, has_flat: self.flat > 0,
+            directions: self.directions, largest_angle: f64::from(LARGEST_ANGLE),
+            merl: self.table(), chart: self.chart(), errors: grid(&head, &errors),
+            // A quick study may have skipped all of them.
+            has_panels: !panels.is_empty(),
+            panels: html! { @for (name, plot) in panels { div { p { (name) } (plot) } } }, key: key(&self.contestants),
+        }
     }
 
-    fn table(&self, lab: &mut Lab) -> Markup {
+    fn table(&self) -> Markup {
         let fits = &self.fits;
         let matte = median(fits.iter().map(|f| f.matte).collect());
-        let mut rows =
-            vec![vec!["Lambert".to_owned(), "1".to_owned(), fixed(matte, 3), "–".to_owned(), "–".to_owned()]];
+        let mut rows = vec![["Lambert", "1", &fixed(matte, 3), "–", "–"].map(str::to_owned).to_vec()];
         for (i, c) in self.contestants.iter().enumerate() {
             let better = fits.iter().filter(|f| f.error(i) < f.error(0)).count();
             rows.push(vec![
                 c.name.to_owned(),
                 if c.instead.is_some() { "3 and choice of F" } else { "3" }.to_owned(),
                 fixed(self.median(i), 3),
-                format!("{}", self.best(i)),
-                if i == 0 { "–".to_owned() } else { format!("{better}") },
+                self.best(i).to_string(),
+                if i == 0 { "–".to_owned() } else { better.to_string() },
             ]);
         }
-        lab.table(
-            &html! {
-                "Fits to " (fits.len()) " materials of the MERL database, as represented by the SGD fits of Bagher et al. (2012): median of the log error, the number of materials for which the model is the best of the four, "
-                "and for which it is better than Blinn–Phong; ties do not count. "
-                @if self.flat > 0 { (self.flat) " more materials without a specular part, which every model fits exactly, are not counted." }
-            },
-            &["Model", "free numbers", "median error", "best for", "better than Blinn–Phong"],
-            &rows,
-        )
+        grid(&["Model", "free numbers", "median error", "best for", "better than Blinn–Phong"], &rows)
     }
 
-    fn chart(&self, lab: &mut Lab) -> Result<Markup, StudyError> {
+    fn chart(&self) -> Markup {
         let fits = &self.fits;
         let errors = fits.iter().flat_map(|f| (0..self.contestants.len()).map(|i| f.error(i)));
         let (lowest, highest) =
             errors.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), e| (l.min(e), h.max(e)));
-        let chart = Plot {
-            title: "Log error by material, sorted by the error of GGX".to_owned(),
-            x: Axis::new("materials, sorted by the error of GGX", 0.0, fits.len() as f64 + 1.0, 6),
-            y: Axis::log("log error", lowest.min(0.006) / 1.2, 1.2 * highest.max(1.6)),
-            series: self
-                .contestants
-                .iter()
-                .enumerate()
-                .map(|(i, c)| Series {
-                    name: c.name.to_owned(),
-                    points: fits.iter().enumerate().map(|(x, f)| (x as f64 + 1.0, f.error(i))).collect(),
-                    colour: c.style.0,
-                    line: Line::None,
-                    mark: c.style.2,
-                })
-                .collect(),
-            size: (720, 400),
-            legend: true,
-            ..Plot::default()
+        let of = |(i, c): (usize, &Contestant)| {
+            let points = fits.iter().enumerate().map(|(x, f)| (x as f64 + 1.0, f.error(i))).collect();
+            series(c.name, points, (c.style.0, Line::None, c.style.2))
         };
-        let caption = html! { "Error of the four models for each material, sorted. Logarithmic axis; it holds every point." @if self.flat > 0 { " The " (self.flat) " materials without a specular part have error 0 and are not shown." } };
-        Ok(lab.figure(&svg(&chart), &caption))
+        plot(
+            "Log error by material, sorted by the error of GGX",
+            Axis::new("materials, sorted by the error of GGX", 0.0, fits.len() as f64 + 1.0, 6),
+            Axis::log("log error", lowest.min(0.006) / 1.2, 1.2 * highest.max(1.6)),
+            400,
+            self.contestants.iter().enumerate().map(of).collect(),
+        )
     }
 
-    /// The lobes of some materials; `None` if the study has skipped all of them.
-    fn panels(&self, lab: &mut Lab) -> Result<Option<Markup>, StudyError> {
-        let mut panels = Vec::new();
-        for name in SHOWN {
-            let material = self.materials.iter().find(|m| m.name == name);
-            let found = self.fits.iter().find(|f| f.name == name);
-            if let Some((material, found)) = material.zip(found) {
-                panels.push((name.replace('-', " "), merl_plot(lab, material, found, &self.contestants)?));
-            }
-        }
-        Ok((!panels.is_empty()).then(|| {
-            lab.figure(
-                &html! {
-                    div .panels { @for (name, plot) in &panels { div { p { (name) } (plot) } } }
-                    (key(&self.contestants))
-                },
-                &html! { "Lobes of four materials: BRDF by the angle " (words("θ_h")) " between normal and half vector, with 60° between light and viewer. Rings: the SGD fit that stands for the material." },
-            )
-        }))
+    /// The lobes of some materials by name, without those that the study has skipped.
+    fn panels(&self, lab: &Lab) -> Vec<(String, Markup)> {
+        let panel = |name: &str| {
+            let material = self.materials.iter().find(|m| m.name == name)?;
+            let found = self.fits.iter().find(|f| f.name == name)?;
+            Some((name.replace('-', " "), merl_plot(lab, material, found, &self.contestants)))
+        };
+        SHOWN.into_iter().filter_map(panel).collect()
     }
 }
 
 /// The lobes of a MERL fit by the angle of the half vector.
-fn merl_plot(
-    lab: &Lab,
-    material: &Sgd,
-    found: &MerlFit,
-    contestants: &[Contestant],
-) -> Result<Markup, StudyError> {
+fn merl_plot(lab: &Lab, material: &Sgd, found: &MerlFit, contestants: &[Contestant]) -> Markup {
     // The difference angle is 30°, across, so that both directions stay above the surface.
     let angles: Vec<f32> = (0..=80u8).map(|i| 50.0 * (f32::from(i) / 80.0).powi(2)).collect();
     let samples: Vec<Sample> = angles
@@ -265,37 +223,22 @@ fn merl_plot(
     let data: Vec<f64> = samples.iter().map(|s| material.luminance(s.l, s.v)).collect();
     let points = |values: Vec<f64>| angles.iter().map(|a| f64::from(*a)).zip(values).collect::<Vec<_>>();
     let (low, high) = data.iter().fold((f64::INFINITY, 0.0), |(l, h), v| (f64::min(l, *v), f64::max(h, *v)));
-    let mut series = vec![Series {
-        name: "SGD fit".to_owned(),
-        points: points(data).into_iter().step_by(5).collect(),
-        colour: 6,
-        line: Line::None,
-        mark: Mark::Ring,
-    }];
+    let rings = points(data).into_iter().step_by(5).collect();
+    let mut lines = vec![series("SGD fit", rings, (6, Line::None, Mark::Ring))];
     for (c, Found { fit, settings, .. }) in contestants.iter().zip(&found.fits) {
         let values = c.predict(lab.registry, settings, fit, &samples);
-        series.push(Series {
-            name: c.name.to_owned(),
-            points: points(values),
-            colour: c.style.0,
-            line: c.style.1,
-            mark: Mark::None,
-        });
+        lines.push(series(c.name, points(values), (c.style.0, c.style.1, Mark::None)));
     }
-    let plot = Plot {
+    let y = [(0.5 * low).log10().floor(), (1.2 * high).log10().ceil()].map(|power| 10f64.powf(power));
+    svg(&Plot {
         title: format!("Lobe of {}", material.name),
         x: Axis::new("θₕ (°)", 0.0, 50.0, 6),
-        y: Axis::log(
-            "f (sr⁻¹)",
-            10f64.powf((0.5 * low).log10().floor()),
-            10f64.powf((1.2 * high).log10().ceil()),
-        ),
-        series,
+        y: Axis::log("f (sr⁻¹)", y[0], y[1]),
+        series: lines,
         size: (430, 350),
         legend: false,
         ..Plot::default()
-    };
-    Ok(svg(&plot))
+    })
 }
 
 /// The legend of the panels.

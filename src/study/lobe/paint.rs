@@ -1,18 +1,19 @@
 //! Measured paints: their samples, the fits to them, plots in the plane of incidence.
 
-use maud::{Markup, html};
+use maud::Markup;
 
 use super::contestant::Contestant;
 use crate::{
     curves::{
         data::{self, LARGEST_ANGLE, Measurement, PAINTS},
-        draw::{Axis, Line, Mark, Plot, Series},
+        draw::{Axis, Line, Mark},
     },
     optics::geometry::direction,
     study::{
         Lab, StudyError, Table,
         fit::{self, Fit, Sample},
-        fixed, svg,
+        fixed, grid, plot, series, stack,
+        text::{Values, values},
     },
 };
 
@@ -81,43 +82,25 @@ impl Paints {
         raw
     }
 
-    /// The table of the fits, and the figures of the two glossy paints.
-    pub(super) fn results(&self, lab: &mut Lab) -> Result<Markup, StudyError> {
-        let table = self.table(lab);
-        let krylon = lab.figure(
-            &plots(lab, 0)?,
-            &html! {
-                "Krylon blue paint in the plane of incidence: measured values and the fits of the table, which cover all directions of light and viewer, not only these. "
-                "A model may be far off in one plane and close elsewhere. The log error over all viewers is " (self.errors_by_incidence(lab, 0)?) ". Logarithmic axis."
-            },
-        );
-        let garnet = lab.figure(
-            &plots(lab, 1)?,
-            &html! { "The same for garnet red paint. The log error over all viewers is " (self.errors_by_incidence(lab, 1)?) "." },
-        );
-        Ok(html! { (table) (krylon) (garnet) })
+    /// The table of the fits, and the plots and errors of the two glossy paints.
+    pub(super) fn values(&self, lab: &Lab) -> Result<Values, StudyError> {
+        Ok(values! {
+            paints: self.table(), krylon: plots(lab, 0)?, garnet: plots(lab, 1)?,
+            krylon_errors: self.errors_by_incidence(lab, 0)?, garnet_errors: self.errors_by_incidence(lab, 1)?,
+        })
     }
 
-    fn table(&self, lab: &mut Lab) -> Markup {
-        let rows: Vec<Vec<String>> = (0..self.0[0].len())
-            .map(|i| {
-                // The first row is Lambert, which has no lobe.
-                let mut row = vec![self.0[0][i].0.to_owned(), if i == 0 { "1" } else { "3" }.to_owned()];
-                row.extend(self.0.iter().map(|p| fixed(p[i].1.error, 3)));
-                row.extend(
-                    self.0.iter().map(|p| if i == 0 { "–".to_owned() } else { fixed(p[i].1.width, 3) }),
-                );
-                row
-            })
-            .collect();
-        lab.table(
-            &html! {
-                "Log error of fits to three measured paints (1001 pairs of directions each, up to " (LARGEST_ANGLE) "°, brightest band), and the fitted widths α. "
-                "The last three rows are one microfacet model with three distributions; Fresnel term for n = 1.5."
-            },
-            &["Model", "free numbers", "Krylon blue", "Garnet red", "Acryl blue", "α Krylon", "α Garnet", "α Acryl"],
-            &rows,
-        )
+    fn table(&self) -> Markup {
+        let row = |i: usize| {
+            // The first row is Lambert, which has no lobe.
+            let mut row = vec![self.0[0][i].0.to_owned(), if i == 0 { "1" } else { "3" }.to_owned()];
+            row.extend(self.0.iter().map(|p| fixed(p[i].1.error, 3)));
+            row.extend(self.0.iter().map(|p| if i == 0 { "–".to_owned() } else { fixed(p[i].1.width, 3) }));
+            row
+        };
+        let rows: Vec<Vec<String>> = (0..self.0[0].len()).map(row).collect();
+        let paints = ["Krylon blue", "Garnet red", "Acryl blue", "α Krylon", "α Garnet", "α Acryl"];
+        grid(&[&["Model", "free numbers"][..], &paints].concat(), &rows)
     }
 
     /// The errors in the table for one angle of the light.
@@ -133,12 +116,9 @@ impl Paints {
         let mut parts = Vec::new();
         for theta in INCIDENCES {
             let error = |model| self.error_at(lab, paint, model, theta).map(|error| fixed(error, 3));
-            parts.push(format!(
-                "{} for Blinn–Phong, {} for Cook–Torrance and {} for GGX with light at {theta}°",
-                error("Blinn–Phong")?,
-                error("Cook–Torrance")?,
-                error("GGX")?
-            ));
+            let (blinn, cook, ggx) = (error("Blinn–Phong")?, error("Cook–Torrance")?, error("GGX")?);
+            let all = format!("{blinn} for Blinn–Phong, {cook} for Cook–Torrance and {ggx} for GGX");
+            parts.push(format!("{all} with light at {theta}°"));
         }
         Ok(parts.join("; "))
     }
@@ -147,9 +127,9 @@ impl Paints {
 /// The plots of a paint, one for each angle of the light.
 fn plots(lab: &Lab, paint: usize) -> Result<Markup, StudyError> {
     let (id, name) = PAINTS[paint];
-    Ok(html! { div .stack { @for theta in INCIDENCES {
-        div { p .over { "light at " (theta) "°" } (paint_plot(lab, id, name, theta)?) }
-    } } })
+    let plot = |theta: f32| Ok((format!("light at {theta}°"), paint_plot(lab, id, name, theta)?));
+    let plots = INCIDENCES.into_iter().map(plot).collect::<Result<Vec<_>, StudyError>>()?;
+    Ok(stack(&plots))
 }
 
 /// The plot of a paint in the plane of incidence, with the fits.
@@ -169,36 +149,21 @@ fn paint_plot(lab: &Lab, id: &str, name: &str, theta_i: f32) -> Result<Markup, S
             Sample { l: direction(theta_i.into(), 0.0), v: direction(theta, phi), value: 1.0 }
         })
         .collect();
-    let mut series = vec![Series {
-        name: "measured".to_owned(),
-        points: measured.clone(),
-        colour: 6,
-        line: Line::None,
-        mark: Mark::Ring,
-    }];
+    let top = measured.iter().map(|p| p.1).fold(0.1, f64::max);
+    let mut lines = vec![series("measured", measured, (6, Line::None, Mark::Ring))];
     for c in Contestant::all() {
         let found = c.fit(lab.registry, &samples);
         let predicted = c.predict(lab.registry, &c.settings, &found, &dense);
         let points = (-71..=71).map(f64::from).zip(predicted).collect();
-        series.push(Series {
-            name: c.name.to_owned(),
-            points,
-            colour: c.style.0,
-            line: c.style.1,
-            mark: Mark::None,
-        });
+        lines.push(series(c.name, points, (c.style.0, c.style.1, Mark::None)));
     }
-    let top = measured.iter().map(|p| p.1).fold(0.1, f64::max);
-    let plot = Plot {
-        title: format!("BRDF of {name} in the plane of incidence, light at {theta_i} degrees"),
-        x: Axis::new("angle of the viewer (°), mirror side positive", -75.0, 75.0, 7),
-        y: Axis::log("f (sr⁻¹)", 0.01, 10f64.powf((top * 1.5).log10().ceil())),
-        series,
-        size: (720, 360),
-        legend: true,
-        ..Plot::default()
-    };
-    Ok(svg(&plot))
+    Ok(plot(
+        &format!("BRDF of {name} in the plane of incidence, light at {theta_i} degrees"),
+        Axis::new("angle of the viewer (°), mirror side positive", -75.0, 75.0, 7),
+        Axis::log("f (sr⁻¹)", 0.01, 10f64.powf((top * 1.5).log10().ceil())),
+        360,
+        lines,
+    ))
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ use lights_camera_models::{
         settings::{self, Settings},
         state::{Session, Severity},
     },
+    parameter::Outside,
     registry::Registry,
     scene::{
         Object, Scene,
@@ -221,15 +222,15 @@ fn an_open_document_that_becomes_a_pipe_or_a_device_is_kept_and_told_of() {
         let registry = Registry::builtin();
         let stamp = load::file(&file, &registry, Defaults::Ask).expect("valid").stamp;
         let mut disk = DiskFiles::new(Some(file.clone()), Some(stamp));
-        assert_eq!(disk.check(&file, &registry), OnDisk::Same);
+        assert_eq!(disk.check(&file, &registry, Outside::NONE), OnDisk::Same);
         fs::remove_file(&file).expect("removed");
         match kind {
             Kind::Pipe => pipe(&file),
             _ => symlink("/dev/zero", &file).expect("linked"),
         }
         let (found, opened, saved) = bounded("looking and saving", move || {
-            let found = disk.check(&file, &registry);
-            let opened = disk.open(&file, &registry);
+            let found = disk.check(&file, &registry, Outside::NONE);
+            let opened = disk.open(&file, &registry, Outside::NONE);
             let saved = [true, false].map(|over| disk.save(&file, &Scene::default(), &registry, over));
             (found, opened, saved)
         });

@@ -10,7 +10,7 @@ use bevy_egui::egui::{Key, Modifiers};
 use lights_camera_models::{
     document::Edit,
     matching::{self, Match, Request, What, match_view},
-    panel::state::{Action, CompareCommand, Effect, LabEffect, MatchCommand, Matching, Session, Severity},
+    panel::state::{Action, CompareCommand, Effect, MatchCommand, Running, Session, Severity},
     parameter::{Value, Values},
     progress::Progress,
     registry::Registry,
@@ -168,7 +168,7 @@ pub fn run(bench: &mut Bench) {
     let scene = (*bench.session.document).clone();
     bench.session.matched(&scene, (1, What::Lobe), Some(Ok(found)), &bench.registry);
     bench.session.facts.matching =
-        Some(Matching { view: 1, done: 0.4, step: "descending from start 2 of 5".to_owned() });
+        Some(Running { label: 1, done: 0.4, step: "descending from start 2 of 5".to_owned() });
     bench.settle();
 }
 
@@ -223,7 +223,7 @@ fn a_question_without_an_answer_is_closed() {
 fn the_progress_of_a_match_is_shown_and_it_can_be_stopped() {
     let mut bench = compared();
     bench.session.facts.matching =
-        Some(Matching { view: 1, done: 0.4, step: "descending from start 2 of 5".to_owned() });
+        Some(Running { label: 1, done: 0.4, step: "descending from start 2 of 5".to_owned() });
     bench.settle();
     assert!(bench.says("Matching B to A"));
     bench.apply(Action::Match(MatchCommand::Ask(1)));
@@ -236,7 +236,7 @@ fn the_progress_of_a_match_is_shown_and_it_can_be_stopped() {
 /// Runs a match in a windowless window, until it reports the result.
 fn matched(app: &mut App, effects: Vec<Effect>) -> (Severity, String) {
     let before = app.world().resource::<Session>().messages.added();
-    app.world_mut().resource_mut::<Messages<LabEffect>>().write_batch(effects.into_iter().map(LabEffect));
+    app.world_mut().resource_mut::<Messages<Effect>>().write_batch(effects);
     for _ in 0..6000 {
         app.update();
         let messages = &app.world().resource::<Session>().messages;
@@ -277,7 +277,7 @@ fn a_match_of_the_window_is_one_step_that_undo_brings_back_and_cancel_leaves_eve
     assert_eq!(*session.document, *before);
 
     // A scene that changes meanwhile is a different one.
-    app.world_mut().resource_mut::<Messages<LabEffect>>().write(LabEffect(start(What::Picture)));
+    app.world_mut().resource_mut::<Messages<Effect>>().write(start(What::Picture));
     app.update();
     let edit = Edit::set(Part::Variant(0), Variant::exposure, 1.0);
     app.world_mut().resource_mut::<Session>().apply(Action::Edit(edit), &registry);

@@ -9,12 +9,13 @@ use lights_camera_models::{
     channel::DebugChannel,
     compare::metric::{self, Metric},
     curves::Kind,
-    explain, lesson,
+    explain,
+    lesson::{self, Lesson},
     light::{MAX_LIGHTS, ies, panorama},
     matching::What,
     optics::{Frame, colour::Encoding},
     panel::{Panels, command::declared, state::Session},
-    parameter::{MAX_FILES_BYTES, MAX_FILES_NUMBERS, Parameter, Value, Values},
+    parameter::{MAX_FILES_BYTES, MAX_FILES_NUMBERS, Outside, Parameter, Value, Values},
     progress::Progress,
     reference::{self, Settings, Until},
     reflection::ModelEntry,
@@ -638,7 +639,7 @@ fn quantities() -> String {
 #[test]
 fn the_lesson_of_the_manual_is_sound() {
     let registry = Registry::builtin();
-    let lesson = lesson::Lesson::read(&root().join("examples/lesson.md"), &registry).expect("sound");
+    let lesson = Lesson::read(&root().join("examples/lesson.md"), &registry, Outside::NONE).expect("sound");
     assert!(lesson.steps.len() > 2 && lesson.steps.iter().filter(|step| step.task.is_some()).count() > 1);
     // The manual has every kind of block.
     let manual = fs::read_to_string(root().join("docs/lessons.md")).expect("there");

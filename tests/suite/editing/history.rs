@@ -7,7 +7,7 @@ use glam::Vec3;
 use lights_camera_models::{
     document::{Document, Edit, Extent, Selection},
     panel::state::{Action, Session},
-    parameter::{ParameterKind, Value},
+    parameter::{ParameterKind, Value, kind::number::Number},
     registry::Registry,
     scene::{Display, Light, Object, Observer, Part, Scene, SceneSize, check},
 };
@@ -453,7 +453,7 @@ fn a_light_of_any_type_becomes_any_other_and_is_valid_throughout() {
                     Edit::set(Part::Light(0), Light::light_type, entry.declaration.id.to_owned()),
                 );
                 for p in entry.parameters {
-                    if let ParameterKind::Number { min, .. } = p.kind {
+                    if let ParameterKind::Number(Number { min, .. }) = p.kind {
                         // Another value than the previous type may have left.
                         let known = document.lights[0].parameters.number(p);
                         let value = if known == min + 0.5 { min + 0.25 } else { min + 0.5 };

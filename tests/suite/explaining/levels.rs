@@ -21,7 +21,7 @@ use crate::{
 fn explaining(scene: Scene) -> Bench {
     let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
     bench.size = vec2(1600.0, 2000.0);
-    bench.session.view.bottom_height = 1100.0;
+    bench.session.settings.bottom_height = 1100.0;
     bench.apply(Action::Select(Selection::Object(0)));
     bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
     bench.settle();

@@ -31,7 +31,7 @@ fn bench(model: &str, tab: &str) -> Bench {
         Scene { reflection_model: model.to_owned(), shading_model: "phong".to_owned(), ..Scene::default() };
     let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
     bench.size = vec2(1600.0, 1200.0);
-    bench.session.view.bottom_height = 420.0;
+    bench.session.settings.bottom_height = 420.0;
     bench.apply(Action::Select(Selection::Object(0)));
     bench.apply(Action::View(ViewChange::BottomTab(tab.to_owned())));
     bench.settle();
@@ -43,7 +43,7 @@ fn explaining(model: &str) -> Bench {
     let mut bench = bench(model, EXPLAIN_TAB);
     // Everything about a light is visible, including its angles.
     bench.size = vec2(1600.0, 2000.0);
-    bench.session.view.bottom_height = 1000.0;
+    bench.session.settings.bottom_height = 1000.0;
     bench.settle();
     let at = bench.area.rect.center() + vec2(13.0, 7.0);
     bench.frame(vec![Event::PointerMoved(at)]);
@@ -484,7 +484,7 @@ fn pictures_of_what_lights() -> Result<(), Box<dyn std::error::Error>> {
                 plotting(model, kind)
             };
             bench.size = vec2(1600.0, 1000.0);
-            bench.session.view.theme = theme;
+            bench.session.settings.theme = theme;
             if what == "curve" {
                 let of =
                     Of::Model { id: "phong".to_owned(), values: Values::default(), encoding: Encoding::Srgb };
@@ -535,8 +535,8 @@ fn pictures_of_explain() -> Result<(), Box<dyn std::error::Error>> {
             };
             let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
             bench.size = vec2(width, height);
-            bench.session.view.theme = theme;
-            bench.session.view.scale = scale;
+            bench.session.settings.theme = theme;
+            bench.session.settings.scale = scale;
             bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
             bench.settle();
             let middle = bench.area.rect.center() + vec2(23.0, -17.0);
@@ -565,7 +565,7 @@ fn explain_has_the_columns_that_have_room() {
         let scene = Scene { shading_model: "gouraud".to_owned(), ..Scene::default() };
         let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
         bench.size = size;
-        bench.session.view.scale = scale;
+        bench.session.settings.scale = scale;
         bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
         bench.settle();
         // The middle of the picture, even if something is written over it.

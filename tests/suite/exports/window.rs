@@ -11,9 +11,7 @@ use lights_camera_models::{
     export::FORMS,
     panel::{
         export::SIZE,
-        state::{
-            Action, Answer, Effect, ExportCommand, Exporting, LabEffect, Pin, Question, Session, Severity,
-        },
+        state::{Action, Answer, Effect, ExportCommand, Pin, Question, Running, Session, Severity},
     },
     window::LabPlugins,
 };
@@ -35,12 +33,18 @@ fn the_menu_offers_every_form_and_a_dialog_asks_for_the_place() {
 #[test]
 fn nothing_is_replaced_unasked() {
     let mut bench = Bench::new(Session::default());
-    bench.session.export_exists("bevy", "/somewhere/scene_bevy".into());
+    bench
+        .session
+        .questions
+        .ask(Question::ReplaceExport { form: "bevy", path: "/somewhere/scene_bevy".into() });
     bench.settle();
     assert!(bench.says("/somewhere/scene_bevy exists. Replace it with the export?"));
     bench.apply(Action::Answer(Answer::Cancel));
     assert_eq!(bench.effects, []);
-    bench.session.export_exists("bevy", "/somewhere/scene_bevy".into());
+    bench
+        .session
+        .questions
+        .ask(Question::ReplaceExport { form: "bevy", path: "/somewhere/scene_bevy".into() });
     bench.apply(Action::Answer(Answer::Overwrite));
     let path = "/somewhere/scene_bevy".into();
     assert_eq!(bench.effects, [Effect::Export { form: "bevy", path, overwrite: true }]);
@@ -50,7 +54,7 @@ fn nothing_is_replaced_unasked() {
 fn the_progress_is_shown_and_can_be_stopped() {
     let mut bench = Bench::new(Session::default());
     assert!(!bench.says("Exporting"));
-    bench.session.facts.export = Some(Exporting { name: "Web page", done: 0.5, step: "packing".to_owned() });
+    bench.session.facts.export = Some(Running { label: "Web page", done: 0.5, step: "packing".to_owned() });
     bench.settle();
     assert!(bench.says("Exporting as Web page"));
     // One at a time.
@@ -75,7 +79,7 @@ fn the_shader_of_the_object_goes_to_the_clipboard() {
 /// Runs an export in a windowless window, until it reports the result.
 fn export(app: &mut App, effect: Effect) -> Vec<(Severity, String)> {
     let before = app.world().resource::<Session>().messages.len();
-    app.world_mut().resource_mut::<Messages<LabEffect>>().write(LabEffect(effect));
+    app.world_mut().resource_mut::<Messages<Effect>>().write(effect);
     for _ in 0..3000 {
         app.update();
         let session = app.world().resource::<Session>();

@@ -19,6 +19,7 @@ use lights_camera_models::{
         progress, settings,
         state::Session,
     },
+    parameter::Outside,
     recovery::Store,
     registry::Registry,
     scene::load::{self, Defaults},
@@ -60,7 +61,7 @@ fn lesson(bytes: &[u8]) -> Result<(), String> {
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     let file = folder.path().join("a.md");
     fs::write(&file, bytes).map_err(|e| e.to_string())?;
-    let read = Lesson::read(&file, &REGISTRY);
+    let read = Lesson::read(&file, &REGISTRY, Outside::NONE);
     read.map(|lesson| drop(lesson.to_text())).map_err(|problems| {
         assert!(problems.len() <= 200, "{} problems", problems.len());
         problems.iter().map(|p| p.annotated("a.md")).collect()

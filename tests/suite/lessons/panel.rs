@@ -13,7 +13,7 @@ use lights_camera_models::{
     panel::{
         self, effects,
         state::{
-            Action, Answer, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Past, Pin,
+            Action, Answer, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Past, Pick, Pin,
             PlotCommand, Question, Session, ViewChange,
         },
         theme::DARK,
@@ -292,7 +292,7 @@ fn what_would_lose_the_own_document_asks_about_it_and_not_about_the_lesson() {
         match action {
             Action::Quit => assert!(effects.contains(&Effect::Quit)),
             Action::OpenDialog => {
-                assert!(effects.contains(&Effect::PickOpen));
+                assert!(effects.contains(&Effect::Pick(Pick::Open)));
                 bench.settle();
                 assert!(bench.session.lesson.is_none(), "while the dialog may still be cancelled");
                 bench.session.questions.not_opened();
@@ -342,7 +342,7 @@ fn saving_in_a_lesson_writes_a_copy_and_the_own_file_stays_known() {
     let mut bench = desk.bench(session);
     bench.session.lesson.as_ref().expect("a lesson");
     apply(&mut bench, Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")));
-    assert_eq!(bench.session.apply(Action::Save, &registry), [Effect::PickSave]);
+    assert_eq!(bench.session.apply(Action::Save, &registry), [Effect::Pick(Pick::Save)]);
     let copy = desk.folder.path().join("copy.json");
     apply_with(&mut bench, Action::SaveAs(copy.clone()), &mut files);
     let read = load::file(&copy, &registry, Defaults::Refuse).expect("legal").scene;
@@ -352,7 +352,7 @@ fn saving_in_a_lesson_writes_a_copy_and_the_own_file_stays_known() {
     // It is replaced only after a question.
     let typed = desk.folder.path().join("copy");
     apply_with(&mut bench, Action::SaveAs(typed), &mut files);
-    assert_eq!(bench.session.questions.open, Some(Question::ReplaceScene { path: copy.clone() }));
+    assert_eq!(bench.session.questions.open, Some(Question::ReplaceScene(copy.clone())));
     assert!(bench.says("Replace it with a copy of this scene?"));
     apply_with(
         &mut bench,
@@ -894,7 +894,7 @@ fn a_presentation_keeps_the_text_in_large_letters_beside_the_picture() {
 fn the_width_of_the_lesson_and_that_of_the_scene_list_are_kept_apart() {
     let desk = Desk::new();
     let mut bench = desk.bench(Session::default());
-    let (list, lesson) = (bench.session.view.left_width, bench.session.view.lesson_width);
+    let (list, lesson) = (bench.session.settings.left_width, bench.session.settings.lesson_width);
     let edge = bench.area.rect.left();
     let (from, to) = (pos2(edge, 300.0), pos2(edge + 60.0, 300.0));
     let press = |pos, pressed| Event::PointerButton {
@@ -911,9 +911,9 @@ fn the_width_of_the_lesson_and_that_of_the_scene_list_are_kept_apart() {
     bench.frame(Vec::new());
     bench.frame(vec![press(to, false)]);
     bench.settle();
-    let view = &bench.session.view;
-    assert!((view.lesson_width - lesson - 60.0).abs() < 4.0, "{}", view.lesson_width);
-    assert_eq!(view.left_width, list);
+    let kept = &bench.session.settings;
+    assert!((kept.lesson_width - lesson - 60.0).abs() < 4.0, "{}", kept.lesson_width);
+    assert_eq!(kept.left_width, list);
     assert!(bench.effects.contains(&Effect::SaveSettings));
     go(&mut bench, LessonCommand::Leave);
     assert!((bench.area.rect.left() - list).abs() < 2.0);
@@ -1044,7 +1044,7 @@ fn the_start_has_three_doors() {
         }
         let model = if scale == 100 { "New reflection model…" } else { "New model…" };
         bench.click(model);
-        assert!(bench.session.draft.is_some());
+        assert!(bench.session.authoring.draft.is_some());
         bench.apply(Action::Model(lights_camera_models::panel::state::ModelCommand::Cancel));
         bench.click("All lessons ▾");
         assert!(bench.find(&format!("Lesson: {}", first.title)).is_some());

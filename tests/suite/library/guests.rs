@@ -169,13 +169,13 @@ fn a_section_folds_hides_and_comes_back_from_the_menu_and_settings_keep_it() {
         bench.settle();
         bench
     };
-    let other = again(bench.session.settings());
+    let other = again(bench.session.settings.clone());
     assert!(other.find("Guest").is_some() && !other.says("guest of 1"), "still folded");
     bench.click("Guest");
     assert!(bench.says("guest of 1"));
     bench.click("Hide “Guest”; View › Panels shows it again");
     assert!(bench.find("Guest").is_none());
-    let other = again(bench.session.settings());
+    let other = again(bench.session.settings.clone());
     assert!(other.find("Guest").is_none(), "still hidden");
     bench.apply(Action::View(ViewChange::Left(false)));
     bench.click("View");
@@ -183,7 +183,7 @@ fn a_section_folds_hides_and_comes_back_from_the_menu_and_settings_keep_it() {
     bench.click("Guest");
     assert!(bench.says("guest of 1") && bench.session.view.left_open);
     // The menu is still open: its entry hides it.
-    assert!(!bench.session.view.hides("guest"));
+    assert!(!bench.session.settings.hides("guest"));
     bench.apply(Action::View(ViewChange::Panel("guest".to_owned(), false)));
     assert!(!bench.says("guest of 1"));
 }
@@ -196,7 +196,7 @@ fn the_tab_of_a_guest_is_open_again_after_a_restart() {
     bench.click("Panels ⏵");
     bench.click("Guest");
     assert!(bench.says("guest of 1"));
-    let settings = bench.session.settings();
+    let settings = bench.session.settings.clone();
     assert_eq!(settings.guest_tab.as_deref(), Some("guest"));
     for (known, open) in [(true, true), (false, false)] {
         let mut session = Session::default();
@@ -209,10 +209,10 @@ fn the_tab_of_a_guest_is_open_again_after_a_restart() {
         panels.settle();
         assert_eq!(panels.session.view.bottom_open, open, "a window without it shows no strip");
         assert_eq!(panels.says("guest of 1"), open);
-        assert_eq!(panels.session.settings().guest_tab, settings.guest_tab, "nor does it forget");
+        assert_eq!(panels.session.settings.guest_tab, settings.guest_tab, "nor does it forget");
     }
     bench.apply(Action::View(ViewChange::Bottom(false)));
-    assert_eq!(bench.session.settings().guest_tab, None);
+    assert_eq!(bench.session.settings.guest_tab, None);
 }
 
 #[test]

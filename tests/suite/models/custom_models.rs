@@ -11,7 +11,7 @@ use lights_camera_models::{
         colour::{BACKGROUND, Encoding},
         lobes::{Lobe, Lobes},
     },
-    parameter::{BASE_COLOUR, ParameterKind, Value, Values},
+    parameter::{BASE_COLOUR, Parameter, ParameterKind, Value, Values, kind::integer::Integer},
     reference,
     reflection::{
         Ambient, ModelEntry,
@@ -339,11 +339,13 @@ fn what_is_left_out_has_a_sensible_value() {
     };
     assert_eq!(*colour, BASE_COLOUR);
     assert_eq!((rim.symbol, rim.label), ("α_{rim}", "alpha rim"));
-    assert_eq!(rim.kind, ParameterKind::Number { min: 0.0, max: 1.0, default: 0.5 });
+    assert_eq!(rim.kind, Parameter::number("", 0.0..=1.0, 0.5).kind);
     assert_eq!(roughness.label, "roughness");
-    assert_eq!(roughness.kind, ParameterKind::Number { min: 0.0, max: 1.0, default: 0.2 });
-    assert!(matches!(steps.kind, ParameterKind::Integer { min: 1, max: None, default: 1, .. }), "{steps:?}");
-    assert_eq!(kind.kind, ParameterKind::Choice { options: &[("a", "The first")], default: 0 });
+    assert_eq!(roughness.kind, Parameter::number("", 0.0..=1.0, 0.2).kind);
+    let ParameterKind::Integer(Integer { min: 1, max: None, default: 1, .. }) = steps.kind else {
+        panic!("{steps:?}")
+    };
+    assert_eq!(kind.kind, Parameter::choice("", &[("a", "The first")], 0).kind);
     assert_eq!(width.rule(), "greater than 0 and at most 4");
 }
 

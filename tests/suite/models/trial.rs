@@ -5,6 +5,7 @@ use std::{
     fs,
     os::unix::fs::PermissionsExt as _,
     path::{Path, PathBuf},
+    process::Command,
     thread,
     time::{Duration, Instant},
 };
@@ -160,4 +161,28 @@ fn what_cannot_be_tried_is_refused_and_tried_again_with_the_next_save() {
     lab.save("loop.wgsl", &dark);
     assert!(settled(&mut lab) != before);
     assert_eq!(lab.troubles(), []);
+}
+
+#[test]
+fn a_new_model_is_fast_enough_under_light_with_extent() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = r#"{
+        "scene_size": { "height": 10, "width": 10, "depth": 10 },
+        "reflection_model": "velvet",
+        "shading_model": "phong",
+        "lights": [{ "type": "rectangle", "position": [7, 8, 9], "direction": [-2, -3, -4], "intensity": 20 }],
+        "observer": { "position": [5, 5, 9.5], "direction": [0, 0, -1] },
+        "objects": [{ "type": "sphere", "position": [5, 5, 5], "size": 4 }]
+    }"#;
+    fs::write(folder.path().join("softbox.json"), scene).expect("written");
+    let size = ["--renderer", "gpu", "--size", "32x18", "-o", "p.png"];
+    for arguments in [&["models", "new", "velvet"][..], &[&["render", "softbox.json"], &size[..]].concat()] {
+        let run = Command::new(lcm())
+            .args(arguments)
+            .args(["--models", "models"])
+            .current_dir(folder.path())
+            .output()
+            .expect("it starts");
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    }
 }

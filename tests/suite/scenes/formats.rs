@@ -7,7 +7,7 @@ use lights_camera_models::{
     document::Edit,
     panel::{
         effects,
-        state::{Action, Answer, Effect, Session},
+        state::{Action, Answer, Effect, Pick, Session},
     },
     parameter::{ALPHA, BASE_COLOUR, K_D, Value},
     registry::Registry,
@@ -252,11 +252,11 @@ fn a_scene_whose_format_can_only_be_read_is_saved_as_json_and_quitting_waits_for
     fs::write(&path, text).expect("written");
     let mut desk = Desk::open(&path, registry());
     assert_eq!(desk.session.document.objects.len(), 2);
-    assert!(desk.session.recent_files[0].ends_with("balls.spheres"));
+    assert!(desk.session.settings.recent_files[0].ends_with("balls.spheres"));
     desk.act(Action::Edit(Edit::set(Part::Scene, Scene::name, "Balls")));
     desk.act(Action::Quit);
     desk.act(Action::Answer(Answer::Save));
-    assert!(desk.left.contains(&Effect::PickSave), "{:?}", desk.left);
+    assert!(desk.left.contains(&Effect::Pick(Pick::Save)), "{:?}", desk.left);
     let said = &desk.session.messages.last().expect("said").text;
     assert!(
         said.contains("balls.spheres was not written: files of the format list of spheres can only be read"),

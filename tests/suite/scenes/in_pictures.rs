@@ -7,7 +7,7 @@ use flate2::{Compression, Crc, write::ZlibEncoder};
 use lights_camera_models::{
     caption,
     document::Edit,
-    panel::state::{Action, Effect, Session},
+    panel::state::{Action, Effect, Pick, Session},
     parameter::Value,
     registry::Registry,
     scene::{
@@ -197,7 +197,7 @@ fn a_scene_from_a_picture_is_saved_as_json() {
     assert_eq!(desk.session.title(), "Gold");
     desk.act(Action::Edit(Edit::set(Part::Scene, Scene::name, "Silver")));
     desk.act(Action::Save);
-    assert!(desk.left.contains(&Effect::PickSave), "{:?}", desk.left);
+    assert!(desk.left.contains(&Effect::Pick(Pick::Save)), "{:?}", desk.left);
     let said = &desk.session.messages.last().expect("said").text;
     assert!(
         said.contains("gold.png was not written: files of the format PNG picture can only be read"),

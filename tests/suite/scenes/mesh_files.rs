@@ -15,7 +15,7 @@ use lights_camera_models::{
         colour::{BACKGROUND, Encoding},
     },
     panel::state::{Action, Effect, Session},
-    parameter::{FileFormat, NamedFile, Parameter, ParameterKind, Value},
+    parameter::{FileFormat, NamedFile, Parameter, Value},
     reference,
     registry::Registry,
     render::capture::gpu::{GpuRenderer, Output},
@@ -125,10 +125,7 @@ fn mesh_of(scene: &Scene) -> PolygonMesh {
 
 fn parameter() -> (&'static Parameter, &'static FileFormat) {
     let parameter = Registry::builtin().shape("mesh").and_then(|s| s.parameter("path")).expect("a file");
-    match parameter.kind {
-        ParameterKind::File { format, .. } => (parameter, format),
-        _ => panic!("{parameter:?}"),
-    }
+    (parameter, parameter.kind.format().expect("a file"))
 }
 
 #[test]
@@ -470,8 +467,10 @@ fn the_name_of_a_file_is_kept_as_written_and_saving_elsewhere_keeps_the_file() {
     let said = session.messages.iter().map(|m| m.text.clone()).collect::<Vec<_>>().join("\n");
     assert!(said.contains("roof.obj, outside its folder") && said.contains("--allow-outside"), "{said}");
     // The window that wrote it still reads it; nobody else does unasked.
-    let far = load::file(&to, &registry, Defaults::Refuse).expect("legal").scene;
+    let far = load::file(&to, &registry, Defaults::Refuse.allowing(&session.outside)).expect("legal").scene;
     assert_eq!(file_of(&far).path(), Some(&*folder.path().join("roof.obj")));
+    let refused = load::file(&to, &registry, Defaults::Refuse).expect_err("nobody allowed it").to_string();
+    assert!(refused.contains("it is outside the folder"), "{refused}");
     let run = lcm_in(other.path(), &["check", "room.json"], b"");
     assert!(run.status == Some(1) && run.err.contains("it is outside the folder"), "{}", run.err);
     assert_eq!(lcm_in(other.path(), &["check", "room.json", "--allow-outside"], b"").status, Some(0));
@@ -605,7 +604,7 @@ fn what_is_dropped_is_added_to_the_scene_or_opened() {
     write(&Effect::AdoptModel(at("velvet.wgsl")), &mut fresh, &registry);
     let copy = models.path().join("velvet.wgsl");
     assert_eq!(fs::read_to_string(&copy).expect("copied"), "// a model");
-    assert_eq!(fresh.wanted_model.as_deref(), Some("velvet"));
+    assert_eq!(fresh.authoring.wanted_model.as_deref(), Some("velvet"));
     fs::write(&copy, "// mine").expect("written");
     write(&Effect::AdoptModel(at("velvet.wgsl")), &mut fresh, &registry);
     assert_eq!(fs::read_to_string(&copy).expect("left alone"), "// mine");

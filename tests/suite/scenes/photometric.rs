@@ -10,7 +10,7 @@ use lights_camera_models::{
         colour::{BACKGROUND, Encoding},
     },
     panel::state::{Action, Session},
-    parameter::{FileFormat, NamedFile, ParameterKind, Value},
+    parameter::{FileFormat, NamedFile, Value},
     reference,
     registry::Registry,
     render::capture::gpu::{GpuRenderer, Output},
@@ -108,11 +108,7 @@ fn both_renderers_shine_as_the_file_says_and_follow_it() {
 
 /// The format of the lamp's file parameter.
 fn registry_file() -> Option<&'static FileFormat> {
-    let parameter = Registry::builtin().light("photometric")?.parameter("file")?;
-    match parameter.kind {
-        ParameterKind::File { format, .. } => Some(format),
-        _ => None,
-    }
+    Registry::builtin().light("photometric")?.parameter("file")?.kind.format()
 }
 
 #[test]
@@ -166,7 +162,7 @@ fn a_scene_that_is_saved_elsewhere_still_finds_its_file() {
     let save = |session: &mut Session, to: &Path| {
         session.apply(Action::SaveAs(to.to_owned()), &registry);
         fs::write(to, save::to_json(&session.document, None, &registry)).expect("written");
-        load::file(to, &registry, Defaults::Refuse)
+        load::file(to, &registry, Defaults::Refuse.allowing(&session.outside))
             .map(|loaded| file_of(&loaded.scene).clone())
             .expect("legal")
     };

@@ -11,8 +11,12 @@ use lights_camera_models::{
         files::{Files as _, OnDisk},
         state::{Action, Answer, Effect, Offer, Question, Session, Severity, ViewChange},
     },
+    parameter::Outside,
     registry::Registry,
-    render::entities::{CurrentScene, SceneEntities, reconcile},
+    render::{
+        entities::{CurrentScene, SceneEntities},
+        reconcile::reconcile,
+    },
     scene::{
         Object, Part, Scene,
         load::{self, Defaults, Stamp},
@@ -207,11 +211,11 @@ fn our_own_save_is_no_change_on_disk() {
     let other = desk.folder.path().join("other.json");
     desk.act(Action::SaveAs(other.clone()));
     desk.left.clear();
-    let looked = desk.files.check(&other, &desk.registry);
+    let looked = desk.files.check(&other, &desk.registry, Outside::NONE);
     assert_eq!(looked, OnDisk::Same);
     // The same bytes from someone else's hand are the same; others are not.
     fs::write(&other, text(&three())).unwrap();
-    assert!(matches!(desk.files.check(&other, &desk.registry), OnDisk::Changed { .. }));
+    assert!(matches!(desk.files.check(&other, &desk.registry, Outside::NONE), OnDisk::Changed { .. }));
 }
 
 #[test]
@@ -651,7 +655,7 @@ fn what_can_be_read_only_once_is_not_read_again() {
     assert!(made.success());
     let mut files = DiskFiles::new(Some(pipe.clone()), None);
     // Reading would wait for ever.
-    assert_eq!(files.check(&pipe, &Registry::builtin()), OnDisk::Same);
+    assert_eq!(files.check(&pipe, &Registry::builtin(), Outside::NONE), OnDisk::Same);
 }
 
 /// A window that continues with a copy of the file from an earlier one, with the file's state as known then.

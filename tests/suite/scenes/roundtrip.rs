@@ -5,7 +5,7 @@ use std::{fs, time::Instant};
 use glam::Vec3;
 use lights_camera_models::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    parameter::{Parameter, ParameterKind, Value, Values},
+    parameter::{Parameter, ParameterKind, Value, Values, kind::integer::Integer},
     registry::Registry,
     scene::{
         Comparison, Display, Light, Object, Observer, Scene, SceneSize, Variant, check,
@@ -103,20 +103,18 @@ fn direction() -> impl Strategy<Value = Vec3> {
 }
 
 fn parameter(p: &'static Parameter) -> BoxedStrategy<Value> {
-    match p.kind {
-        ParameterKind::Number { min, max, .. } => number(min, max).prop_map(Value::Number).boxed(),
-        ParameterKind::Integer { min, max, .. } => {
-            (min..=max.unwrap_or(i64::MAX)).prop_map(Value::Integer).boxed()
-        }
-        ParameterKind::Colour { .. } => any::<[u8; 3]>().prop_map(Value::Colour).boxed(),
-        ParameterKind::Triple { min, max, .. } => {
-            [number(min, max), number(min, max), number(min, max)].prop_map(Value::Triple).boxed()
-        }
-        ParameterKind::Choice { options, .. } => {
-            prop::sample::select(options).prop_map(|(id, _)| Value::Choice(id.into())).boxed()
-        }
-        ParameterKind::File { .. } => Just(p.default_value()).boxed(),
+    let Some(range) = p.kind.limits() else {
+        return prop::sample::select([vec![p.default_value()], p.kind.ends()].concat()).boxed();
+    };
+    if let ParameterKind::Integer(Integer { min, max, .. }) = p.kind {
+        return (min..=max.unwrap_or(i64::MAX)).prop_map(Value::Integer).boxed();
     }
+    let (least, most) = (range.min, range.max);
+    let one = || match range.whole {
+        true => (least as i64..=most as i64).prop_map(|v| v as f64).boxed(),
+        false => number(least as f32, most as f32).prop_map(f64::from).boxed(),
+    };
+    [one(), one(), one()].prop_map(move |numbers| p.kind.of_numbers(numbers)).boxed()
 }
 
 /// Some of the parameters, with legal values.

@@ -266,7 +266,7 @@ fn what_is_said_of_a_model_does_not_hide_the_list() {
 fn what_is_typed_and_what_is_selected_can_be_seen_in_both_themes() {
     for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
         let (mut bench, _folder) = open(theme, 100);
-        let palette = Palette::of(&bench.session.view);
+        let palette = Palette::of(&bench.session.settings);
         select(&mut bench, "shapes.json");
         let selected =
             bench.shapes().into_iter().any(|s| matches!(s, Shape::Rect(r) if r.fill == palette.accent));

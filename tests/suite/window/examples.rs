@@ -7,8 +7,9 @@ use lights_camera_models::{
     document::Edit,
     panel::{
         preview::{self, Preview, Source},
-        state::{Action, Answer, Effect, Question, Session, ViewChange},
+        state::{Action, Answer, Effect, Pick, Question, Session, ViewChange},
     },
+    parameter::Outside,
     reference::{self, LightSamples, Settings},
     registry::Registry,
     scene::{Part, Scene, examples::EXAMPLES},
@@ -45,7 +46,7 @@ fn an_example_is_opened_from_the_menu_as_a_document_in_no_file() {
     assert!(bench.effects.contains(&Effect::DocumentChanged));
     // Saving asks for a path.
     let effects = bench.session.apply(Action::Save, &bench.registry);
-    assert_eq!(effects, [Effect::PickSave]);
+    assert_eq!(effects, [Effect::Pick(Pick::Save)]);
 }
 
 #[test]
@@ -203,7 +204,7 @@ fn every_example_gets_its_small_picture() {
     let mut bench = Bench::new(Session::default());
     let registry = bench.registry.clone();
     until(&mut bench, "all pictures", |bench| {
-        let ready = |i| match preview::of(&bench.ctx, &Source::Example(i), &registry) {
+        let ready = |i| match preview::of(&bench.ctx, &Source::Example(i), &registry, Outside::NONE) {
             Preview::Waiting => false,
             Preview::Ready(shown) => {
                 assert_eq!(shown.name.as_deref(), Some(EXAMPLES[i].name.as_str()));

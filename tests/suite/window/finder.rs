@@ -8,7 +8,7 @@ use lights_camera_models::{
         command::{Command, Menu, all, declared, with_keys},
         keys::bindings,
         settings::Settings,
-        state::{Action, Effect, LessonSource, PictureCommand, Session, ViewChange},
+        state::{Action, Effect, LessonSource, Session, ViewChange},
     },
     registry::Registry,
     scene::Scene,
@@ -63,7 +63,7 @@ fn a_few_letters_and_enter_run_a_command_which_can_be_undone() {
     run(&mut bench, "chan dep");
     assert!(bench.session.channel_of(0).is_some_and(|channel| channel.id() == "depth"));
     run(&mut bench, "theme light");
-    assert!(bench.session.settings().theme != Settings::default().theme);
+    assert!(bench.session.settings.theme != Settings::default().theme);
     run(&mut bench, "home");
     assert!(bench.effects.contains(&Effect::HomeView));
 }
@@ -127,7 +127,7 @@ fn arrows_walk_escape_closes_and_what_cannot_be_used_says_why() {
     write(&mut bench, "theme");
     bench.key(Key::ArrowDown, Modifiers::NONE);
     bench.key(Key::Enter, Modifiers::NONE);
-    assert!(bench.session.settings().theme != Settings::default().theme, "the second of dark and light");
+    assert!(bench.session.settings.theme != Settings::default().theme, "the second of dark and light");
     // The same key closes it, and what was run last comes first.
     open(&mut bench);
     assert!(bench.texts().iter().any(|text| text == "Used last"));
@@ -301,7 +301,7 @@ fn wrong_keys_are_reported_once_change_nothing_and_stay_in_the_settings() {
     }
     bench.letter(Key::J, "j");
     assert!(bench.effects.contains(&Effect::HomeView), "what is right is in force");
-    let written = serde_json::to_string(&bench.session.settings()).expect("settings");
+    let written = serde_json::to_string(&bench.session.settings).expect("settings");
     let compact: String = json.split_whitespace().collect();
     assert!(written.contains(&compact), "{written}");
     bench.settle();
@@ -331,7 +331,7 @@ fn a_command_may_lose_its_key_and_another_get_one() {
 #[test]
 fn a_key_that_is_held_blinks_until_it_is_let_go_of() {
     let mut bench = with_keys_of(r#"{ "blink": "B" }"#);
-    let action = Action::Picture(PictureCommand::Copy(None));
+    let action = Action::Do(Effect::Picture { view: None, file: None, overwrite: false });
     assert!(bindings(&bench.session, &bench.registry).iter().any(|b| b.action == action));
     bench.apply(Action::Compare(lights_camera_models::panel::state::CompareCommand::Layout(
         lights_camera_models::scene::comparison::Layout::Blink,

@@ -175,7 +175,7 @@ fn a_light_is_turned_and_its_cone_opened() {
     let mut bench = bench(scene());
     bench.apply(Action::Select(Selection::Light(0)));
     for kind in HandleMode::ALL {
-        bench.apply(mode(kind));
+        bench.apply(mode(*kind));
         handle(&bench, "direction of Spot 1");
         handle(&bench, "cone of Spot 1");
     }

@@ -48,14 +48,17 @@ fn laws_are_checked_in_another_process_and_shown() {
     let folders = Folders { models: Some(nowhere), ..Folders::default() };
     let found = outcome("lambert", &folders, program());
     assert_eq!(found.as_ref().map(|r| r.laws.len()), Ok(3), "{found:?}");
-    bench.session.laws_checked("phong", found.clone());
-    assert!(bench.session.laws.as_ref().is_some_and(|check| check.outcome.is_none()), "another model");
+    bench.session.authoring.laws_checked("phong", found.clone());
+    assert!(
+        bench.session.authoring.laws.as_ref().is_some_and(|check| check.outcome.is_none()),
+        "another model"
+    );
     let mut broken = found.clone().expect("was checked");
     broken.laws[1].kept = false;
-    bench.session.laws_checked("lambert", Ok(broken));
+    bench.session.authoring.laws_checked("lambert", Ok(broken));
     bench.settle();
     assert!(bench.says("Energy conserving: claimed and broken") && bench.says("No errors, but broken laws"));
-    bench.session.laws_checked("lambert", found);
+    bench.session.authoring.laws_checked("lambert", found);
     bench.settle();
     assert!(!bench.says("broken laws"));
     for law in ["Reciprocal", "Energy conserving", "Non-negative"] {
@@ -65,7 +68,7 @@ fn laws_are_checked_in_another_process_and_shown() {
     bench.session.shaders.last = Some(Reloaded { file: "terms.wgsl".to_owned(), milliseconds: 1.0 });
     bench.settle();
     assert!(bench.says("Findings from before the last change"));
-    bench.session.laws_checked("lambert", Err("the check took longer than 120 s".to_owned()));
+    bench.session.authoring.laws_checked("lambert", Err("the check took longer than 120 s".to_owned()));
     bench.settle();
     assert!(bench.says("The laws were not checked: the check took longer"));
 }

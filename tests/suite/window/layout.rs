@@ -39,7 +39,7 @@ fn panels_give_way_to_the_picture_and_the_width_of_a_user_counts() {
         bench.settle();
         assert_eq!(bench.area.rect, picture);
         // The edge of the properties is dragged to the left.
-        let view = bench.session.view.clone();
+        let kept = bench.session.settings.clone();
         let (from, to) = (pos2(picture.right(), 200.0), pos2(picture.right() - 60.0, 200.0));
         let press = |pos, pressed| Event::PointerButton {
             pos,
@@ -59,8 +59,11 @@ fn panels_give_way_to_the_picture_and_the_width_of_a_user_counts() {
         let wanted = (whole - to.x).min(most);
         let right = whole - bench.area.rect.right();
         assert!((right - wanted).abs() < 4.0, "{scale} %: {right}, not {wanted}");
-        assert!((bench.session.view.right_width - right).abs() < 4.0, "{scale} %: kept");
-        assert_eq!(bench.session.view.left_width, view.left_width, "{scale} %: the other one is as it was");
+        assert!((bench.session.settings.right_width - right).abs() < 4.0, "{scale} %: kept");
+        assert_eq!(
+            bench.session.settings.left_width, kept.left_width,
+            "{scale} %: the other one is as it was"
+        );
         assert_eq!(bench.area.rect.left(), picture.left(), "{scale} %: on screen too");
     }
 }

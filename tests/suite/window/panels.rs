@@ -700,7 +700,7 @@ fn a_name_that_is_taken_comes_with_a_button_for_one_that_is_free() {
         bench.apply(Action::Model(ModelCommand::Type(typed.to_owned())));
         assert!(bench.says(said), "{typed}");
         bench.click(&format!("Use “{free}”"));
-        assert_eq!(bench.session.draft.as_ref().map(|draft| draft.name.as_str()), Some(free));
+        assert_eq!(bench.session.authoring.draft.as_ref().map(|draft| draft.name.as_str()), Some(free));
         assert!(bench.says(&format!("Identifier (also the file name): {free}")));
     }
 }
@@ -719,7 +719,7 @@ fn a_change_shows_the_mark_of_unsaved_changes_and_saving_removes_it() {
     bench.settle();
     assert!(bench.says("has no unsaved changes"));
     let path = std::path::absolute(path).expect("there is a current folder");
-    assert_eq!(bench.session.recent_files, [path], "the next start may be in another folder");
+    assert_eq!(bench.session.settings.recent_files, [path], "the next start may be in another folder");
 }
 
 #[test]
@@ -1464,7 +1464,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         bench.size = vec2(*width, *height);
         bench.settle();
         setup(&mut bench);
-        let surround = panel::theme::Palette::of(&bench.session.view).surround;
+        let surround = panel::theme::Palette::of(&bench.session.settings).surround;
         bench.picture(&folder.join(format!("{name}.png")), surround)?;
     }
     Ok(())

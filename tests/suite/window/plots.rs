@@ -20,8 +20,8 @@ use lights_camera_models::{
     panel::{
         plots::{Request, file_of, write},
         state::{
-            Action, EXPLAIN_TAB, Effect, LabEffect, Of, PLOTS_TAB, PlotCommand, Session, Severity,
-            ThemeChoice, ViewChange,
+            Action, EXPLAIN_TAB, Effect, Of, PLOTS_TAB, PlotCommand, Session, Severity, ThemeChoice,
+            ViewChange,
         },
         theme,
     },
@@ -459,16 +459,14 @@ fn the_dialog_of_the_window_leads_to_a_file() {
     assert!(bench.dialogs.is_open() && bench.says("Export the plot"));
     let mut session = Session::default();
     let path = PathBuf::from("/somewhere/a.svg");
-    let asked = session.apply(Action::Plot(PlotCommand::To(path.clone())), &Registry::builtin());
+    let asked = session.apply(Action::Do(Effect::WritePlot(path.clone())), &Registry::builtin());
     assert_eq!(asked, [Effect::WritePlot(path)]);
     let folder = tempfile::tempdir().expect("a folder");
     let plugins = LabPlugins::default().size(64, 36).exit_after(100_000).headless();
     let mut app = app(plugins.build(), |_| ());
     for (name, said) in [("a.png", "The plot was written to "), ("a.jpg", "The plot was not written: ")] {
         let file = folder.path().join(name);
-        app.world_mut()
-            .resource_mut::<Messages<LabEffect>>()
-            .write(LabEffect(Effect::WritePlot(file.clone())));
+        app.world_mut().resource_mut::<Messages<Effect>>().write(Effect::WritePlot(file.clone()));
         let found = (0..3000).any(|_| {
             app.update();
             thread::sleep(Duration::from_millis(2));
@@ -542,7 +540,7 @@ fn the_time_of_a_frame_while_a_knob_is_dragged() {
             let mut bench = plots("phong", Kind::Polar);
             ask(&mut bench, PlotCommand::Pin);
             bench.apply(Action::View(ViewChange::BottomTab(tab.to_owned())));
-            bench.session.view.bottom_height = 312.0;
+            bench.session.settings.bottom_height = 312.0;
             if tab == EXPLAIN_TAB {
                 let sphere = bench.area.rect.center() + vec2(13.0, 7.0);
                 bench.frame(vec![Event::PointerMoved(sphere)]);
@@ -601,8 +599,8 @@ fn pictures_of_the_plots() -> Result<(), Box<dyn std::error::Error>> {
         for (i, kind) in Kind::ALL.into_iter().enumerate() {
             let mut bench = lively(kind);
             bench.size = size;
-            bench.session.view.theme = theme;
-            bench.session.view.scale = scale;
+            bench.session.settings.theme = theme;
+            bench.session.settings.scale = scale;
             ask(&mut bench, PlotCommand::Log(i % 4 == 2));
             ask(&mut bench, PlotCommand::Light(if size.x > 1500.0 { 60.0 } else { 40.0 }));
             if kind == Kind::Masking {
@@ -616,8 +614,8 @@ fn pictures_of_the_plots() -> Result<(), Box<dyn std::error::Error>> {
         }
         let mut bench = plots("lambert", Kind::Fresnel);
         bench.size = size;
-        bench.session.view.theme = theme;
-        bench.session.view.scale = scale;
+        bench.session.settings.theme = theme;
+        bench.session.settings.scale = scale;
         rest(&mut bench);
         bench.picture(&folder.join(format!("plots-{name}-lacks.png")), ground.surround)?;
     }

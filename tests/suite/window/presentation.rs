@@ -35,14 +35,14 @@ fn ctrl_plus_minus_and_0_scale_the_window_by_our_steps() {
     let mut bench = bench((1280.0, 720.0), "phong");
     for percent in SCALES.into_iter().skip(1).chain([200]) {
         bench.key(Key::Plus, CTRL);
-        assert_eq!(bench.session.view.scale, percent);
+        assert_eq!(bench.session.settings.scale, percent);
         assert_eq!(bench.ctx.zoom_factor(), f32::from(percent) / 100.0, "nobody else zooms");
     }
     bench.key(Key::Minus, CTRL);
-    assert_eq!(bench.session.view.scale, 175);
+    assert_eq!(bench.session.settings.scale, 175);
     assert!(bench.effects.contains(&Effect::SaveSettings), "it survives a restart");
     bench.key(Key::Num0, CTRL);
-    assert_eq!((bench.session.view.scale, bench.ctx.zoom_factor()), (100, 1.0));
+    assert_eq!((bench.session.settings.scale, bench.ctx.zoom_factor()), (100, 1.0));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use lights_camera_models::{
         caption::caption_text,
         state::{Action, Effect, Session, ViewChange},
     },
-    parameter::{BASE_COLOUR, ParameterKind, Value},
+    parameter::{BASE_COLOUR, Value},
     reference,
     registry::Registry,
     render::{
@@ -549,8 +549,7 @@ fn the_caption_says_what_there_is_none_of() {
     for model in registry.models() {
         let mut scene = Scene { reflection_model: model.declaration.id.to_owned(), ..Scene::default() };
         for p in model.parameters {
-            if matches!(p.kind, ParameterKind::Choice { options, .. } if options.iter().any(|(id, _)| *id == "none"))
-            {
+            if p.kind.options().iter().any(|(id, _)| *id == "none") {
                 scene.objects[0].material.set(p.name, Value::Choice("none".into()));
             }
         }

@@ -218,7 +218,7 @@ fn the_words_of_the_badge_can_be_read() {
     for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
         let mut bench = bench_with(vec![broken_lambert()]);
         bench.apply(Action::View(ViewChange::Theme(theme)));
-        let palette = Palette::of(&bench.session.view);
+        let palette = Palette::of(&bench.session.settings);
         let (_, rect) = badge(&bench).expect("a badge");
         let shapes = bench.shapes();
         let inside = |at: egui::Pos2| rect.expand(1.0).contains(at);
@@ -348,7 +348,7 @@ fn the_caret_stands_below_the_character_that_is_meant() {
 fn every_file_of_the_picture_is_listed_and_can_be_opened() {
     let mut bench = bench_with(vec![broken_lambert()]);
     bench.size = vec2(1280.0, 1400.0);
-    bench.session.view.bottom_height = 700.0;
+    bench.session.settings.bottom_height = 700.0;
     bench.settle();
     for (name, path) in [
         ("the model", "reflection/lambert.wgsl"),
@@ -386,7 +386,7 @@ fn built_in_shaders_can_be_written_out_and_not_opened() {
     assert!(bench.dialogs.is_open());
     let folder = PathBuf::from("/tmp/shaders");
     bench.effects.clear();
-    bench.apply(Action::Model(ModelCommand::Export(folder.clone())));
+    bench.apply(Action::Do(Effect::ExportShaders(folder.clone())));
     assert_eq!(bench.effects, [Effect::ExportShaders(folder)]);
     let mut bench = Bench::new(Session::default());
     bench.key(Key::E, Modifiers::COMMAND | Modifiers::CTRL);
@@ -425,7 +425,7 @@ fn the_names_of_files_are_shown_whole() {
         let mut bench = Bench::new(Session::new(scene.clone()));
         bench.size = vec2(1280.0, 720.0);
         bench.apply(Action::View(ViewChange::Scale(scale)));
-        bench.session.view.bottom_height = 420.0;
+        bench.session.settings.bottom_height = 420.0;
         bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
         let mut names = 0;
         for shape in bench.shapes() {
@@ -446,7 +446,7 @@ fn paths_keep_both_ends_where_there_is_little_room() {
     let folder = "/home/mira/courses/computer_graphics_2026/lab/shaders";
     bench.session.shaders.folders.shaders = Some(PathBuf::from(folder));
     bench.apply(Action::View(ViewChange::Scale(150)));
-    bench.session.view.bottom_height = 420.0;
+    bench.session.settings.bottom_height = 420.0;
     bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
     let shown = texts(&mut bench);
     let folder = shown.iter().find(|text| text.ends_with("lab/shaders")).expect("the folder that is watched");
@@ -497,7 +497,7 @@ fn what_was_taken_over_last_is_told_while_all_is_well() {
 fn a_new_model_is_named_and_written() {
     let mut bench = bench_with(Vec::new());
     bench.key(Key::N, Modifiers::COMMAND | Modifiers::CTRL | Modifiers::SHIFT);
-    assert_eq!(bench.session.draft, Some(ModelDraft { of: None, name: "my_model".to_owned() }));
+    assert_eq!(bench.session.authoring.draft, Some(ModelDraft { of: None, name: "my_model".to_owned() }));
     // The field has the focus, and typing replaces the suggestion.
     bench.frame(vec![Event::Text("größe".to_owned())]);
     bench.settle();
@@ -505,7 +505,7 @@ fn a_new_model_is_named_and_written() {
     assert!(bench.find("Create").expect("there").disabled);
     bench.key(Key::Enter, Modifiers::NONE);
     assert!(
-        bench.session.draft.is_some() && bench.effects.is_empty(),
+        bench.session.authoring.draft.is_some() && bench.effects.is_empty(),
         "nothing is written under a wrong name"
     );
     bench.type_into("Name of the model", "phong");
@@ -514,9 +514,10 @@ fn a_new_model_is_named_and_written() {
     assert!(bench.says("student_toon"), "says what it becomes");
     assert!(bench.says("/home/mira/lab/models/student_toon.wgsl"), "says where");
     bench.key(Key::Enter, Modifiers::NONE);
-    let new = Effect::NewModel { name: "Student toon".to_owned(), id: "student_toon".to_owned() };
+    let (name, id) = ("Student toon".to_owned(), "student_toon".to_owned());
+    let new = Effect::NewModel { of: None, id, name };
     assert_eq!(bench.effects, [new]);
-    assert_eq!(bench.session.draft, None);
+    assert_eq!(bench.session.authoring.draft, None);
 }
 
 #[test]
@@ -541,16 +542,16 @@ fn the_shown_model_is_copied() {
     bench.click("Edit");
     bench.click("Duplicate the model as a file… Ctrl+Shift+D");
     assert_eq!(
-        bench.session.draft,
+        bench.session.authoring.draft,
         Some(ModelDraft { of: Some("phong".to_owned()), name: "my_phong".to_owned() })
     );
     bench.click("Create");
-    let (model, id) = ("phong".to_owned(), "my_phong".to_owned());
-    assert_eq!(bench.effects, [Effect::DuplicateModel { model, name: id.clone(), id }]);
+    let (of, id) = (Some("phong".to_owned()), "my_phong".to_owned());
+    assert_eq!(bench.effects, [Effect::NewModel { of, name: id.clone(), id }]);
     bench.key(Key::D, Modifiers::COMMAND | Modifiers::CTRL | Modifiers::SHIFT);
-    assert!(bench.session.draft.is_some());
+    assert!(bench.session.authoring.draft.is_some());
     bench.key(Key::Escape, Modifiers::NONE);
-    assert_eq!(bench.session.draft, None, "Escape drops it");
+    assert_eq!(bench.session.authoring.draft, None, "Escape drops it");
 }
 
 #[test]
@@ -562,7 +563,7 @@ fn the_chooser_leads_to_custom_models() {
         assert!(!seen.disabled && seen.rect.bottom() < 720.0, "{button}: {:?}", seen.rect);
     }
     bench.click("New model…");
-    assert!(bench.session.draft.is_some() && !bench.session.view.chooser_open);
+    assert!(bench.session.authoring.draft.is_some() && !bench.session.view.chooser_open);
     assert_eq!(*bench.session.document, Scene::default(), "no model was chosen on the way");
     let mut bench = bench_with(Vec::new());
     bench.key(Key::R, Modifiers::NONE);
@@ -575,7 +576,7 @@ fn the_chooser_leads_to_custom_models() {
 fn a_model_that_was_asked_for_is_chosen_once_it_is_there() {
     let mut bench = bench_with(Vec::new());
     bench.registry = Registry::default();
-    bench.session.wanted_model = Some("phong".to_owned());
+    bench.session.authoring.wanted_model = Some("phong".to_owned());
     bench.settle();
     assert_eq!(bench.session.document.reflection_model, "lambert", "not there yet");
     bench.session.say(Severity::Info, "my_phong.wgsl was written.");
@@ -608,7 +609,7 @@ fn a_model_that_vanishes_leaves_a_sentence() {
     for ask in [ModelCommand::Duplicate, ModelCommand::EditShown] {
         bench.apply(Action::Model(ask));
     }
-    assert_eq!(bench.session.draft, None);
+    assert_eq!(bench.session.authoring.draft, None);
     let path = PathBuf::from("/home/mira/lab/models/my_velvet.wgsl");
     assert!(bench.effects.contains(&Effect::OpenInEditor { path, line: 3 }));
     for key in [Key::T, Key::Num1, Key::F1, Key::Tab] {
@@ -706,13 +707,13 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     let mut bench = bench_with(Vec::new());
     bench.registry.set_custom_folder(&models);
     let name = || "my_velvet".to_owned();
-    let new = Effect::NewModel { id: name(), name: name() };
+    let new = Effect::NewModel { of: None, id: name(), name: name() };
     assert_eq!(write(&new, &mut bench.session, &bench.registry), None);
     let file = models.join("my_velvet.wgsl");
     let text = fs::read_to_string(&file)?;
     let said = bench.session.messages.last().map(|m| m.text.clone()).unwrap_or_default();
     assert!(said.contains(&*file.to_string_lossy()) && said.contains("was written"), "{said}");
-    assert_eq!(bench.session.wanted_model, Some(name()));
+    assert_eq!(bench.session.authoring.wanted_model, Some(name()));
     // As the reload system does when it sees the file.
     let model = custom::read(&file, &text, &bench.registry).map_err(|all| all[0].to_string())?;
     bench.registry.put_custom_model(model);
@@ -727,15 +728,15 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
 
     // The same again is refused, with another question.
     fs::write(&file, "mine")?;
-    let copy = |id: &str, name: &str| Effect::DuplicateModel {
-        model: "phong".to_owned(),
+    let copy = |id: &str, name: &str| Effect::NewModel {
+        of: Some("phong".to_owned()),
         id: id.to_owned(),
         name: name.to_owned(),
     };
     write(&copy("my_velvet", "My velvet"), &mut bench.session, &bench.registry);
     assert_eq!(fs::read_to_string(&file)?, "mine");
     let asked_again = ModelDraft { of: Some("phong".to_owned()), name: "My velvet".to_owned() };
-    assert_eq!(bench.session.draft, Some(asked_again));
+    assert_eq!(bench.session.authoring.draft, Some(asked_again));
     assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("already exists")));
     write(&copy("my_phong", "My Phong"), &mut bench.session, &bench.registry);
     let file = models.join("my_phong.wgsl");
@@ -744,7 +745,7 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     assert!(model.entry.declaration.equation.len() > 1, "equation and all");
     assert_eq!(model.entry.declaration.name, "My Phong", "as it was typed");
     let name = "x".to_owned();
-    let gone = Effect::DuplicateModel { model: "gone".to_owned(), id: name.clone(), name };
+    let gone = Effect::NewModel { of: Some("gone".to_owned()), id: name.clone(), name };
     write(&gone, &mut bench.session, &bench.registry);
     assert!(bench.session.messages.last().is_some_and(|m| m.text.contains("no reflection model “gone”")));
     // A path that cannot be a folder.

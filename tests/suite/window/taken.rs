@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 use bevy::{app::App, ecs::message::Messages};
 use bevy_egui::egui::{Key, Modifiers, Rect, pos2, vec2};
 use lights_camera_models::{
-    panel::state::{Cell, Effect, LabEffect, PictureArea, Question, Session, Severity, ViewChange},
+    panel::state::{Cell, Effect, PictureArea, Question, Session, Severity, ViewChange},
     parameter::Value,
     registry::Registry,
     scene::{
@@ -45,7 +45,7 @@ fn take(app: &mut App, view: Option<usize>, file: &Path, overwrite: bool) -> Vec
     // Repeated messages do not count.
     session(app).messages.clear();
     let effect = Effect::Picture { view, file: Some(file.to_owned()), overwrite };
-    app.world_mut().resource_mut::<Messages<LabEffect>>().write(LabEffect(effect));
+    app.world_mut().resource_mut::<Messages<Effect>>().write(effect);
     for _ in 0..3000 {
         app.update();
         let session = app.world().resource::<Session>();
@@ -79,7 +79,7 @@ fn side_by_side(app: &mut App) {
 fn a_picture_of_the_window_is_that_of_lcm_render_and_opens_as_its_scene() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut app = lab(folder.path());
-    session(&mut app).view.picture_caption = false;
+    session(&mut app).settings.picture_caption = false;
     // Without the extension, which is added.
     let saved = take(&mut app, None, &folder.path().join("taken"), false);
     let file = folder.path().join("taken.png");
@@ -91,7 +91,7 @@ fn a_picture_of_the_window_is_that_of_lcm_render_and_opens_as_its_scene() {
     assert_eq!(scene.variants[0].name.as_deref(), Some("in blue"));
     assert_eq!(scene.observer, session(&mut app).document.observer);
     // With a caption it has the same width, and is taller.
-    session(&mut app).view.picture_caption = true;
+    session(&mut app).settings.picture_caption = true;
     let _ = take(&mut app, None, &file, true);
     let captioned = Picture::read(&file);
     assert!(captioned.width == 120 && captioned.height > 100, "{}", captioned.height);
@@ -108,7 +108,7 @@ fn a_picture_of_the_window_is_that_of_lcm_render_and_opens_as_its_scene() {
 fn views_are_taken_together_or_one_alone() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut app = lab(folder.path());
-    session(&mut app).view.picture_caption = false;
+    session(&mut app).settings.picture_caption = false;
     let file = folder.path().join("b.png");
     // Nobody sees view B yet.
     let said = take(&mut app, Some(1), &file, false);
@@ -168,7 +168,7 @@ fn the_menu_saves_and_copies_pictures() {
     bench.click("Picture ⏵");
     assert!(bench.find("Save view").is_none(), "there is one view");
     bench.click("With a caption");
-    assert!(!bench.session.view.picture_caption);
+    assert!(!bench.session.settings.picture_caption);
     bench.apply(lights_camera_models::panel::state::Action::View(ViewChange::PictureCaption(true)));
     bench.key(Key::P, Modifiers::COMMAND);
     bench.settle();

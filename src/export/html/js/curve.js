@@ -42,7 +42,7 @@ function numbersOf(parameters, bytes, defaults) {
   for (const p of parameters) {
     const at = (i) => view.getFloat32(p.at + 4 * i, true);
     if (p.options) numbers[p.name] = view.getUint32(p.at, true);
-    else numbers[p.name] = p.kind === 'colour' || p.kind === 'triple' ? [0, 1, 2].map(at) : at(0);
+    else numbers[p.name] = Array.isArray(p.default) ? p.default.map((_, i) => at(i)) : at(0);
   }
   return numbers;
 }

@@ -64,7 +64,7 @@ const CONTROLS = {
   },
   triple(p, value, set) {
     const numbers = [...value];
-    const rows = ['red', 'green', 'blue'].map((channel, i) => {
+    const rows = ['red', 'green', 'blue'].slice(0, value.length).map((channel, i) => {
       const [range, number] = slider(`${p.label}, ${channel}`, { ...p, step: (p.max - p.min) / 1000 }, value[i], (v) => {
         numbers[i] = v;
         set([...numbers]);
@@ -99,7 +99,8 @@ const CONTROLS = {
 
 // A knob; `reason` says why it is disabled, if it is.
 function knob(p, value, reason, set) {
-  const { beside, below } = CONTROLS[p.kind](p, value, set);
+  const control = CONTROLS[p.kind] ?? CONTROLS[Array.isArray(value) ? 'triple' : 'number'];
+  const { beside, below } = control(p, value, set);
   const id = `help-${p.name}`;
   const help = element('p', { class: 'help', id, hidden: true }, p.help);
   const toggle = element('button', {

@@ -31,7 +31,7 @@ function packed(parameters, size, values, encoding) {
     const value = values[p.name] ?? p.default;
     if (p.options) {
       view.setUint32(p.at, p.options.findIndex(([id]) => id === String(value)), true);
-    } else if (p.kind === 'colour' || p.kind === 'triple') {
+    } else if (Array.isArray(value)) {
       const numbers = p.kind === 'colour' ? decoded(value, encoding) : value;
       numbers.forEach((number, i) => view.setFloat32(p.at + 4 * i, number, true));
     } else {

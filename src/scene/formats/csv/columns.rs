@@ -7,7 +7,7 @@ use super::{
     problems::Problems,
 };
 use crate::{
-    parameter::{Parameter, ParameterKind},
+    parameter::Parameter,
     registry::Registry,
     scene::{
         Display, Field, Light, Object, Observer, Scene, SceneSize,
@@ -132,26 +132,21 @@ impl All {
     fn parameters(&mut self, part: Part, before: &[&'static str], parameters: &'static [Parameter]) {
         for p in parameters {
             let keys: Vec<_> = before.iter().copied().chain([p.name]).collect();
-            let is_list = matches!(p.kind, ParameterKind::Colour { .. } | ParameterKind::Triple { .. });
-            let is_text =
-                !p.is_flag() && matches!(p.kind, ParameterKind::Choice { .. } | ParameterKind::File { .. });
-            self.add(part, keys, is_list, is_text);
+            self.add(part, keys, p.kind.components(), p.kind.is_text());
         }
     }
 
     fn field(&mut self, part: Part, within: Option<&Field>, field: &Field) {
         let keys = within.into_iter().chain([field]).map(|field| field.key).collect();
-        let is_list = matches!(field.kind, Kind::Colour) || is_vector(field.key);
+        let components = if matches!(field.kind, Kind::Colour) || is_vector(field.key) { 3 } else { 1 };
         let is_text = matches!(field.kind, Kind::Text(_) | Kind::Id(_) | Kind::Choice(_));
-        self.add(part, keys, is_list, is_text);
+        self.add(part, keys, components, is_text);
     }
 
-    fn add(&mut self, part: Part, keys: Vec<&'static str>, is_list: bool, is_text: bool) {
+    fn add(&mut self, part: Part, keys: Vec<&'static str>, of: usize, is_text: bool) {
         let names = components(keys.last().copied().unwrap_or_default());
-        for component in [None].into_iter().chain((0..3).map(Some)) {
-            if component.is_some() && !is_list {
-                break;
-            }
+        let each = (0..of).map(Some).filter(|_| of > 1);
+        for component in [None].into_iter().chain(each) {
             let mut name = keys.join(".");
             if let Some(i) = component {
                 name = format!("{name}.{}", names[i]);

@@ -19,7 +19,7 @@ use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
 use crate::{
     light::MAX_LIGHTS,
     registry::Registry,
-    scene::{MAX_OBJECTS, Scene, error::LoadError, read, save::to_json},
+    scene::{MAX_OBJECTS, Scene, error::LoadError, read, write::to_json},
     text::{after_mark, place::Lines},
 };
 
@@ -80,7 +80,7 @@ impl SceneFormat for Csv {
             commas => source.derived(|| rows::with_points(&lines, &commas)),
         };
         let (root, problems) = rows::tree(text, &grid, columns);
-        Ok(read::parsed(text, root, source.folder, registry, problems.into_parts()))
+        Ok(read::parsed(text, root, source, registry, problems.into_parts()))
     }
 
     fn writer(&self) -> Option<&dyn SceneWriter> {

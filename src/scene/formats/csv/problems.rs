@@ -2,8 +2,8 @@
 //! of the rest.
 
 use crate::scene::{
-    error::Problem,
-    read::{MAX_PROBLEMS, MAX_SUGGESTIONS},
+    problem::{MAX_PROBLEMS, Problem},
+    read::MAX_SUGGESTIONS,
 };
 
 /// Problems, each with its byte index.

@@ -10,7 +10,7 @@ use lights_camera_models::{
         geometry::half_vector,
         masking,
     },
-    parameter::{ParameterKind, ParameterSet, Value, Values},
+    parameter::{ParameterSet, Value, Values},
     reflection::{Microfacet, ReflectionModel as _, brdf},
 };
 
@@ -314,10 +314,7 @@ fn with_compensation_a_white_metal_vanishes_in_a_white_furnace() {
                 let mut values = Values::default();
                 let id = |p: &str, i: u32| {
                     let found = Microfacet::PARAMETERS.iter().find(|q| q.name == p).unwrap();
-                    match &found.kind {
-                        ParameterKind::Choice { options, .. } => Value::Choice(options[i as usize].0.into()),
-                        _ => panic!("{p} is a choice"),
-                    }
+                    Value::Choice(found.kind.options()[i as usize].0.into())
                 };
                 for (p, i) in [
                     ("distribution", d),

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::tests::{run, valid};
+use super::{run, valid};
 
 #[derive(Clone, Debug)]
 enum Expr {

@@ -1,0 +1,114 @@
+//! State that panels keep in egui's memory, one value of each type, and calculations in threads.
+
+use std::{
+    sync::{
+        Arc, Mutex, PoisonError,
+        mpsc::{self, Receiver, RecvTimeoutError},
+    },
+    thread,
+    time::Duration,
+};
+
+use bevy_egui::egui::{Context, Id};
+
+/// Applies a function to the value of a type. The function must not use the context.
+pub(super) fn with<T, R>(ctx: &Context, of: impl FnOnce(&mut T) -> R) -> R
+where
+    T: Clone + Default + Send + Sync + 'static,
+{
+    ctx.data_mut(|data| of(data.get_temp_mut_or_default::<T>(Id::NULL)))
+}
+
+/// The value of a type.
+pub(super) fn get<T: Clone + Default + Send + Sync + 'static>(ctx: &Context) -> T {
+    with(ctx, |value: &mut T| value.clone())
+}
+
+/// Replaces the value of a type, and returns the previous one.
+pub(super) fn set<T: Clone + Default + Send + Sync + 'static>(ctx: &Context, value: T) -> T {
+    with(ctx, |kept| std::mem::replace(kept, value))
+}
+
+/// Applies a function to the value of a type that threads use too. The function may use the context.
+pub(super) fn shared<T: Default + Send + 'static, R>(ctx: &Context, of: impl FnOnce(&mut T) -> R) -> R {
+    let shared: Arc<Mutex<T>> = get(ctx);
+    of(&mut shared.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// A value that equals only itself and its copies.
+#[derive(Debug)]
+pub(super) struct Same<T>(pub(super) Arc<T>);
+
+impl<T> Clone for Same<T> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<T> PartialEq for Same<T> {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+/// The answers of a thread to questions, one at a time.
+pub(super) struct Background<Q, A> {
+    /// The latest answer, with its question.
+    pub(super) shown: Option<(Q, A)>,
+    running: Option<(Q, Receiver<A>)>,
+    /// Number of calculations so far.
+    pub(super) calculations: u64,
+}
+
+impl<Q, A> Default for Background<Q, A> {
+    fn default() -> Self {
+        Self { shown: None, running: None, calculations: 0 }
+    }
+}
+
+impl<Q: Clone + PartialEq, A: Send + 'static> Background<Q, A> {
+    /// True while an answer is being calculated.
+    pub(super) fn is_busy(&self) -> bool {
+        self.running.is_some()
+    }
+
+    /// Asks a question, and waits for a new answer for at most this long. `work` makes the calculation; the answer that
+    /// is shown meanwhile is that to an earlier question.
+    pub(super) fn ask<W: FnOnce() -> A + Send + 'static>(
+        &mut self,
+        ctx: &Context,
+        question: &Q,
+        patience: Duration,
+        mut work: impl FnMut() -> Option<W>,
+    ) {
+        // A running calculation may answer an older question.
+        for _ in 0..2 {
+            if self.shown.as_ref().is_some_and(|(asked, _)| asked == question) {
+                break;
+            }
+            let new = self.running.is_none();
+            let running = self.running.take().or_else(|| Some((question.clone(), start(ctx, work()?))));
+            let Some((asked, receiver)) = running else { break };
+            self.calculations += u64::from(new);
+            match receiver.recv_timeout(if new { patience } else { Duration::ZERO }) {
+                Ok(answer) => self.shown = Some((asked, answer)),
+                Err(error) => {
+                    self.running = (error == RecvTimeoutError::Timeout).then_some((asked, receiver));
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// Starts a calculation.
+fn start<A: Send + 'static>(ctx: &Context, work: impl FnOnce() -> A + Send + 'static) -> Receiver<A> {
+    let (sender, receiver) = mpsc::channel();
+    let ctx = ctx.clone();
+    thread::spawn(move || {
+        // The receiver is gone once nobody wants the answer any more.
+        drop(sender.send(work()));
+        ctx.request_repaint();
+    });
+    receiver
+}

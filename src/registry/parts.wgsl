@@ -1,0 +1,87 @@
+[[row]]
+struct Row {
+    parameters: Parameters,
+[[curve]]
+    curve: array<vec4<f32>, {{length}}>,
+    lobe_mean: f32,
+[[row]]
+{{more}}}
+[[curve]]
+const HARMONICS: u32 = {{harmonics}}u;
+fn curve_node(i: u32) -> vec4<f32> {
+    return parameter_table[object_row].curve[i];
+}
+fn lobe_mean() -> f32 {
+    return parameter_table[object_row].lobe_mean;
+}
+[[cubic]]
+fn curve_{{name}}(mu: f32) -> vec4<f32> {
+    return curve_from(mu, {{first}}u);
+}
+[[values]]
+fn value_{{name}}(i: u32) -> vec4<f32> {
+    return curve_node({{first}}u + i);
+}
+[[linear]]
+fn curve_{{name}}(mu: f32) -> vec4<f32> {
+    let x = clamp(mu, 0.0, 1.0) * {{steps}};
+    let i = min(u32(x), {{last}}u);
+    return mix(curve_node({{first}}u + i), curve_node({{next}}u + i), x - f32(i));
+}
+[[cubic linear]]
+fn mean_{{name}}() -> vec4<f32> {
+    return curve_node({{mean}}u);
+}
+[[ambient]]
+fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+    return directional_albedo(v, frame);
+}
+[[words]]
+fn illumination_number(i: u32) -> f32 {
+    return bitcast<f32>(light_words[i]);
+}
+fn light_word(light: Light, i: u32) -> u32 {
+    return light_words[light.first_word + i];
+}
+fn light_number(light: Light, i: u32) -> f32 {
+    return illumination_number(light.first_word + i);
+}
+[[light_alone]]
+struct FileRow { numbers: array<f32, {{numbers}}> }
+@group(0) @binding(0) var<storage, read> file_table: array<FileRow>;
+fn illumination_number(i: u32) -> f32 {
+    return file_table[0].numbers[i];
+}
+[[shading_alone]]
+struct Row { shading: array<vec4<u32>, {{words}}> }
+@group(0) @binding(0) var<storage, read> parameter_table: array<Row>;
+var<private> object_row: u32;
+var<private> to_the_right: vec3<f32>;
+var<private> downwards: vec3<f32>;
+fn dpdx(place: vec3<f32>) -> vec3<f32> {
+    return to_the_right;
+}
+fn dpdy(place: vec3<f32>) -> vec3<f32> {
+    return downwards;
+}
+fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {
+    return 0.5 + 0.25 * normal + 0.125 * tangent.yzx + 0.03125 * position.zxy;
+}
+[[pixel_alone]]
+fn pixel_alone(passed: Varying, right: vec3<f32>, down: vec3<f32>) -> vec3<f32> {
+    to_the_right = right;
+    downwards = down;
+    return shade_pixel(passed);
+}
+[[lobes]]
+fn lobe_row(i: u32) -> vec4<f32> {
+    return parameter_table[object_row].lobes[i];
+}
+[[no_lobes]]
+fn lobe_row(i: u32) -> vec4<f32> {
+    return vec4(0.0);
+}
+[[not_extended]]
+fn extended(position: vec3<f32>, v: vec3<f32>, frame: Frame) -> vec3<f32> {
+    return vec3(0.0);
+}
