@@ -2,7 +2,7 @@
 
 use std::{
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc, Mutex,
         mpsc::{self, Receiver, RecvTimeoutError},
     },
     thread,
@@ -10,6 +10,8 @@ use std::{
 };
 
 use bevy_egui::egui::{Context, Id};
+
+use crate::caught::lock;
 
 /// Applies a function to the value of a type. The function must not use the context.
 pub(super) fn with<T, R>(ctx: &Context, of: impl FnOnce(&mut T) -> R) -> R
@@ -32,7 +34,7 @@ pub(super) fn set<T: Clone + Default + Send + Sync + 'static>(ctx: &Context, val
 /// Applies a function to the value of a type that threads use too. The function may use the context.
 pub(super) fn shared<T: Default + Send + 'static, R>(ctx: &Context, of: impl FnOnce(&mut T) -> R) -> R {
     let shared: Arc<Mutex<T>> = get(ctx);
-    of(&mut shared.lock().unwrap_or_else(PoisonError::into_inner))
+    of(&mut lock(&shared))
 }
 
 /// A value that equals only itself and its copies.

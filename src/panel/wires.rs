@@ -3,17 +3,13 @@
 //! A thread finds the visible ones when scene, camera or view have changed. Their positions are in the scene: they move
 //! correctly with the camera, while occlusion follows a moment later.
 
-use std::{
-    collections::BTreeMap,
-    sync::{Mutex, PoisonError},
-    time::Duration,
-};
+use std::{collections::BTreeMap, sync::Mutex, time::Duration};
 
 use bevy_egui::egui::Mesh;
 
 use super::{kept::Background, marks::Lens, prelude::*};
 use crate::{
-    caught::catch,
+    caught::{catch, lock},
     channel::DebugChannel,
     document::Revision,
     library::status::Reloaded,
@@ -153,7 +149,7 @@ fn wires(question: Question, scene: &Scene, registry: &Registry, drawer: &Mutex<
     let scene = Scene { observer, ..scene.clone() };
     let settings = Settings { width, height, samples: 1, terms };
     let most = if channel.has_dots() { DOTS } else { LINES };
-    let mut drawer = drawer.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut drawer = lock(drawer);
     // After a panic it begins anew.
     let mut taken = std::mem::take(&mut *drawer);
     let wires = taken.wires(&scene, registry, &settings, channel, most);

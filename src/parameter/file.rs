@@ -17,8 +17,10 @@ use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use super::outside::Outside;
-use crate::files;
-use crate::files::Shown as _;
+use crate::{
+    caught::lock,
+    files::{self, Shown as _},
+};
 
 /// The files that a parameter may name, and how they are read.
 pub struct FileFormat {
@@ -223,7 +225,7 @@ impl NamedFile {
     pub(super) fn shipped(name: &'static str, format: &'static FileFormat) -> Self {
         let bytes =
             format.shipped.iter().find(|(shipped, _)| *shipped == name).map_or(&[][..], |(_, bytes)| bytes);
-        let mut shipped = SHIPPED.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut shipped = lock(&SHIPPED);
         let content =
             shipped.entry((name, format.name)).or_insert_with(|| Content::new(Err(bytes), None, format));
         Self { name: Cow::Borrowed(name), content: content.clone() }
@@ -336,7 +338,7 @@ impl Content {
 
     /// The content of a file on disk, shared with those that use it, and read again if it has changed.
     fn of(path: PathBuf, folder: Option<PathBuf>, format: &'static FileFormat) -> Arc<Self> {
-        let mut contents = CONTENTS.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut contents = lock(&CONTENTS);
         contents.retain(|_, content| content.strong_count() > 0);
         let known = contents.entry((path.clone(), folder.clone(), format.name)).or_default();
         let content = match known.upgrade() {
@@ -451,7 +453,7 @@ impl Content {
 
 /// Numbers that were just read: those in use, if another path to the same file has equal ones.
 fn shared(key: Option<Key>, numbers: Vec<f32>) -> Arc<Numbers> {
-    let mut all = NUMBERS.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut all = lock(&NUMBERS);
     all.retain(|_, numbers| numbers.strong_count() > 0);
     if let Some(known) = key.and_then(|key| all.get(&key)?.upgrade())
         && known.all[..] == numbers[..]
