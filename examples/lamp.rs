@@ -49,7 +49,7 @@ impl LightType for RingLamp {
         Source::new("lamp.wgsl", include_str!("lamp.wgsl")),
     )
     .summary("A ring that is equally bright everywhere, as photographers put around a lens.")
-    .equation("I(p) = L")
+    .equation("L(p, l) = L")
     .glyph("◎")
     .at_position()
     .with_direction()

@@ -76,7 +76,7 @@ impl LightType for Cylinder {
     .with_direction()
     .luminance(10.0, 100.0)
     .sizes(&[Size::Length(LENGTH.name), Size::Radius(RADIUS.name)])
-    .equation("I(p) = L");
+    .equation("L(p, l) = L");
 
     fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
         let Some(view) = self.from(light, p) else { return Sample::default() };

@@ -41,7 +41,7 @@ impl LightType for Disc {
         .with_direction()
         .luminance(10.0, 100.0)
         .sizes(&[Size::Radius(RADIUS.name)])
-        .equation("I(p) = L");
+        .equation("L(p, l) = L");
 
     fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
         let [x, y] = extent::sides(light.direction, UNTURNED);

@@ -21,6 +21,7 @@ const SOURCE: Parameter = Parameter::choice(
      of surroundings.",
 );
 
+const UNIFORM: u32 = 0;
 const STUDIO: u32 = 1;
 const SKY: u32 = 2;
 const FILE: u32 = 3;
@@ -148,7 +149,7 @@ impl LightType for Environment {
             .glyph("◎")
             .factor(1.0, 10.0)
             .with_extent()
-            .equation("I(p) = I L(l)");
+            .equation("L(p, l) = I L_s(l)");
 
     const DERIVED: &'static [Parameter] = &[
         number("turn_sine"),
@@ -191,5 +192,13 @@ impl LightType for Environment {
     fn seen(&self, light: &LightRecord, _p: Vec3, l: Vec3) -> Seen {
         let (luminance, pdf) = self.at(self.turned_back(l));
         Seen { radiance: light.intensity * luminance, pdf, distance: f32::INFINITY }
+    }
+    fn same_between(&self, light: &LightRecord, corners: &[Vec3; 4]) -> Option<Vec3> {
+        let luminance = match self.source {
+            UNIFORM => Some(1.0),
+            STUDIO => studio::same_between(&corners.map(|corner| self.turned_back(corner))),
+            _ => None,
+        };
+        luminance.map(|luminance| light.intensity * Vec3::splat(luminance))
     }
 }

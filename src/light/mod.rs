@@ -182,6 +182,13 @@ pub trait LightType: ParameterSet + Component + Reflectable {
         None
     }
 
+    /// The radiance of an infinitely distant light, if it is the same in all directions between these four,
+    /// which are the corners of a convex part of the picture. By default `None`: the light is evaluated in each
+    /// direction.
+    fn same_between(&self, _light: &LightRecord, _corners: &[Vec3; 4]) -> Option<Vec3> {
+        None
+    }
+
     /// The factors of the intensity at `p`, as in the [equation](Declaration::equation), for explanations:
     /// their product is the intensity of [`incident`](Self::incident). By default, the intensity of the
     /// light, and the rest.
@@ -214,6 +221,9 @@ pub trait Emitter: Send + Sync {
     /// See [`LightType::bounds`].
     fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone>;
 
+    /// See [`LightType::same_between`].
+    fn same_between(&self, light: &LightRecord, corners: &[Vec3; 4]) -> Option<Vec3>;
+
     /// See [`LightType::factors`].
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor>;
 }
@@ -240,6 +250,10 @@ impl<L: LightType> Emitter for L {
 
     fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone> {
         LightType::bounds(self, light, p)
+    }
+
+    fn same_between(&self, light: &LightRecord, corners: &[Vec3; 4]) -> Option<Vec3> {
+        LightType::same_between(self, light, corners)
     }
 
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {

@@ -70,7 +70,7 @@ impl LightType for Rectangle {
     .luminance(10.0, 100.0)
     .sizes(&[Size::Width(WIDTH.name), Size::Height(HEIGHT.name)])
     .roll(ROLL.name)
-    .equation("I(p) = L");
+    .equation("L(p, l) = L");
 
     const DERIVED: &'static [Parameter] = &[extent::number("roll_sine"), extent::number("roll_cosine")];
 

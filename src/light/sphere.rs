@@ -43,7 +43,7 @@ impl LightType for Sphere {
         .at_position()
         .luminance(10.0, 100.0)
         .sizes(&[Size::Radius(RADIUS.name)])
-        .equation("I(p) = L");
+        .equation("L(p, l) = L");
 
     fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
         let Some((axis, _, _, rise)) = self.from(light, p) else { return Sample::default() };

@@ -70,6 +70,28 @@ pub(super) fn seen(d: Vec3) -> (f32, f32) {
     (luminance, pdf)
 }
 
+/// The luminance, if it is the same in all directions between these.
+pub(super) fn same_between(corners: &[Vec3; 4]) -> Option<f32> {
+    /// Rounding of the corners and of the directions between them.
+    const ROUNDING: f32 = 1e-5;
+    let mut luminance = ROOM;
+    for (softbox, placed) in SOFTBOXES.iter().zip(&*PLACED) {
+        // The sides' planes: a convex part outside one of them misses the softbox.
+        let [x, y] = [0, 1].map(|i| [placed.sides[i], -placed.sides[i]].map(|side| (side, softbox.half[i])));
+        let beyond = x.into_iter().chain(y).map(|(side, half)| {
+            let distances = corners.map(|d| d.dot(side) - half * d.dot(placed.axis));
+            [distances.into_iter().fold(f32::MAX, f32::min), distances.into_iter().fold(f32::MIN, f32::max)]
+        });
+        let [nearest, farthest] = beyond.fold([f32::MIN; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+        if farthest < -ROUNDING {
+            luminance = softbox.luminance;
+        } else if nearest < ROUNDING {
+            return None;
+        }
+    }
+    Some(luminance)
+}
+
 /// A direction for a point of the unit square.
 pub(super) fn sample(u: Vec2) -> Vec3 {
     let mut x = u.x;
@@ -80,4 +102,39 @@ pub(super) fn sample(u: Vec2) -> Vec3 {
         x -= softbox.share;
     }
     sampling::sphere(Vec2::new(x / ROOM_SHARE, u.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::sequence::Sequence;
+
+    #[test]
+    fn between_corners_of_the_same_luminance_it_is_that_everywhere() {
+        let (mut room, mut softboxes, mut mixed) = (0, 0, 0);
+        for i in 0..2000 {
+            let middle = sampling::sphere(Sequence::new(1, 0).point(i));
+            let side = middle.any_orthonormal_vector();
+            let half = 0.002 + 0.2 * Sequence::new(1, 1).point(i).x;
+            let corner = |x: f32, y: f32| (middle + half * (x * side + y * middle.cross(side))).normalize();
+            let Some(same) =
+                same_between(&[corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)])
+            else {
+                mixed += 1;
+                continue;
+            };
+            if same == ROOM {
+                room += 1
+            } else {
+                softboxes += 1
+            }
+            for x in -4..=4 {
+                for y in -4..=4 {
+                    let d = corner(x as f32 / 4.0, y as f32 / 4.0);
+                    assert_eq!(seen(d).0, same, "{i} {middle} {half} {d}");
+                }
+            }
+        }
+        assert!(room > 500 && softboxes > 20 && mixed > 100, "{room} {softboxes} {mixed}");
+    }
 }

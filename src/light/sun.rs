@@ -45,7 +45,7 @@ impl LightType for Sun {
         .with_direction()
         .lux(1.0, 10.0)
         .with_extent()
-        .equation("I(p) = I / (π sin(δ/2)^2)");
+        .equation("L(p, l) = I / (π sin(δ/2)^2)");
 
     const DERIVED: &'static [Parameter] = &[number("sine_squared"), number("rise")];
 

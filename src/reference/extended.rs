@@ -1,6 +1,7 @@
 //! Light with extent at a point: the integral of a model's response over the directions of lights, by
 //! sampling both the lights and the model's lobes, with the power heuristic (E. Veach, L. Guibas 1995).
 
+use arrayvec::ArrayVec;
 use glam::{Vec2, Vec3};
 
 use crate::{
@@ -178,23 +179,23 @@ impl Extended {
     /// Passes on the light arriving from samples, divided by its density: many directions at once, since a
     /// model recalculates quantities that depend only on the view in each call.
     fn arrive(&self, at: &At, samples: LightSamples, take: &mut Take) {
-        let mut waiting = [Arriving::default(); AT_ONCE];
-        let mut count = 0;
+        let mut waiting = ArrayVec::<_, AT_ONCE>::new();
         for start in (0..samples.count).step_by(BLOCK) {
             let first = samples.first.wrapping_add(start);
             self.block(at, first, (samples.count - start).min(BLOCK as u32) as usize, &mut |arriving| {
-                waiting[count] = arriving;
-                count += 1;
-                if count == AT_ONCE {
+                waiting.push(arriving);
+                if waiting.is_full() {
                     take(&waiting);
-                    count = 0;
+                    waiting.clear();
                 }
             });
         }
-        take(&waiting[..count]);
+        take(&waiting);
     }
 
     /// Passes on the light arriving from a block of samples.
+    // Inlined, it was a tenth slower: too many variables for the registers.
+    #[inline(never)]
     fn block(&self, at: &At, first: u32, count: usize, mut take: impl FnMut(Arriving)) {
         let mut directions =
             Directions { l: [Vec3::ZERO; BLOCK], pdf: [0.0; BLOCK], light: [Vec3::ZERO; BLOCK] };

@@ -74,9 +74,9 @@ use lighting::Lights;
 use meshes::Meshes;
 use object::{Draw, hidden};
 pub use outlines::outlines;
-use raster::{Screen, TILE, Tile, Triangle};
+use raster::{Screen, TILE, Tile, Triangle, even};
 pub use vertices::brightest_vertex;
-use visible::VisibleLights;
+use visible::{Part, VisibleLights};
 pub use wires::{Dot, Line, WireDrawer, Wires, draw_wires};
 
 /// The settings of a picture, apart from the scene.
@@ -364,6 +364,9 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                 let origin = origin(i, &screen);
                 let mut tile = tile.take();
                 let seen = visible.as_ref().and_then(|visible| visible.within(origin, TILE));
+                if let (None, Some(light)) = (&tile, seen.as_ref().and_then(Part::throughout)) {
+                    return Some((i, vec![finish(even::<S>(light)); TILE * TILE]));
+                }
                 if let Some(mut lights) = seen.filter(|_| !late()) {
                     tile.get_or_insert_with(Tile::new).show(&mut lights);
                 }

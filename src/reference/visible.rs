@@ -47,12 +47,12 @@ impl Visible {
             return None;
         }
         let seen = self.emitter.seen(&self.record, eye, ray.l);
-        self.sight(seen.radiance, seen.distance, ray)
+        self.sight(seen.radiance, seen.distance, ray.stretch)
     }
 
-    fn sight(&self, radiance: Vec3, distance: f32, ray: &Ray) -> Option<Sight> {
+    fn sight(&self, radiance: Vec3, distance: f32, stretch: f32) -> Option<Sight> {
         let radiance = within_bounds(radiance * self.record.colour);
-        (distance > 0.0).then(|| Sight { radiance, nearness: ray.stretch / distance })
+        (distance > 0.0).then(|| Sight { radiance, nearness: stretch / distance })
     }
 }
 
@@ -137,10 +137,15 @@ impl VisibleLights {
             .filter(|light| light.cone.is_none_or(|(cone, _)| touches(cone)))
             .partition(|light| light.cone.is_some());
         let any = !bounded.is_empty() || !around.is_empty();
+        let same = around.iter().try_fold(None, |known, light| {
+            let radiance = light.emitter.same_between(&light.record, &corners)?;
+            Some(joined(known, light.sight(radiance, f32::INFINITY, 1.0)))
+        });
         any.then(|| Part {
             of: self,
             bounded,
             around,
+            same: same.flatten(),
             origin: [left, top],
             edge,
             margin: 0,
@@ -155,6 +160,8 @@ pub(super) struct Part<'a> {
     bounded: Vec<&'a Visible>,
     /// Lights that may be anywhere.
     around: Vec<&'a Visible>,
+    /// Their light, if it is the same in the whole part.
+    same: Option<Sight>,
     origin: [usize; 2],
     edge: usize,
     /// Width of the border of pixels around the part that `centres` includes.
@@ -180,9 +187,14 @@ impl Part<'_> {
         for light in &self.around {
             light.emitter.seen_along(&light.record, self.of.eye, &directions, &mut seen);
             for ((known, (radiance, distance)), ray) in self.centres.iter_mut().zip(&seen).zip(&rays) {
-                *known = joined(*known, light.sight(*radiance, *distance, ray));
+                *known = joined(*known, light.sight(*radiance, *distance, ray.stretch));
             }
         }
+    }
+
+    /// The radiance of the visible lights, if it is the same in the whole part.
+    pub(super) fn throughout(&self) -> Option<Vec3> {
+        self.same.filter(|_| self.bounded.is_empty()).map(|sight| sight.radiance)
     }
 
     /// The visible lights at the samples of a pixel, which are given relative to it: radiance and `1 / w`.
@@ -192,11 +204,14 @@ impl Part<'_> {
         samples: [[f32; 2]; S],
     ) -> [Option<Sight>; S] {
         let is_around = !self.around.is_empty();
-        if is_around {
+        if is_around && self.same.is_none() {
             // Pixels with one sample have it at their centre; the others compare with their neighbours.
             self.prepare(usize::from(S > 1));
         }
-        let even = if S > 1 && is_around { self.even(x, y) } else { None };
+        let even = match self.same {
+            None if S > 1 && is_around => self.even(x, y),
+            same => same,
+        };
         let at = |axis: usize, place: usize| (self.origin[axis] + place) as f32;
         samples.map(|[right, down]| {
             let ray = || self.of.ray([at(0, x) + right, at(1, y) + down]);

@@ -49,6 +49,8 @@ impl Converged {
 pub struct Convergence {
     /// The target number of samples, at least 1.
     pub target: u32,
+    /// Number of samples in a frame, at least 1; `None` for as many as frames have time for.
+    pub pace: Option<u32>,
     /// The first sample of the next frame.
     next: u32,
     /// Maximum number of samples in the next frame.
@@ -59,7 +61,7 @@ pub struct Convergence {
 
 impl Default for Convergence {
     fn default() -> Self {
-        Self { target: LightSamples::DEFAULT, next: 0, most: 1, began: None }
+        Self { target: LightSamples::DEFAULT, pace: None, next: 0, most: 1, began: None }
     }
 }
 
@@ -79,7 +81,7 @@ impl Convergence {
             _ => {}
         }
         let aligned = if self.next == 0 { MOST } else { 1 << self.next.trailing_zeros().min(31) };
-        let wanted = if begins { 1 } else { self.most };
+        let wanted = if begins { 1 } else { self.pace.unwrap_or(self.most) };
         let room = wanted.min(missing.unwrap_or(1)).min(target - self.next).max(1);
         let part = Part { first: self.next, count: aligned.min(1 << room.ilog2()) };
         self.next = (self.next + part.count) % target;
@@ -126,5 +128,13 @@ mod tests {
         assert_eq!(convergence.part(true, None), Part { first: 0, count: 1 });
         assert_eq!(convergence.part(true, None), Part { first: 0, count: 1 });
         assert_eq!(convergence.part(false, Some(255)), Part { first: 1, count: 1 });
+    }
+    #[test]
+    fn a_pace_draws_as_many_samples_however_long_a_frame_takes() {
+        let mut convergence = Convergence { pace: Some(4), most: 1, ..Convergence::default() };
+        for first in [0, 4, 8] {
+            assert_eq!(convergence.part(false, Some(200)), Part { first, count: 4 });
+        }
+        assert_eq!(convergence.part(true, Some(200)), Part { first: 12, count: 1 });
     }
 }

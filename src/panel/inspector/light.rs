@@ -13,7 +13,7 @@ use crate::{
         state::{Effect, Pick},
     },
     parameter::Value,
-    reflection::{EquationPart, Term},
+    reflection::{EquationPart, Term, usage::unused},
     scene::{Light, limits},
 };
 
@@ -38,7 +38,12 @@ pub(super) fn light(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
             context.edits(light_colour(ui, part, light));
             for p in entry.parameters {
                 if let Value::File(file) = light.parameters.get(p)
-                    && knob::file_knob(ui, p, &file)
+                    && knob::file_knob(
+                        ui,
+                        p,
+                        &file,
+                        unused(entry.parameters, p, &light.parameters).as_deref(),
+                    )
                 {
                     context.act(Action::Do(Effect::Pick(Pick::File(Selection::Light(i), p))));
                 }

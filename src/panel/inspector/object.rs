@@ -127,7 +127,7 @@ impl Shown<'_> {
         let Some(shape) = registry.shape(&object.object_type) else { return };
         for p in shape.parameters {
             if let Value::File(file) = object.shape.get(p)
-                && linked::within(ui, Domain::Shape, |ui| knob::file_knob(ui, p, &file))
+                && linked::within(ui, Domain::Shape, |ui| knob::file_knob(ui, p, &file, None))
             {
                 context.act(Action::Do(Effect::Pick(Pick::File(Selection::Object(i), p))));
             }

@@ -13,15 +13,16 @@ use crate::{
 
 impl Knob for Choice {
     fn show(&self, ui: &mut Ui, of: &Declared, value: &Value) -> Option<Value> {
+        // The name in files is a word, not a symbol of the equation.
+        let symbol = if of.parameter.symbol == of.parameter.name { "" } else { of.caption.symbol };
+        let caption = Caption { symbol, ..of.caption };
         if let Some(on) = value.truth() {
-            // The name in files is a word, not a symbol of the equation.
-            let symbol = if of.parameter.symbol == of.parameter.name { "" } else { of.caption.symbol };
-            return flag_knob(ui, of.salt, &Caption { symbol, ..of.caption }, on).map(Value::flag);
+            return flag_knob(ui, of.salt, &caption, on).map(Value::flag);
         }
         let Value::Choice(id) = value else { return None };
         let chosen = self.options.iter().position(|(option, _)| option == id).unwrap_or(0);
         let names: Vec<_> = self.options.iter().map(|(_, name)| *name).collect();
-        let new = choice_knob(ui, of.salt, &of.caption, chosen, &names)?;
+        let new = choice_knob(ui, of.salt, &caption, chosen, &names)?;
         Some(Value::Choice(self.options[new].0.into()))
     }
 }

@@ -4,11 +4,10 @@ use bevy_egui::egui::{Ui, WidgetType};
 
 use super::{
     Declared, Knob,
-    line::{Caption, button, explain, tooltip},
+    line::{Caption, button, explain, knob, tooltip},
 };
-use crate::files::Shown as _;
 use crate::{
-    panel::linked,
+    files::Shown as _,
     parameter::{NamedFile, Parameter, Value, kind::file::File},
 };
 
@@ -21,14 +20,15 @@ impl Knob for File {
 
 /// A file: label at the left, and at the right a button with the file name. Returns true if the user wants another
 /// file.
-pub fn file_knob(ui: &mut Ui, p: &Parameter, file: &NamedFile) -> bool {
-    let caption = Caption { symbol: p.symbol, ..Caption::new(p.label, "", p.help) };
-    let (label, button) = button(ui, &caption, file.name(), "…", WidgetType::Button);
-    linked::touch(ui, label.rect.union(button.rect), &[p.symbol]);
-    explain(label, |ui| tooltip(ui, &caption, "", ""));
-    let place = file.path().map_or("part of the program".to_owned(), |path| path.shown().to_string());
-    let text = file.problem().unwrap_or(place);
-    let clicked = button.on_hover_text(text).clicked();
-    ui.add_space(4.0);
-    clicked
+pub fn file_knob(ui: &mut Ui, p: &Parameter, file: &NamedFile, disabled: Option<&str>) -> bool {
+    let symbol = if p.symbol == p.name { "" } else { p.symbol };
+    let caption = Caption { symbol, disabled, ..Caption::new(p.label, "", p.help) };
+    knob(ui, p.name, &caption, |ui| {
+        let (label, button) = button(ui, &caption, file.name(), "…", WidgetType::Button);
+        explain(label, |ui| tooltip(ui, &caption, "", ""));
+        let place = file.path().map_or("part of the program".to_owned(), |path| path.shown().to_string());
+        let clicked = button.on_hover_text(file.problem().unwrap_or(place)).clicked();
+        ui.add_space(4.0);
+        clicked
+    })
 }

@@ -8,7 +8,7 @@ use crate::shading::Varying;
 
 mod tile;
 
-pub(super) use tile::{TILE, Tile};
+pub(super) use tile::{TILE, Tile, even};
 
 /// Steps per pixel of the grid to which corners are snapped.
 pub(super) const SUBPIXEL: i64 = 256;

@@ -150,17 +150,23 @@ impl<const S: usize, const E: usize> Tile<S, E> {
 
     /// The pixels: the mean of their samples, and the fraction covered by objects.
     pub(in crate::reference) fn resolve(&self) -> impl Iterator<Item = Vec4> {
-        let share = 1.0 / S as f32;
-        self.nearness.iter().zip(&self.colour).map(move |(nearness, colour)| {
-            let mut sum = Vec4::ZERO;
-            for s in 0..S {
-                if nearness[s] > 0.0 {
-                    sum += colour[s].extend(1.0);
-                }
-            }
-            sum * share
-        })
+        self.nearness.iter().zip(&self.colour).map(|(nearness, colour)| mean(nearness, colour))
     }
+}
+
+/// A pixel all of whose samples show the same light.
+pub(in crate::reference) fn even<const S: usize>(light: Vec3) -> Vec4 {
+    mean(&[f32::MAX; S], &[light; S])
+}
+
+fn mean<const S: usize>(nearness: &[f32; S], colour: &[Vec3; S]) -> Vec4 {
+    let mut sum = Vec4::ZERO;
+    for s in 0..S {
+        if nearness[s] > 0.0 {
+            sum += colour[s].extend(1.0);
+        }
+    }
+    sum * (1.0 / S as f32)
 }
 
 #[cfg(test)]

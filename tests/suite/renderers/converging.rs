@@ -10,7 +10,7 @@ use lights_camera_models::{
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
-        converge::Converged,
+        converge::{Converged, Convergence},
         noise::Noise,
         view::{Drawing, View},
     },
@@ -140,6 +140,8 @@ fn a_converged_view_rests_until_something_changes_and_begins_again_then() {
 fn the_noise_of_a_picture_is_measured_as_it_converges() {
     let scene = scene("rectangle", "phong");
     let mut renderer = renderer(&scene);
+    // The estimate depends on the number of samples in a frame, and by default this depends on the machine.
+    renderer.app().world_mut().resource_mut::<Convergence>().pace = Some(8);
     let mut told = Vec::new();
     let now = |renderer: &mut GpuRenderer| {
         let world = renderer.app().world_mut();
