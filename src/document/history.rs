@@ -470,14 +470,15 @@ mod tests {
             ..Scene::default()
         };
         // How many of the first and of the last stay.
-        for (old, new, [first, last]) in [
-            (&[1, 2, 3, 4][..], &[1, 2, 4][..], [2, 1]),
+        let cases: [(&[usize], &[usize], [usize; 2]); 6] = [
+            (&[1, 2, 3, 4], &[1, 2, 4], [2, 1]),
             (&[1, 2, 4], &[1, 2, 3, 4], [2, 1]),
             (&[1, 2, 3], &[1, 9, 3], [1, 1]),
             (&[1, 1, 1], &[1, 1], [2, 0]),
             (&[1, 2], &[1, 2], [2, 0]),
             (&[1, 2], &[3], [0, 0]),
-        ] {
+        ];
+        for (old, new, [first, last]) in cases {
             let (from, mut to) = (Scene { name: Some("other".to_owned()), ..scene(new) }, scene(old));
             // Strings keep their memory unless they are cloned.
             let memory = |scene: &Scene| -> Vec<_> {
