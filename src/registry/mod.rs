@@ -43,9 +43,9 @@ use crate::{
     shape::{self, ObjectType, ShapeEntry},
 };
 
-/// The keys that lights of all types may have in scene files.
+/// The keys that lights of all types may have in scene files; the parameters of a type have an empty one.
 pub const LIGHT_KEYS: &[&str] = light::fields!(keys);
-/// The keys that objects of all types may have in scene files.
+/// The keys that objects of all types may have in scene files; the parameters of a type have an empty one.
 pub const OBJECT_KEYS: &[&str] = shape::fields!(keys);
 /// Letters used by the window for anything but choosing a shading model.
 pub const WINDOW_KEYS: &[char] = &['C', 'E', 'H', 'R', 'T', 'V', 'X'];
