@@ -1,4 +1,5 @@
-//! Enums whose values are declared in a file each, lists of types that are, and choices, which take a line each.
+//! Enums whose values are declared in a file each, lists of types that are, choices, which take a line each, and the
+//! keys of declared fields.
 
 /// An enum with the static that declares each of its values. The declaration has an `id`.
 macro_rules! declared {
@@ -89,4 +90,26 @@ macro_rules! choice {
     };
 }
 
-pub(crate) use {choice, declared, take_each};
+/// The key of a declared field in scene files: its name, unless the declaration has another.
+macro_rules! key {
+    ($field:ident) => {
+        stringify!($field)
+    };
+    ($field:ident $key:literal) => {
+        $key
+    };
+}
+
+/// The keys of all declared fields of a part; that of the parameters of its type is empty.
+macro_rules! keys {
+    (
+        $(#[$about:meta])+
+        pub struct $Part:ident($what:literal) {
+            $($(#[$help:meta])+ $field:ident $([$key:literal])?: $type:ty = $declared:expr, $default:expr;)+
+        }
+    ) => {
+        &[$($crate::declared::key!($field $($key)?)),+]
+    };
+}
+
+pub(crate) use {choice, declared, key, keys, take_each};

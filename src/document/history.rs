@@ -125,6 +125,17 @@ pub(super) fn copy_rest(from: &Scene, to: &mut Scene) {
     (to.lights, to.objects) = lists;
 }
 
+/// Copies everything from another scene; of the lists, only the range in which they differ.
+pub(super) fn copy_all(from: &Scene, to: &mut Scene) {
+    fn copy<T: Clone + PartialEq>(from: &[T], to: &mut Vec<T>) {
+        let [gone, come] = difference([to.len(), from.len()], |i, j| to[i] == from[j]);
+        to.splice(gone, from[come].iter().cloned());
+    }
+    copy_rest(from, to);
+    copy(&from.lights, &mut to.lights);
+    copy(&from.objects, &mut to.objects);
+}
+
 /// The difference between two versions of a scene: ranges of lights and of objects that do not overlap, in
 /// the order of the scene. Positions refer to the old version.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -449,6 +460,37 @@ mod tests {
         let removed: Vec<_> = (1..=20).map(Extent::Object).collect();
         document.submit_lists(&start, &removed, Selection::Room, &registry).expect("they may go");
         assert_eq!(document.steps().len(), 0, "together that changes nothing");
+    }
+
+    #[test]
+    fn of_a_list_only_the_range_that_differs_is_copied() {
+        let object = |size: usize| Object { size: size as f32, ..Object::default() };
+        let scene = |sizes: &[usize]| Scene {
+            objects: sizes.iter().copied().map(object).collect(),
+            ..Scene::default()
+        };
+        // How many of the first and of the last stay.
+        let cases: [(&[usize], &[usize], [usize; 2]); 6] = [
+            (&[1, 2, 3, 4], &[1, 2, 4], [2, 1]),
+            (&[1, 2, 4], &[1, 2, 3, 4], [2, 1]),
+            (&[1, 2, 3], &[1, 9, 3], [1, 1]),
+            (&[1, 1, 1], &[1, 1], [2, 0]),
+            (&[1, 2], &[1, 2], [2, 0]),
+            (&[1, 2], &[3], [0, 0]),
+        ];
+        for (old, new, [first, last]) in cases {
+            let (from, mut to) = (Scene { name: Some("other".to_owned()), ..scene(new) }, scene(old));
+            // Strings keep their memory unless they are cloned.
+            let memory = |scene: &Scene| -> Vec<_> {
+                scene.objects.iter().map(|object| object.object_type.as_ptr()).collect()
+            };
+            let before = memory(&to);
+            Extent::All.copy(&from, &mut to);
+            let after = memory(&to);
+            assert!(to == from, "{old:?} → {new:?}");
+            assert_eq!(after[..first], before[..first], "{old:?} → {new:?}");
+            assert_eq!(after[after.len() - last..], before[before.len() - last..], "{old:?} → {new:?}");
+        }
     }
 
     #[test]

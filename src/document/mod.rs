@@ -99,7 +99,7 @@ impl Extent {
                     to.clone_from(from);
                 }
             }
-            Self::All => to.clone_from(from),
+            Self::All => history::copy_all(from, to),
         }
     }
 }

@@ -23,6 +23,7 @@ mod disc;
 mod environment;
 pub mod extent;
 mod factor;
+mod fields;
 pub mod ies;
 mod outline;
 pub mod panorama;
@@ -43,6 +44,7 @@ pub use self::{
     spot::Spot, sun::Sun, twin::Twin,
 };
 use extent::{BLOCK, Cone, Directions, Sample, Seen};
+pub(crate) use fields::fields;
 
 /// Receives light types one after the other.
 pub trait Take {

@@ -20,16 +20,19 @@ use crate::optics::colour::Encoding;
 /// The encoding of colours in components: they are linear, whatever the display settings.
 const ENCODING: Encoding = Encoding::Srgb;
 
-/// Finds the entities on which components changed since the world's last change tick.
-pub type Watch = Box<dyn FnMut(&mut World, &mut Vec<Entity>) + Send + Sync>;
+/// Finds the entities, all or among some, on which components changed since the world's last change tick.
+pub type Watch = Box<dyn FnMut(&mut World, Option<&[Entity]>, &mut Vec<Entity>) + Send + Sync>;
 
 /// Finds the entities that pass a filter for changes.
 #[must_use]
 pub fn watch<F: QueryFilter + 'static>() -> Watch {
     let mut changed: Option<QueryState<Entity, F>> = None;
-    Box::new(move |world: &mut World, found: &mut Vec<Entity>| {
+    Box::new(move |world: &mut World, among: Option<&[Entity]>, found: &mut Vec<Entity>| {
         let changed = changed.get_or_insert_with(|| world.query_filtered());
-        found.extend(changed.iter(world));
+        match among {
+            Some(among) => found.extend(changed.iter_many(world, among)),
+            None => found.extend(changed.iter(world)),
+        }
     })
 }
 

@@ -34,6 +34,7 @@ pub use formats::FormatEntry;
 pub use light_set::{LightSet, MAX_LIGHT_TYPES};
 
 use crate::{
+    declared::keys,
     light::{self, LightEntry, LightType},
     parameter::{Parameter, Value},
     reflection::{self, Family, Measured, ModelEntry, ReflectionModel},
@@ -42,31 +43,10 @@ use crate::{
     shape::{self, ObjectType, ShapeEntry},
 };
 
-/// The keys that lights of all types may have in scene files.
-pub const LIGHT_KEYS: &[&str] = &[
-    "type",
-    "name",
-    "enabled",
-    "position",
-    "direction",
-    "colour",
-    "colour_temperature",
-    "intensity",
-    "luminous_flux",
-];
-/// The keys that objects of all types may have in scene files.
-pub const OBJECT_KEYS: &[&str] = &[
-    "type",
-    "name",
-    "visible",
-    "position",
-    "size",
-    "rotation",
-    "tessellation",
-    "reflection_model",
-    "shading_model",
-    "material",
-];
+/// The keys that lights of all types may have in scene files; the parameters of a type have an empty one.
+pub const LIGHT_KEYS: &[&str] = light::fields!(keys);
+/// The keys that objects of all types may have in scene files; the parameters of a type have an empty one.
+pub const OBJECT_KEYS: &[&str] = shape::fields!(keys);
 /// Letters used by the window for anything but choosing a shading model.
 pub const WINDOW_KEYS: &[char] = &['C', 'E', 'H', 'R', 'T', 'V', 'X'];
 

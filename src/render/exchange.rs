@@ -50,7 +50,7 @@ impl SceneEntities {
             None => {
                 let ids = ids(document);
                 if *document != scene.0 {
-                    scene.0.clone_from(document);
+                    Extent::All.copy(document, &mut scene.0);
                 } else if self.ids.as_ref() != Some(&ids) {
                     scene.set_changed();
                 }
@@ -115,7 +115,7 @@ impl SceneEntities {
         let parts = matches!(changes, Changes::Values(parts) if !parts.contains(&Extent::All));
         if !parts || !adopted {
             if *document != scene.0 {
-                scene.0.clone_from(document);
+                Extent::All.copy(document, &mut scene.0);
             }
             self.identify_later(document, scene);
         }

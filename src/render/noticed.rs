@@ -1,6 +1,7 @@
-//! What others changed in the entities of parts. [`reconcile`](super::reconcile::reconcile) and
-//! [`absorb`](super::absorb::absorb), which write to these entities, first [take] it and then [give it back](give_back)
-//! as far as it is not absorbed, so that neither sees what it or the other wrote.
+//! What others changed in the entities of parts. [`absorb`](super::absorb::absorb) [takes](take) it, and [gives
+//! back](give_back) what it does not absorb. [`reconcile`](super::reconcile::reconcile) writes to few entities:
+//! it [keeps](keep) what others changed in each of them before, and [lists](wrote) them afterwards. So neither
+//! sees what it or the other wrote, and all parts are searched only once per frame.
 
 use bevy::{
     camera::visibility::Visibility,
@@ -34,6 +35,9 @@ pub(super) struct Watches {
     others: Vec<Watch>,
     /// The tick of the last changes that are known.
     known: Tick,
+    /// Entities that `reconcile` wrote later, sorted. Their changes up to the tick `at` are known too.
+    written: Vec<Entity>,
+    at: Tick,
 }
 
 impl Watches {
@@ -42,7 +46,7 @@ impl Watches {
         Self {
             transforms: vec![watch::<(Changed<Transform>, IsPart, Without<Animated>)>()],
             others: vec![watch::<OfPart>()],
-            known: Tick::default(),
+            ..Self::default()
         }
     }
 
@@ -50,28 +54,196 @@ impl Watches {
     pub(super) fn add(&mut self, component: Watch) {
         self.others.push(component);
     }
+
+    /// Finds what changed after a tick, in all entities or in some.
+    fn find(&mut self, world: &mut World, after: Tick, among: Option<&[Entity]>, found: &mut Touched) {
+        world.last_change_tick_scope(after, |world| {
+            self.transforms.iter_mut().for_each(|watch| watch(world, among, &mut found.moved));
+            self.others.iter_mut().for_each(|watch| watch(world, among, &mut found.entities));
+        });
+    }
 }
 
-/// Takes what others changed. What changes from now on is known, until it is given back.
-pub(super) fn take(world: &mut World) -> Touched {
-    let watches = world.get_resource_mut::<Watches>().map(|mut watches| std::mem::take(&mut *watches));
-    let Some(mut watches) = watches else { return Touched::default() };
-    let mut touched = std::mem::take(&mut *world.resource_mut::<Touched>());
-    world.last_change_tick_scope(watches.known, |world| {
-        watches.transforms.iter_mut().for_each(|watch| watch(world, &mut touched.moved));
-        watches.others.iter_mut().for_each(|watch| watch(world, &mut touched.entities));
-    });
+/// Calls a function with the watches, if the world has any.
+fn with_watches<T>(world: &mut World, act: impl FnOnce(&mut World, &mut Watches) -> T) -> Option<T> {
+    let mut watches = std::mem::take(&mut *world.get_resource_mut::<Watches>()?);
+    let answer = act(world, &mut watches);
     *world.resource_mut::<Watches>() = watches;
-    touched
+    Some(answer)
 }
 
-/// Gives back what is not absorbed yet, with the entities that are gone meanwhile.
-pub(super) fn give_back(world: &mut World, mut touched: Touched) {
-    let now = world.change_tick();
-    let Some(mut watches) = world.get_resource_mut::<Watches>() else { return };
-    watches.known = now;
+/// Takes what others changed. It is known from now on.
+pub(super) fn take(world: &mut World) -> Touched {
+    let taken = with_watches(world, |world, watches| {
+        let Touched { entities, moved, rested } = std::mem::take(&mut *world.resource_mut::<Touched>());
+        let mut touched = Touched { rested, ..Touched::default() };
+        watches.find(world, watches.known, None, &mut touched);
+        let written = std::mem::take(&mut watches.written);
+        for found in [&mut touched.entities, &mut touched.moved] {
+            found.retain(|entity| written.binary_search(entity).is_err());
+        }
+        watches.find(world, watches.at, Some(&written), &mut touched);
+        touched.entities.extend(entities);
+        touched.moved.extend(moved);
+        watches.known = world.increment_change_tick();
+        touched
+    });
+    taken.unwrap_or_default()
+}
+
+/// Gives back what is not absorbed yet. All changes up to now are known.
+pub(super) fn give_back(world: &mut World, touched: Touched) {
+    with_watches(world, |world, watches| {
+        watches.known = world.increment_change_tick();
+        put_back(world, touched);
+    });
+}
+
+/// Begins writing. Returns what is already noticed.
+pub(super) fn begin(world: &mut World) -> Touched {
+    match world.get_resource::<Watches>() {
+        // Nobody looked since the last time: one tick would not do for both.
+        Some(watches) if !watches.written.is_empty() => take(world),
+        Some(_) => std::mem::take(&mut *world.resource_mut::<Touched>()),
+        None => Touched::default(),
+    }
+}
+
+/// Keeps what others changed in an entity before it is written.
+pub(super) fn keep(world: &mut World, entity: Entity, touched: &mut Touched) {
+    with_watches(world, |world, watches| watches.find(world, watches.known, Some(&[entity]), touched));
+}
+
+/// Ends writing: gives back what was noticed, and lists the written entities.
+pub(super) fn wrote(world: &mut World, touched: Touched, mut written: Vec<Entity>) {
+    with_watches(world, |world, watches| {
+        written.sort_unstable();
+        (watches.written, watches.at) = (written, world.increment_change_tick());
+        put_back(world, touched);
+    });
+}
+
+/// Puts back what is still to be absorbed, with the entities that are gone meanwhile.
+fn put_back(world: &mut World, mut touched: Touched) {
     let meanwhile = std::mem::take(&mut *world.resource_mut::<Touched>());
     let gone = meanwhile.entities.into_iter().filter(|entity| world.get_entity(*entity).is_err());
     touched.entities.extend(gone);
     *world.resource_mut::<Touched>() = touched;
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    };
+
+    use super::*;
+    use crate::{
+        parameter::Value,
+        registry::Registry,
+        render::{
+            entities::{CurrentScene, SceneEntities},
+            reconcile::reconcile,
+            typed::know_types,
+        },
+        scene::{Object, Scene},
+    };
+
+    /// A world whose entities follow its scene.
+    fn world() -> World {
+        let mut world = World::new();
+        world.insert_resource(Registry::builtin());
+        world
+            .insert_resource(CurrentScene(Scene { objects: vec![Object::default(); 5], ..Scene::default() }));
+        world.init_resource::<SceneEntities>();
+        know_types(&mut world);
+        reconcile(&mut world);
+        assert!(noticed(&mut world).is_empty(), "the parts are spawned");
+        world
+    }
+
+    fn noticed(world: &mut World) -> Vec<Entity> {
+        let Touched { mut entities, moved, rested } = take(world);
+        give_back(world, Touched::default());
+        entities.extend(moved.into_iter().chain(rested));
+        entities.sort_unstable();
+        entities.dedup();
+        entities
+    }
+
+    fn change(world: &mut World, change: impl FnOnce(&mut Scene)) {
+        change(&mut world.resource_mut::<CurrentScene>().0);
+        reconcile(world);
+    }
+
+    #[test]
+    fn written_parts_are_not_noticed_whatever_is_written() {
+        let mut world = world();
+        let changes: [fn(&mut Scene); 8] = [
+            |scene| scene.objects[1].size = 0.5,
+            |scene| scene.objects[1].material.set("k_d", Value::Number(0.25)),
+            |scene| scene.objects[1].object_type = "torus".to_owned(),
+            |scene| scene.lights[0].intensity = 3.0,
+            |scene| scene.lights[0].light_type = "directional".to_owned(),
+            |scene| scene.observer.field_of_view = 60.0,
+            |scene| scene.objects.extend_from_within(..2),
+            |scene| drop(scene.objects.pop()),
+        ];
+        for (i, what) in changes.into_iter().enumerate() {
+            let before = world.resource::<SceneEntities>().objects.clone();
+            change(&mut world, what);
+            let gone: Vec<_> = before.into_iter().filter(|e| world.get_entity(*e).is_err()).collect();
+            assert_eq!(noticed(&mut world), gone, "change {i}");
+        }
+    }
+
+    #[test]
+    fn the_changes_of_others_are_noticed_before_and_after_writing() {
+        let mut world = world();
+        let objects = world.resource::<SceneEntities>().objects.clone();
+        let moves = |world: &mut World, i: usize| {
+            world.get_mut::<Transform>(objects[i]).expect("it has a place").translation.x += 0.25;
+        };
+        let hides = |world: &mut World, i: usize| {
+            *world.get_mut::<Visibility>(objects[i]).expect("it has one") = Visibility::Hidden;
+        };
+        let mut size = 1.0;
+        let mut grow = |world: &mut World| {
+            size += 0.5;
+            change(world, |scene| scene.objects[1].size = size);
+        };
+        // The written component, another of that entity, another entity.
+        let acts: [(&dyn Fn(&mut World, usize), usize); 3] = [(&moves, 1), (&hides, 1), (&moves, 3)];
+        for (act, i) in acts {
+            act(&mut world, i);
+            grow(&mut world);
+            assert_eq!(noticed(&mut world), [objects[i]], "before");
+            grow(&mut world);
+            act(&mut world, i);
+            assert_eq!(noticed(&mut world), [objects[i]], "after");
+            assert!(noticed(&mut world).is_empty(), "once");
+        }
+        // Written twice before anybody looks.
+        grow(&mut world);
+        moves(&mut world, 1);
+        change(&mut world, |scene| scene.objects[2].size = 3.0);
+        moves(&mut world, 4);
+        let mut both = [objects[1], objects[4]];
+        both.sort_unstable();
+        assert_eq!(noticed(&mut world), both);
+    }
+
+    #[test]
+    fn an_edit_searches_all_parts_once() {
+        let mut world = world();
+        let searches = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&searches);
+        world.resource_mut::<Watches>().add(Box::new(move |_, among, _| {
+            counted.fetch_add(usize::from(among.is_none()), Ordering::Relaxed);
+        }));
+        change(&mut world, |scene| scene.objects[1].size = 0.5);
+        noticed(&mut world);
+        assert_eq!(searches.load(Ordering::Relaxed), 1);
+    }
 }

@@ -8,6 +8,7 @@ use super::{
     entities::{CurrentScene, Ids, SceneEntities},
     mirror::Part,
     noticed,
+    parts::Touched,
     shown::show_objects,
     typed::PartTypes,
 };
@@ -57,11 +58,39 @@ fn align<T: PartialEq>(
     Alignment { gone, come, from, surplus: surplus.into_iter().flatten().collect() }
 }
 
+/// Writes parts into the world.
+struct Writer<'w> {
+    world: &'w mut World,
+    types: PartTypes,
+    /// What others changed.
+    touched: Touched,
+    /// The entities of the parts.
+    written: Vec<Entity>,
+}
+
+impl Writer<'_> {
+    /// Writes the differences of a part from `old` into its entity, or everything.
+    fn write<T: Part>(&mut self, entity: Entity, part: &T, old: Option<&T>) {
+        noticed::keep(self.world, entity, &mut self.touched);
+        // If it is gone, `absorb` decides what happens.
+        if let Ok(mut entity) = self.world.get_entity_mut(entity) {
+            part.write(&mut entity, old, &self.types);
+        }
+        self.written.push(entity);
+    }
+
+    /// Spawns an entity for a part.
+    fn spawn<T: Part>(&mut self, part: &T) -> Entity {
+        let entity = part.spawn(self.world, &self.types);
+        self.written.push(entity);
+        entity
+    }
+}
+
 /// Assigns entities to the parts of a new list, and makes `old` equal to `new`. Returns the entities to
 /// remove.
 fn follow<T: Part>(
-    world: &mut World,
-    types: &PartTypes,
+    to: &mut Writer,
     entities: &mut Vec<Entity>,
     old: &mut Vec<T>,
     new: &[T],
@@ -69,16 +98,12 @@ fn follow<T: Part>(
 ) -> Vec<Entity> {
     let mut changed = Vec::with_capacity(way.come.len());
     for (part, from) in new[way.come.clone()].iter().zip(&way.from) {
-        let known = from.map(|i| (entities[i], old.get(i)));
-        changed.push(match known {
-            Some((entity, before)) => {
-                // If it is gone, `absorb` decides what happens.
-                if let Ok(mut entity) = world.get_entity_mut(entity) {
-                    part.write(&mut entity, before, types);
-                }
-                entity
+        changed.push(match from {
+            Some(i) => {
+                to.write(entities[*i], part, old.get(*i));
+                entities[*i]
             }
-            None => part.spawn(world, types),
+            None => to.spawn(part),
         });
     }
     let surplus = way.surplus.iter().map(|i| entities[*i]).collect();
@@ -91,29 +116,24 @@ fn follow<T: Part>(
 /// Makes the entities equal to the scene. Runs if [`CurrentScene`] changed; writes only differences, and
 /// compares nothing where these are known.
 pub fn reconcile(world: &mut World) {
-    let touched = noticed::take(world);
+    let touched = noticed::begin(world);
     // Not with `resource_scope`, after which Bevy marks the resource as changed.
     let types = world.get_resource::<PartTypes>().cloned().unwrap_or_default();
     let mut entities = std::mem::take(world.resource_mut::<SceneEntities>().bypass_change_detection());
     let mut current = world.resource_mut::<CurrentScene>();
     let changed = current.last_changed();
     let scene = std::mem::take(&mut current.bypass_change_detection().0);
-    let written = entities.reconcile(world, &scene, changed, &types);
+    let mut to = Writer { world, types, touched, written: Vec::new() };
+    entities.reconcile(&mut to, &scene, changed);
+    let Writer { world, touched, written, .. } = to;
     world.resource_mut::<CurrentScene>().bypass_change_detection().0 = scene;
     *world.resource_mut::<SceneEntities>().bypass_change_detection() = entities;
     show_objects(world, &written);
-    noticed::give_back(world, touched);
+    noticed::wrote(world, touched, written);
 }
 
 impl SceneEntities {
-    /// Returns the entities of the objects that differed.
-    fn reconcile(
-        &mut self,
-        world: &mut World,
-        scene: &Scene,
-        changed: Tick,
-        types: &PartTypes,
-    ) -> Vec<Entity> {
+    fn reconcile(&mut self, to: &mut Writer, scene: &Scene, changed: Tick) {
         let due = std::mem::take(&mut self.due);
         // The lists are public: others may have changed them.
         let known = self.seen == Some(changed)
@@ -122,11 +142,14 @@ impl SceneEntities {
         let is_first = self.mirrored.is_none();
         let nothing = || Scene { lights: vec![], objects: vec![], ..Scene::default() };
         let mut old = self.mirrored.take().unwrap_or_else(nothing);
-        let (eye, mut written) = (old.observer, Vec::new());
+        let eye = old.observer;
         if known && !is_first {
-            for part in due {
-                written.extend(self.write(part, world, scene, &old, types));
-                part.copy(scene, &mut old);
+            for (k, part) in due.iter().enumerate() {
+                // A part with several changes is written once.
+                if !due[..k].contains(part) {
+                    self.write(*part, to, scene, &old);
+                    part.copy(scene, &mut old);
+                }
             }
         } else {
             let ids = self.ids.as_ref().zip(self.new_ids.as_ref());
@@ -137,70 +160,46 @@ impl SceneEntities {
             let light_way = align(self.lights.len(), &old.lights, &scene.lights, lights, &mut visits);
             let way = align(self.objects.len(), &old.objects, &scene.objects, objects, &mut visits);
             self.visits += visits + way.come.len() as u64;
-            let surplus = follow(world, types, &mut self.lights, &mut old.lights, &scene.lights, &light_way);
-            let no_objects = follow(world, types, &mut self.objects, &mut old.objects, &scene.objects, &way);
+            let surplus = follow(to, &mut self.lights, &mut old.lights, &scene.lights, &light_way);
+            let no_objects = follow(to, &mut self.objects, &mut old.objects, &scene.objects, &way);
             // Removed entities are forgotten before their components report it.
             no_objects.iter().for_each(|entity| self.forget(*entity));
             let elsewhere = |(k, from): (usize, &Option<usize>)| *from != Some(way.gone.start + k);
             if foreign || !way.surplus.is_empty() || way.from.iter().enumerate().any(elsewhere) {
                 self.place(way.come.start);
             }
-            written.extend_from_slice(&self.objects[way.come]);
             self.ids = None;
             Extent::Rest.copy(scene, &mut old);
             for entity in surplus.into_iter().chain(no_objects) {
-                let _ = world.try_despawn(entity);
+                let _ = to.world.try_despawn(entity);
             }
         }
         self.mirrored = Some(old);
         if let Some(ids) = self.new_ids.take() {
-            self.identify(world, ids);
+            self.identify(to.world, ids);
         }
         match self.observer {
-            Some(entity) if scene.observer != eye => {
-                if let Ok(mut entity) = world.get_entity_mut(entity) {
-                    scene.observer.write(&mut entity, Some(&eye), types);
-                }
-            }
+            Some(entity) if scene.observer != eye => to.write(entity, &scene.observer, Some(&eye)),
             Some(_) => {}
-            None => self.observer = Some(scene.observer.spawn(world, types)),
+            None => self.observer = Some(to.spawn(&scene.observer)),
         }
-        written
     }
 
-    /// Writes a light or an object into its entity. Returns that of an object.
-    fn write(
-        &mut self,
-        part: Extent,
-        world: &mut World,
-        scene: &Scene,
-        old: &Scene,
-        types: &PartTypes,
-    ) -> Option<Entity> {
-        fn write<T: Part>(
-            world: &mut World,
-            types: &PartTypes,
-            at: Option<&Entity>,
-            new: Option<&T>,
-            old: Option<&T>,
-        ) {
-            if let (Some(entity), Some(new)) = (at, new)
-                && let Ok(mut entity) = world.get_entity_mut(*entity)
-            {
-                new.write(&mut entity, old, types);
-            }
-        }
+    /// Writes a light or an object into its entity.
+    fn write(&mut self, part: Extent, to: &mut Writer, scene: &Scene, old: &Scene) {
         match part {
             Extent::Light(i) => {
-                write(world, types, self.lights.get(i), scene.lights.get(i), old.lights.get(i));
-                None
+                if let (Some(entity), Some(light)) = (self.lights.get(i), scene.lights.get(i)) {
+                    to.write(*entity, light, old.lights.get(i));
+                }
             }
             Extent::Object(i) => {
                 self.visits += 1;
-                write(world, types, self.objects.get(i), scene.objects.get(i), old.objects.get(i));
-                self.objects.get(i).copied()
+                if let (Some(entity), Some(object)) = (self.objects.get(i), scene.objects.get(i)) {
+                    to.write(*entity, object, old.objects.get(i));
+                }
             }
-            Extent::Rest | Extent::All => None,
+            Extent::Rest | Extent::All => {}
         }
     }
 

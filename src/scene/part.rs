@@ -242,7 +242,7 @@ macro_rules! part {
             $(
                 #[doc = concat!("The declaration of `", stringify!($field), "`.")]
                 pub const $field: $crate::scene::Field = $crate::scene::Field {
-                    key: $crate::scene::part::part!(@key $field $($key)?),
+                    key: $crate::declared::key!($field $($key)?),
                     help: concat!($($help),+),
                     ..$declared
                 };
@@ -288,8 +288,6 @@ macro_rules! part {
             const FIELDS: &'static [&'static $crate::scene::Field] = &[$(&Self::$field),+];
         }
     };
-    (@key $field:ident) => { stringify!($field) };
-    (@key $field:ident $key:literal) => { $key };
 }
 pub(super) use part;
 

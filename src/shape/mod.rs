@@ -9,6 +9,7 @@ use bevy::{ecs::component::Component, reflect::Reflectable};
 use crate::{declared::take_each, parameter::ParameterSet};
 
 mod entry;
+mod fields;
 pub mod mesh;
 pub mod mesh_file;
 
@@ -21,6 +22,7 @@ mod torus;
 
 pub use cube::Cube;
 pub use entry::{Bounds, MeshKey, ShapeEntry};
+pub(crate) use fields::fields;
 pub use mesh::PolygonMesh;
 pub use mesh_file::MeshFile;
 pub use sphere::Sphere;

@@ -59,6 +59,16 @@ fn submit(
     said.0.extend(answer.err());
 }
 
+/// What a system does after [`reconcile`] and before [`absorb`].
+#[derive(Default, Resource)]
+struct Between(Option<fn(&mut World)>);
+
+fn between(world: &mut World) {
+    if let Some(act) = world.resource_mut::<Between>().0.take() {
+        act(world);
+    }
+}
+
 /// A world with a document, and the systems of the window between the two.
 struct Lab(World, Schedule);
 
@@ -73,10 +83,11 @@ impl Lab {
         world.init_resource::<SceneEntities>();
         world.init_resource::<Shown>();
         world.init_resource::<Said>();
+        world.init_resource::<Between>();
         know_types(&mut world);
         let mut schedule = Schedule::default();
         let follow = reconcile.run_if(resource_changed::<CurrentScene>);
-        schedule.add_systems((show, follow, absorb, submit, show_lights).chain());
+        schedule.add_systems((show, follow, between, absorb, submit, show_lights).chain());
         let mut lab = Self(world, schedule);
         lab.frame();
         lab
@@ -428,6 +439,65 @@ fn what_was_written_is_not_read_in_the_same_frame_or_the_next() {
     assert_eq!([visits(&mut lab), visits(&mut lab)], [4, 4]);
     lab.check("both");
     assert_eq!((lab.document().objects[2].position.x, lab.document().objects[2].size), (4.0, 0.5));
+}
+
+#[test]
+fn edits_and_changes_by_systems_in_one_frame_both_stay_in_either_order() {
+    fn get<C: Component<Mutability = bevy::ecs::component::Mutable>>(
+        world: &mut World,
+        i: usize,
+    ) -> Mut<'_, C> {
+        let object = world.resource::<SceneEntities>().objects[i];
+        world.get_mut::<C>(object).expect("it has the component")
+    }
+    // The component that is written, another of its entity, and another entity.
+    let acts: [(fn(&mut World), fn(&mut Scene)); 3] = [
+        (|world| get::<Transform>(world, 2).translation.x = 4.5, |scene| scene.objects[2].position.x = 4.5),
+        (
+            |world| get::<Surface>(world, 2).material.set("k_d", Value::Number(0.25)),
+            |scene| scene.objects[2].material.set("k_d", Value::Number(0.25)),
+        ),
+        (|world| get::<Transform>(world, 3).translation.x = 4.5, |scene| scene.objects[3].position.x = 4.5),
+    ];
+    for (i, (act, changed)) in acts.into_iter().enumerate() {
+        for later in [false, true] {
+            let mut lab = Lab::new();
+            lab.settle();
+            let registry = lab.0.resource::<Registry>().clone();
+            let mut wanted = lab.document().scene().clone();
+            wanted.objects[2].size = 0.25;
+            changed(&mut wanted);
+            let start = lab.0.resource::<SceneEntities>().visits();
+            let edit = Edit::set(Part::Object(2), Object::size, 0.25);
+            lab.document().edit(edit, Selection::Room, &registry).expect("legal");
+            if later {
+                lab.0.insert_resource(Between(Some(act)));
+            } else {
+                act(&mut lab.0);
+            }
+            lab.frame();
+            let visits = lab.0.resource::<SceneEntities>().visits() - start;
+            assert_eq!(visits, 2, "{i} {later}: one is written, one is read");
+            lab.settle();
+            assert!(*lab.document() == wanted, "{i} {later}");
+        }
+    }
+}
+
+#[test]
+fn a_part_with_two_edits_in_one_frame_is_written_once_and_not_read() {
+    let mut lab = Lab::new();
+    lab.settle();
+    let registry = lab.0.resource::<Registry>().clone();
+    let start = lab.0.resource::<SceneEntities>().visits();
+    for edit in [
+        Edit::set(Part::Object(2), Object::size, 0.25),
+        Edit::set(Part::Object(2), Object::position, Vec3::splat(7.0)),
+    ] {
+        lab.document().edit(edit, Selection::Room, &registry).expect("legal");
+    }
+    lab.settle();
+    assert_eq!(lab.0.resource::<SceneEntities>().visits() - start, 1);
 }
 
 #[test]

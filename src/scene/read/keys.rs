@@ -84,6 +84,8 @@ mod tests {
 
     #[test]
     fn the_registry_knows_which_names_parameters_cannot_have() {
-        assert_eq!((Light::keys(), Object::keys()), (LIGHT_KEYS.to_vec(), OBJECT_KEYS.to_vec()));
+        let named =
+            |keys: &[&'static str]| keys.iter().copied().filter(|key| !key.is_empty()).collect::<Vec<_>>();
+        assert_eq!((Light::keys(), Object::keys()), (named(LIGHT_KEYS), named(OBJECT_KEYS)));
     }
 }
