@@ -1,6 +1,9 @@
 //! Transfers changes of the scene to the entities of its parts.
 
-use std::{collections::HashMap, ops::Range};
+use std::{
+    collections::{HashMap, HashSet},
+    ops::Range,
+};
 
 use bevy::ecs::{change_detection::Tick, prelude::*};
 
@@ -144,12 +147,11 @@ impl SceneEntities {
         let mut old = self.mirrored.take().unwrap_or_else(nothing);
         let eye = old.observer;
         if known && !is_first {
-            for (k, part) in due.iter().enumerate() {
-                // A part with several changes is written once.
-                if !due[..k].contains(part) {
-                    self.write(*part, to, scene, &old);
-                    part.copy(scene, &mut old);
-                }
+            // A part with several changes is written once.
+            let mut seen = HashSet::new();
+            for part in due.into_iter().filter(|part| seen.insert(*part)) {
+                self.write(part, to, scene, &old);
+                part.copy(scene, &mut old);
             }
         } else {
             let ids = self.ids.as_ref().zip(self.new_ids.as_ref());
