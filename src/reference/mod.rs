@@ -363,9 +363,9 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                 }
                 let origin = origin(i, &screen);
                 let mut tile = tile.take();
-                let seen = visible.as_ref().and_then(|visible| visible.within(origin, TILE));
-                if let Some(mut lights) = seen.filter(|_| !late()) {
-                    tile.get_or_insert_with(Tile::new).show(&mut lights);
+                let visible = visible.as_ref().filter(|_| !late());
+                if let Some(lights) = visible.and_then(|visible| visible.within(origin, TILE, S)) {
+                    tile.get_or_insert_with(Tile::new).show(&lights);
                 }
                 Some((i, tile?.resolve().map(&finish).collect()))
             })
