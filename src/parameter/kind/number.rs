@@ -96,7 +96,7 @@ impl Kind for Number {
     }
 }
 
-/// The type in custom models, and that of parameters which tell no other.
+/// The type in custom models, also of declarations that name no type and fit no other.
 pub(super) const TYPES: &[Type] =
     &[Type { name: "number", keys: &["range", "min", "max", "above"], fits: |_| false, read: declared }];
 
