@@ -5,7 +5,7 @@ use std::{
     any::Any,
     panic::{AssertUnwindSafe, catch_unwind},
     sync::{
-        Mutex, MutexGuard, PoisonError,
+        LockResult, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicUsize, Ordering},
     },
 };
@@ -29,7 +29,12 @@ pub fn count() -> usize {
 
 /// Locks a value that is consistent even if a thread panicked while it held the lock.
 pub fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
-    value.lock().unwrap_or_else(PoisonError::into_inner)
+    unpoisoned(value.lock())
+}
+
+/// The result of another access to such a value: of a wait, or of an [`RwLock`](std::sync::RwLock).
+pub fn unpoisoned<T>(accessed: LockResult<T>) -> T {
+    accessed.unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The message of a panic.
@@ -52,5 +57,19 @@ mod tests {
         assert_eq!(message(&*catch(|| panic!("plain")).expect_err("it panicked")), "plain");
         assert_eq!(message(&7), "it gave no reason");
         assert!(count() >= before + 2);
+    }
+    #[test]
+    fn a_panic_under_a_lock_does_not_close_it() {
+        use std::sync::RwLock;
+
+        let (one, other) = (Mutex::new(1), RwLock::new(2));
+        let _ = catch(|| {
+            let _held = (lock(&one), unpoisoned(other.write()));
+            panic!("with both");
+        });
+        assert!(one.is_poisoned() && other.is_poisoned());
+        *lock(&one) += 10;
+        *unpoisoned(other.write()) += 10;
+        assert_eq!((*lock(&one), *unpoisoned(other.read())), (11, 12));
     }
 }

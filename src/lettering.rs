@@ -1,6 +1,6 @@
 //! Text in pictures, with the fonts of the window.
 
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex};
 
 use bevy_egui::egui::{
     Color32, FontData, FontDefinitions, FontFamily, FontId,
@@ -10,7 +10,10 @@ use bevy_egui::egui::{
     },
 };
 
-use crate::text::mathematics::{is_variable, parse_symbol};
+use crate::{
+    caught::lock,
+    text::mathematics::{is_variable, parse_symbol},
+};
 
 /// Minimum and maximum text size, in pixels. Larger glyphs would exceed their memory.
 const SIZES: std::ops::RangeInclusive<f32> = 4.0..=200.0;
@@ -232,7 +235,7 @@ fn ink(picture: &mut [u8], size: [u32; 2], at: [i64; 2], colour: [u8; 3], galley
 }
 
 fn laid_out<T>(job: LayoutJob, then: impl FnOnce(&Galley, &Fonts) -> T) -> T {
-    let mut glyphs = GLYPHS.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut glyphs = lock(&GLYPHS);
     // Clears the cache when it holds too many glyphs.
     glyphs.begin_pass(OPTIONS);
     let galley = glyphs.with_pixels_per_point(1.0).layout_job(job);

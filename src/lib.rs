@@ -19,9 +19,9 @@
 //!
 //! - [`declared`]: enums whose values are declared in a file each.
 //! - [`text`]: words for messages, and JSON whose values know their place.
+//! - [`caught`]: panics that are caught, so that the rest goes on.
 //! - [`lettering`]: text in pictures.
 //! - [`program`]: the name of the program, and folders by it.
-//! - [`caught`]: panics that are caught, so that the rest goes on.
 //! - [`files`]: every read and write: size limits, atomic replacement.
 //! - [`failure`]: why a command failed, and its exit status.
 //! - [`progress`]: how far some work is, and the wish to stop it.
@@ -76,11 +76,11 @@ pub mod declared;
 
 pub mod text;
 
+pub mod caught;
+
 pub mod lettering;
 
 pub mod program;
-
-pub mod caught;
 
 pub mod files;
 

@@ -16,7 +16,11 @@ pub(crate) use words::{display, single, terms_alone, value};
 use crate::{
     optics::TermSelection,
     registry::Registry,
-    scene::{Display, Scene, variant::LETTERS},
+    scene::{
+        Display, Key, Scene,
+        part::{Fields as _, Structure as _},
+        variant::LETTERS,
+    },
 };
 use said::Said;
 
@@ -82,13 +86,12 @@ pub fn of_views(
     let said = Said::of(scene, 0);
     let mut facts = words::surfaces(scene, &said, registry);
     facts.extend(terms.and_then(terms_alone));
-    let usual = Display::default();
-    let Display { tone_mapping, exposure, encoding } = scene.display;
-    facts.extend(display(Display {
-        tone_mapping: if said.over.tone_mapping.is_some() { usual.tone_mapping } else { tone_mapping },
-        exposure: if said.over.exposure.is_some() { usual.exposure } else { exposure },
-        encoding: if said.over.encoding.is_some() { usual.encoding } else { encoding },
-    }));
+    let (mut shared, usual) = (scene.display, Display::default());
+    let overridden = |key: &Key| said.over.value(*key).is_some();
+    for key in Display::keys().into_iter().map(Key::Own).filter(overridden) {
+        shared.put(key, usual.value(key));
+    }
+    facts.extend(display(shared));
     for view in views {
         let mut of_view = Said::of(scene, *view);
         of_view.over.terms.take_if(|_| terms.is_some());

@@ -72,7 +72,7 @@ impl Choice {
             amplification: self.amplification.or(comparison.amplification),
             split: self.split.unwrap_or(comparison.split),
             edge: self.edge.unwrap_or(comparison.edge),
-            with: comparison.with,
+            ..comparison
         }
     }
 }

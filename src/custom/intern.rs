@@ -3,10 +3,11 @@
 
 use std::{
     collections::HashSet,
-    sync::{LazyLock, Mutex, PoisonError},
+    sync::{LazyLock, Mutex},
 };
 
 use crate::{
+    caught::lock,
     optics::albedo::NamedCurve,
     parameter::Parameter,
     reflection::{Declaration, EquationPart, Group},
@@ -20,7 +21,7 @@ fn kept<T: PartialEq + ?Sized, O>(all: &'static Kept<T>, new: O, keep: fn(O) -> 
 where
     O: AsRef<T>,
 {
-    let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut all = lock(all);
     if let Some(old) = all.iter().find(|old| ***old == *new.as_ref()) {
         return old;
     }
@@ -32,7 +33,7 @@ where
 /// A text. There are many: a folder of 500 models has thousands.
 pub(super) fn text(text: &str) -> &'static str {
     static ALL: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Mutex::default);
-    let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut all = lock(&ALL);
     if let Some(old) = all.get(text) {
         return old;
     }

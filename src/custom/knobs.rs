@@ -13,14 +13,13 @@ use crate::{
         kind::{Declarations, Header, Type},
     },
     text::{
-        json::{Ast, Cursor, Fields, Reader as _},
-        quoted,
+        json::{Cursor, Fields, Reader as _},
+        listed, quoted,
     },
 };
 
-/// The keys of an entry of `parameters`.
-const PARAMETER_KEYS: &str =
-    "name symbol label unit help type range min max above slider_max default choices used_when";
+/// The keys of an entry of `parameters`, before and after those of its type.
+const KEYS: [&[&str]; 2] = [&["name", "symbol", "label", "unit", "help", "type"], &["default", "used_when"]];
 
 /// The default symbol of a parameter: a Greek letter if the parameter's name begins with that letter's name.
 fn symbol_of(name: &str) -> String {
@@ -36,9 +35,13 @@ fn symbol_of(name: &str) -> String {
 
 impl Reader<'_> {
     pub(super) fn parameter(&mut self, value: Cursor) -> Option<Parameter> {
-        let all: Vec<_> = PARAMETER_KEYS.split(' ').collect();
-        let own = every_type().flat_map(|known| known.keys).copied().filter(|key| !all.contains(key));
-        let keys: Vec<_> = all.iter().copied().chain(own).collect();
+        let mut keys = KEYS[0].to_vec();
+        for key in every_type().flat_map(|known| known.keys).copied() {
+            if !keys.contains(&key) {
+                keys.push(key);
+            }
+        }
+        keys.extend(KEYS[1]);
         let fields = self.fields(value, &keys, "a parameter")?;
         let Some(named) = fields.get("name") else {
             self.lacking(
@@ -71,7 +74,7 @@ impl Reader<'_> {
         let label = given(self, "label", LONGEST_NAME)
             .or(shared.map(|s| s.label))
             .unwrap_or_else(|| intern::text(&name.replace('_', " ")));
-        let usual_unit = if matches!(kind, Some(ParameterKind::Colour(_))) { "sRGB" } else { "" };
+        let usual_unit = kind.as_ref().map_or("", |kind| kind.unit());
         let parameter = Parameter {
             name,
             symbol: given(self, "symbol", LONGEST_NAME)
@@ -122,21 +125,13 @@ impl Reader<'_> {
     }
 
     fn kind(&mut self, fields: &Fields, shared: Option<&ParameterKind>) -> Option<ParameterKind> {
-        let types: Vec<_> = every_type().map(|known| (known.name, known.name)).collect();
-        let kind = match fields.get("type") {
-            Some(value) => self.word(value, "a type", &types)?,
-            None => match (shared, fields.get("choices"), fields.get("default")) {
-                (Some(shared), ..) => shared.name(),
-                (None, Some(_), _) => "choice",
-                (None, None, Some(Cursor { value: Ast::BooleanLit(_), .. })) => "flag",
-                (None, None, Some(default)) if default.list().is_some() => {
-                    self.lacking(fields, "type", "a list may be a \"colour\" or a \"triple\"");
-                    return None;
-                }
-                _ => "number",
-            },
+        let types: Vec<_> = every_type().map(|known| (known.name, known)).collect();
+        let known = match (fields.get("type"), shared) {
+            (Some(value), _) => self.word(value, "a type", &types)?,
+            (None, Some(shared)) => every_type().find(|known| known.name == shared.name())?,
+            (None, None) => self.fitting(fields)?,
         };
-        let known = every_type().find(|known| known.name == kind)?;
+        let kind = known.name;
         for key in every_type().flat_map(|known| known.keys) {
             if let Some(value) = fields.get(key).filter(|_| !known.keys.contains(key)) {
                 self.misplaced(value, &format!("is given, but a {kind} has none"));
@@ -144,6 +139,20 @@ impl Reader<'_> {
             }
         }
         (known.read)(&mut Header { reader: self, fields, shared })
+    }
+
+    /// The type of a parameter that names none. Reports that it must be named if the rest fits several.
+    fn fitting(&mut self, fields: &Fields) -> Option<&'static Type> {
+        let fitting: Vec<_> = every_type().filter(|known| (known.fits)(fields)).collect();
+        match fitting[..] {
+            [] => every_type().next(),
+            [one] => Some(one),
+            _ => {
+                let named: Vec<_> = fitting.iter().map(|known| format!("a {}", quoted(known.name))).collect();
+                self.lacking(fields, "type", &format!("a list may be {}", listed(&named, "or")));
+                None
+            }
+        }
     }
 }
 

@@ -3,12 +3,13 @@
 use std::{
     fs, io,
     path::PathBuf,
-    sync::{Mutex, MutexGuard, PoisonError, TryLockError},
+    sync::{Mutex, MutexGuard, TryLockError},
     thread,
     time::{Duration, Instant},
 };
 
 use super::litter;
+use crate::caught::lock;
 
 /// Maximum wait for a write that hangs, before the process ends without cleaning up.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -60,7 +61,7 @@ impl Drop for Living {
 /// A step with something temporary, for which the end of the process waits. Once the end has begun, no step
 /// starts.
 pub(super) fn step() -> MutexGuard<'static, Vec<Temporary>> {
-    LIVING.lock().unwrap_or_else(PoisonError::into_inner)
+    lock(&LIVING)
 }
 
 /// Removes all temporary files of this process, which is about to end: after this, no other thread can create

@@ -5,7 +5,7 @@ use crate::{
     document::Selection,
     parameter::Parameter,
     registry::Registry,
-    scene::Scene,
+    scene::{Display, Field, Light, Object, Observer, Scene, part::Structure as _},
     text::{did_you_mean, listed, nearest, plural, quoted},
 };
 
@@ -149,6 +149,17 @@ pub(super) fn parameters(registry: &Registry) -> impl Iterator<Item = &'static P
     let lights = registry.lights().iter().flat_map(|entry| entry.parameters);
     let shapes = registry.shapes().iter().flat_map(|entry| entry.parameters);
     registry.material_parameters().chain(lights).chain(shapes)
+}
+
+/// The field of the display, the observer, a light or an object with a key.
+pub(super) fn field(key: &str) -> Option<&'static Field> {
+    let parts = [Display::FIELDS, Observer::FIELDS, Light::FIELDS, Object::FIELDS];
+    parts.into_iter().flatten().copied().find(|field| field.key == key)
+}
+
+/// True for the knobs of the display, which exist whatever is selected.
+pub(super) fn is_of_display(knob: &str) -> bool {
+    Display::keys().contains(&knob)
 }
 
 /// The names of all knobs.

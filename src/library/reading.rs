@@ -3,12 +3,13 @@
 use std::{
     collections::BTreeMap,
     path::PathBuf,
-    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Condvar, Mutex, MutexGuard},
     thread,
     time::{Duration, Instant},
 };
 
 use crate::{
+    caught::{lock, unpoisoned},
     custom,
     optics::colour::Encoding,
     parameter::Values,
@@ -96,7 +97,7 @@ impl State {
 
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 }
 
@@ -109,8 +110,7 @@ impl Reader {
             let mut told = Instant::now();
             loop {
                 let waits = |state: &mut State| !state.closed && state.jobs.is_empty();
-                let state = theirs.news.wait_while(theirs.lock(), waits);
-                let mut state = state.unwrap_or_else(PoisonError::into_inner);
+                let mut state = unpoisoned(theirs.news.wait_while(theirs.lock(), waits));
                 let next = state.jobs.pop_first().filter(|_| !state.closed);
                 let Some((source, job)) = next else { return };
                 state.reading = Some(source);

@@ -95,18 +95,18 @@ pub(super) fn escapes(ctx: &Context, session: &Session, area: &PictureArea) -> b
     free && ctx.input(|i| i.key_pressed(Key::Escape))
 }
 
-/// Checks the keys that the user gave to commands, once, and reports what is wrong.
+/// Checks the keys that the user gave to commands, once, and reports what is wrong with them and with the default ones.
 pub(super) fn check(session: &mut impl DerefMut<Target = Session>, registry: &Registry) {
     if session.keys.checked.is_some() {
         return;
     }
     let given = session.settings.keys.clone();
-    let (own, problems) = if given.is_empty() {
-        Default::default()
-    } else {
-        own::check(&given, &command::declared(session, registry, true, true))
-    };
+    let root = command::declared(session, registry, true, !given.is_empty());
+    let (own, problems) = if given.is_empty() { Default::default() } else { own::check(&given, &root) };
     let session = &mut **session;
+    for why in root.commands().into_iter().flat_map(|(_, command)| &command.unreadable) {
+        session.say(Severity::Error, why);
+    }
     session.keys.checked = Some(Arc::new(own));
     let file = settings::file().map_or_else(|| "the settings".to_owned(), |path| path.shown().to_string());
     for problem in problems {
@@ -231,7 +231,11 @@ pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Act
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::panel::Panels;
+    use crate::{
+        lesson::shipped::LESSONS,
+        panel::{Panels, state::LessonSource},
+        scene::Variant,
+    };
 
     /// A window with all panels.
     fn session() -> Session {
@@ -242,15 +246,31 @@ mod tests {
 
     #[test]
     fn no_key_does_two_things() {
+        let registry = Registry::builtin();
         let mut session = session();
-        session.model_slots.fill(&Registry::builtin());
-        let table = bindings(&session, &Registry::builtin());
-        assert!(table.len() > 70, "{}", table.len());
-        for (i, a) in table.iter().enumerate() {
-            for b in &table[..i] {
-                assert!(!a.shortcut.clashes(b.shortcut), "{} does “{}” and “{}”", a.keys(), a.label, b.label);
+        session.model_slots.fill(&registry);
+        let check = |session: &Session| {
+            let table = bindings(session, &registry);
+            assert!(table.len() > 70, "{}", table.len());
+            for (i, a) in table.iter().enumerate() {
+                for b in &table[..i] {
+                    let both = format!("{} does “{}” and “{}”", a.keys(), a.label, b.label);
+                    assert!(!a.shortcut.clashes(b.shortcut), "{both}");
+                }
             }
-        }
+        };
+        check(&session);
+        // With two views, all that the finder knows, and the pages of a lesson in a presentation.
+        session.document.amend(|scene| scene.variants.push(Variant::default()));
+        session.view.finder_open = true;
+        check(&session);
+        session.begin_lesson(Arc::new(LESSONS[0].clone()), LessonSource::Shipped(0), &registry);
+        session.view.presenting = true;
+        check(&session);
+        let page = Shortcut::read("PageDown").expect("a key");
+        let table = bindings(&session, &registry);
+        let turned = table.iter().find(|binding| binding.shortcut == page).map(|binding| &binding.action);
+        assert_eq!(turned, Some(&Action::Lesson(LessonCommand::Next)));
     }
 
     #[test]

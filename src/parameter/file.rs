@@ -7,7 +7,7 @@ use std::{
     fmt,
     path::{Path, PathBuf},
     sync::{
-        Arc, LazyLock, Mutex, OnceLock, PoisonError, RwLock, RwLockReadGuard, Weak,
+        Arc, LazyLock, Mutex, OnceLock, RwLock, RwLockReadGuard, Weak,
         atomic::{AtomicU64, AtomicUsize, Ordering},
     },
 };
@@ -18,7 +18,7 @@ use serde::{Serialize, Serializer};
 
 use super::outside::Outside;
 use crate::{
-    caught::lock,
+    caught::{lock, unpoisoned},
     files::{self, Shown as _},
 };
 
@@ -358,7 +358,7 @@ impl Content {
     /// The content of the file, read now unless read before.
     fn state(&self) -> RwLockReadGuard<'_, State> {
         self.first.get_or_init(|| _ = self.read());
-        self.state.read().unwrap_or_else(PoisonError::into_inner)
+        unpoisoned(self.state.read())
     }
 
     /// Copies the state of another content for the same file, unless this was read already.
@@ -376,7 +376,7 @@ impl Content {
                 ),
                 (problem, _) => problem,
             };
-            *self.state.write().unwrap_or_else(PoisonError::into_inner) = State { numbers, problem, stamp };
+            *unpoisoned(self.state.write()) = State { numbers, problem, stamp };
         });
     }
 
@@ -406,7 +406,7 @@ impl Content {
 
     /// True if the file is the one that was read last.
     fn is_as_read(&self) -> bool {
-        let known = self.state.read().unwrap_or_else(PoisonError::into_inner).stamp;
+        let known = unpoisoned(self.state.read()).stamp;
         known.is_some() && known == self.path().and_then(files::Stamp::settled)
     }
 
@@ -432,7 +432,7 @@ impl Content {
                 })
             }
         };
-        let mut state = self.state.write().unwrap_or_else(PoisonError::into_inner);
+        let mut state = unpoisoned(self.state.write());
         state.stamp = stamp;
         match read {
             Ok(numbers) => {

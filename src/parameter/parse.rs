@@ -139,4 +139,18 @@ mod tests {
         assert!(!other.is_flag());
         assert_eq!(FLAG.clash(&other), Some(("a flag".to_owned(), "a choice".to_owned())));
     }
+    #[test]
+    fn choices_that_are_numbers_are_said_as_a_range_and_near_digits_are_no_hint() {
+        const TYPES: &[(&str, &str)] = &[("9", "9 hazy"), ("10", "10 uniform"), ("11", "11 clear")];
+        let parameter = Parameter::choice("sky_type", TYPES, 0).label("type of sky");
+        let why = |text: &str| parameter.parse(text).map_err(|e| e.to_string()).expect_err("not a type");
+        for text in ["16", "1", "10.5"] {
+            let expected = format!("is {text}, but the type of sky must be one of \"9\" to \"11\"");
+            assert_eq!(why(text), expected);
+        }
+        assert!(why("11 cleer").ends_with("; did you mean \"11\"?"), "{}", why("11 cleer"));
+        // Numbers with a gap are named.
+        let gap = Parameter::choice("speed", &[("1", "slow"), ("2", "medium"), ("4", "fast")], 0);
+        assert!(gap.rule().starts_with("one of \"1\", \"2\", \"4\""));
+    }
 }

@@ -6,15 +6,16 @@
 use std::{
     io,
     path::PathBuf,
-    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Condvar, Mutex, MutexGuard},
     thread,
     time::{Duration, Instant},
 };
 
 use super::{About, Journal, Store};
-use crate::files::{Shown as _, words};
 use crate::{
+    caught::{lock, unpoisoned},
     document::{Document, Revision},
+    files::{Shown as _, words},
     registry::Registry,
     scene::{Scene, save},
 };
@@ -185,8 +186,7 @@ impl Keeper {
         }
         shared.work.notify_all();
         let pending = |state: &mut State| state.settled != state.change;
-        let (state, waited) =
-            shared.done.wait_timeout_while(state, within, pending).unwrap_or_else(PoisonError::into_inner);
+        let (state, waited) = unpoisoned(shared.done.wait_timeout_while(state, within, pending));
         let Some(document) = &state.wanted else { return Settled::Nothing };
         let title = document.about.title.clone();
         match &state.copy {
@@ -211,7 +211,7 @@ impl Unsaved {
 
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 
     /// Records a change of the wanted document.
@@ -256,10 +256,10 @@ impl Shared {
                 // Callers that wait have nothing to wait for.
                 None => {
                     state.urgent = false;
-                    self.work.wait(state).unwrap_or_else(PoisonError::into_inner)
+                    unpoisoned(self.work.wait(state))
                 }
                 Some(wait) if !state.urgent && !wait.is_zero() => {
-                    self.work.wait_timeout(state, wait).unwrap_or_else(PoisonError::into_inner).0
+                    unpoisoned(self.work.wait_timeout(state, wait)).0
                 }
                 Some(_) => {
                     state.urgent = false;

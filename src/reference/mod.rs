@@ -76,7 +76,7 @@ use object::{Draw, hidden};
 pub use outlines::outlines;
 use raster::{Screen, TILE, Tile, Triangle, even};
 pub use vertices::brightest_vertex;
-use visible::{Part, VisibleLights};
+use visible::VisibleLights;
 pub use wires::{Dot, Line, WireDrawer, Wires, draw_wires};
 
 /// The settings of a picture, apart from the scene.
@@ -363,12 +363,12 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                 }
                 let origin = origin(i, &screen);
                 let mut tile = tile.take();
-                let seen = visible.as_ref().and_then(|visible| visible.within(origin, TILE));
-                if let (None, Some(light)) = (&tile, seen.as_ref().and_then(Part::throughout)) {
-                    return Some((i, vec![finish(even::<S>(light)); TILE * TILE]));
-                }
-                if let Some(mut lights) = seen.filter(|_| !late()) {
-                    tile.get_or_insert_with(Tile::new).show(&mut lights);
+                let visible = visible.as_ref().filter(|_| !late());
+                if let Some(lights) = visible.and_then(|visible| visible.within(origin, TILE, S)) {
+                    if let (None, Some(light)) = (&tile, lights.throughout) {
+                        return Some((i, vec![finish(even::<S>(light)); TILE * TILE]));
+                    }
+                    tile.get_or_insert_with(Tile::new).show(&lights);
                 }
                 Some((i, tile?.resolve().map(&finish).collect()))
             })

@@ -3,7 +3,7 @@
 
 use std::{
     cell::RefCell,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex},
 };
 
 use glam::{Mat4, Vec3, Vec4};
@@ -17,6 +17,7 @@ use super::{
     raster::{self, Screen, Tile},
 };
 use crate::{
+    caught::{lock, unpoisoned},
     reflection::Surface,
     scene::{Observer, observer::clip_from_room},
     shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
@@ -318,7 +319,7 @@ impl<'a> Watched<'a> {
     }
 
     fn seen(self) -> Option<(Varying, Vec3)> {
-        self.seen.into_inner().unwrap_or_else(PoisonError::into_inner)
+        unpoisoned(self.seen.into_inner())
     }
 }
 
@@ -328,7 +329,7 @@ impl Shading for Watched<'_> {
     }
 
     fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
-        *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = Some((*varying, face_normal));
+        *lock(&self.seen) = Some((*varying, face_normal));
         self.shading.map_or(Vec3::ZERO, |shading| shading.pixel(lighting, varying, face_normal))
     }
 }

@@ -121,11 +121,13 @@ impl VisibleLights {
         Some(Shown { lights, radiance, nearness })
     }
 
-    /// The lights that may be visible in a square part of the picture; `None` if there are none.
-    pub(super) fn within(&self, [left, top]: [usize; 2], edge: usize) -> Option<Part<'_>> {
+    /// The lights that may be visible in a square part of the picture, whose pixels have so many samples; `None` if
+    /// there are none.
+    pub(super) fn within(&self, origin: [usize; 2], edge: usize, samples: usize) -> Option<Part<'_>> {
         if self.lights.is_empty() {
             return None;
         }
+        let [left, top] = origin;
         let corner = |x: usize, y: usize| self.ray([(left + x) as f32, (top + y) as f32]).l;
         let middle = self.ray([left as f32 + 0.5 * edge as f32, top as f32 + 0.5 * edge as f32]).l;
         let corners = [corner(0, 0), corner(edge, 0), corner(0, edge), corner(edge, edge)];
@@ -136,114 +138,99 @@ impl VisibleLights {
             .iter()
             .filter(|light| light.cone.is_none_or(|(cone, _)| touches(cone)))
             .partition(|light| light.cone.is_some());
-        let any = !bounded.is_empty() || !around.is_empty();
+        if bounded.is_empty() && around.is_empty() {
+            return None;
+        }
         let same = around.iter().try_fold(None, |known, light| {
             let radiance = light.emitter.same_between(&light.record, &corners)?;
             Some(joined(known, light.sight(radiance, f32::INFINITY, 1.0)))
         });
-        any.then(|| Part {
-            of: self,
-            bounded,
-            around,
-            same: same.flatten(),
-            origin: [left, top],
-            edge,
-            margin: 0,
-            centres: Vec::new(),
-        })
+        let known = match same {
+            Some(same) => vec![(same, around.len()); edge * edge],
+            None => self.surroundings(&around, origin, edge, samples),
+        };
+        let throughout = same.flatten().filter(|_| bounded.is_empty()).map(|sight| sight.radiance);
+        Some(Part { of: self, lights: [around, bounded].concat(), origin, edge, known, throughout })
+    }
+
+    /// For each pixel of a part, the light of its surroundings and their number, or nothing if it differs between the
+    /// samples of the pixel.
+    fn surroundings(
+        &self,
+        around: &[&Visible],
+        origin: [usize; 2],
+        edge: usize,
+        samples: usize,
+    ) -> Vec<(Option<Sight>, usize)> {
+        // Pixels with one sample have it at their centre; the others compare with their neighbours.
+        let margin = usize::from(samples > 1);
+        let side = edge + 2 * margin;
+        let at = |axis: usize, step: usize| origin[axis] as f32 + step as f32 + 0.5 - margin as f32;
+        let rays: Vec<Ray> = (0..side * side).map(|i| self.ray([at(0, i % side), at(1, i / side)])).collect();
+        let directions: Vec<Vec3> = rays.iter().map(|ray| ray.l).collect();
+        let mut seen = vec![(Vec3::ZERO, 0.0); rays.len()];
+        let mut centres = vec![None; rays.len()];
+        for light in around {
+            light.emitter.seen_along(&light.record, self.eye, &directions, &mut seen);
+            for ((known, (radiance, distance)), ray) in centres.iter_mut().zip(&seen).zip(&rays) {
+                *known = joined(*known, light.sight(*radiance, *distance, ray.stretch));
+            }
+        }
+        let pixels = (0..edge * edge).map(|i| (i / edge + margin) * side + i % edge + margin);
+        let known = |i: usize| match margin {
+            0 => (centres[i], around.len()),
+            _ => even(&centres, i, side).map_or((None, 0), |sight| (Some(sight), around.len())),
+        };
+        pixels.map(known).collect()
     }
 }
 
 /// The lights that may be seen in a part of the picture.
 pub(super) struct Part<'a> {
     of: &'a VisibleLights,
-    bounded: Vec<&'a Visible>,
-    /// Lights that may be anywhere.
-    around: Vec<&'a Visible>,
-    /// Their light, if it is the same in the whole part.
-    same: Option<Sight>,
+    /// Surroundings, which may be anywhere, before the others.
+    lights: Vec<&'a Visible>,
     origin: [usize; 2],
     edge: usize,
-    /// Width of the border of pixels around the part that `centres` includes.
-    margin: usize,
-    /// The light of the latter at the centres of the pixels.
-    centres: Vec<Option<Sight>>,
+    /// The light known at all samples of a pixel, and the number of lights that it is from.
+    known: Vec<(Option<Sight>, usize)>,
+    /// The radiance of the lights, if it is the same in the whole part.
+    pub(super) throughout: Option<Vec3>,
 }
 
 impl Part<'_> {
-    /// Evaluates surrounding light at the centres of all pixels, with a border of `margin` pixels.
-    fn prepare(&mut self, margin: usize) {
-        if !self.centres.is_empty() {
-            return;
-        }
-        let side = self.edge + 2 * margin;
-        let at = |axis: usize, step: usize| self.origin[axis] as f32 + step as f32 + 0.5 - margin as f32;
-        let rays: Vec<Ray> =
-            (0..side * side).map(|i| self.of.ray([at(0, i % side), at(1, i / side)])).collect();
-        let directions: Vec<Vec3> = rays.iter().map(|ray| ray.l).collect();
-        let mut seen = vec![(Vec3::ZERO, 0.0); rays.len()];
-        self.centres = vec![None; rays.len()];
-        self.margin = margin;
-        for light in &self.around {
-            light.emitter.seen_along(&light.record, self.of.eye, &directions, &mut seen);
-            for ((known, (radiance, distance)), ray) in self.centres.iter_mut().zip(&seen).zip(&rays) {
-                *known = joined(*known, light.sight(*radiance, *distance, ray.stretch));
-            }
-        }
-    }
-
-    /// The radiance of the visible lights, if it is the same in the whole part.
-    pub(super) fn throughout(&self) -> Option<Vec3> {
-        self.same.filter(|_| self.bounded.is_empty()).map(|sight| sight.radiance)
-    }
-
     /// The visible lights at the samples of a pixel, which are given relative to it: radiance and `1 / w`.
     pub(super) fn pixel<const S: usize>(
-        &mut self,
+        &self,
         [x, y]: [usize; 2],
         samples: [[f32; 2]; S],
     ) -> [Option<Sight>; S] {
-        let is_around = !self.around.is_empty();
-        if is_around && self.same.is_none() {
-            // Pixels with one sample have it at their centre; the others compare with their neighbours.
-            self.prepare(usize::from(S > 1));
+        let (known, count) = self.known[y * self.edge + x];
+        let others = &self.lights[count..];
+        if others.is_empty() {
+            return [known; S];
         }
-        let even = match self.same {
-            None if S > 1 && is_around => self.even(x, y),
-            same => same,
-        };
         let at = |axis: usize, place: usize| (self.origin[axis] + place) as f32;
         samples.map(|[right, down]| {
-            let ray = || self.of.ray([at(0, x) + right, at(1, y) + down]);
-            let around = match even {
-                None if S == 1 && is_around => self.centres[y * self.edge + x],
-                None if is_around => sum(&self.around, None, &ray(), self.of.eye),
-                even => even,
-            };
-            match &self.bounded[..] {
-                [] => around,
-                bounded => sum(bounded, around, &ray(), self.of.eye),
-            }
+            sum(others, known, &self.of.ray([at(0, x) + right, at(1, y) + down]), self.of.eye)
         })
     }
+}
 
-    /// The surrounding light at the centre of a pixel, if it is nearly the same at its neighbours.
-    fn even(&mut self, x: usize, y: usize) -> Option<Sight> {
-        /// Maximum relative difference.
-        const EVEN: f32 = 1.0 / 64.0;
-        let side = self.edge + 2 * self.margin;
-        let i = (y + self.margin) * side + x + self.margin;
-        let here = self.centres[i]?;
-        let is_near = |i: usize| {
-            let there = self.centres[i]?;
-            let difference = (there.radiance - here.radiance).abs().max_element();
-            (there.nearness == here.nearness && difference <= EVEN * here.radiance.abs().max_element())
-                .then_some(())
-        };
-        [i - side, i - 1, i + 1, i + side].into_iter().try_for_each(is_near)?;
-        // Something near has a different nearness at each sample.
-        (here.nearness == 0.0).then_some(here)
-    }
+/// The surrounding light at the centre of a pixel, if it is nearly the same at its neighbours; rows have `side` pixels.
+fn even(centres: &[Option<Sight>], i: usize, side: usize) -> Option<Sight> {
+    /// Maximum relative difference.
+    const EVEN: f32 = 1.0 / 64.0;
+    let here = centres[i]?;
+    let is_near = |i: usize| {
+        let there = centres[i]?;
+        let difference = (there.radiance - here.radiance).abs().max_element();
+        (there.nearness == here.nearness && difference <= EVEN * here.radiance.abs().max_element())
+            .then_some(())
+    };
+    [i - side, i - 1, i + 1, i + side].into_iter().try_for_each(is_near)?;
+    // Something near has a different nearness at each sample.
+    (here.nearness == 0.0).then_some(here)
 }
 
 /// The light visible in a direction, combined with the known light: the nearest, or the sum of lights at
@@ -396,9 +383,9 @@ mod tests {
                 let differ = |lights: &VisibleLights| {
                     let mut differ = 0;
                     for (column, row) in (0..SIZE as usize / 8).flat_map(|r| (0..8).map(move |c| (c, r))) {
-                        let mut part = lights.within([8 * column, 8 * row], 8);
+                        let part = lights.within([8 * column, 8 * row], 8, 1);
                         for (x, y) in (0..8).flat_map(|y| (0..8).map(move |x| (x, y))) {
-                            let shown = part.as_mut().map(|part| part.pixel([x, y], [[0.5, 0.5]]));
+                            let shown = part.as_ref().map(|part| part.pixel([x, y], [[0.5, 0.5]]));
                             let place = [8 * column + x, 8 * row + y].map(|c| c as f32 + 0.5);
                             let all = VisibleLights::new(Shot::new(&scene, &registry, &settings(1)));
                             let cone = |light: Visible| Visible { cone: None, ..light };

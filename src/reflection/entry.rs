@@ -5,7 +5,7 @@ use std::{
     fmt,
     hash::{DefaultHasher, Hash as _, Hasher as _},
     sync::{
-        Arc, Mutex, OnceLock, PoisonError,
+        Arc, Mutex, OnceLock,
         atomic::{AtomicU64, Ordering},
     },
 };
@@ -21,6 +21,7 @@ use super::{
     surface::{Instance, Surface},
 };
 use crate::{
+    caught::lock,
     optics::{
         albedo::{AlbedoCurve, LobeAlbedo, NODES, NamedCurve},
         colour::Encoding,
@@ -213,7 +214,7 @@ impl ModelEntry {
             return (self.instantiate)(values, encoding);
         }
         let key = pack(self.parameters, values, encoding);
-        let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = || lock(&self.kept);
         if let Some(surface) = kept().get(&key) {
             return surface.clone();
         }

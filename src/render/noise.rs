@@ -7,7 +7,7 @@
 
 use std::{
     collections::HashMap,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex},
 };
 
 use bevy::{
@@ -27,7 +27,7 @@ use super::{
     pass::{Compute, buffer},
     view::Drawing,
 };
-use crate::reference::relative_error;
+use crate::{caught::lock, reference::relative_error};
 
 /// Number of workgroups that sum, each over some of the rows.
 const GROUPS: u32 = 64;
@@ -65,16 +65,16 @@ struct Known {
 
 impl Noise {
     fn known(&self, view: Entity) -> Option<Known> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&view).copied()
+        lock(&self.0).get(&view).copied()
     }
 
     fn tell(&self, view: Entity, known: Known) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(view, known);
+        lock(&self.0).insert(view, known);
     }
 
     /// Forgets views that no longer exist.
     pub(super) fn keep(&self, exists: impl Fn(Entity) -> bool) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).retain(|view, _| exists(*view));
+        lock(&self.0).retain(|view, _| exists(*view));
     }
 
     /// The noise of a view's picture as a fraction of its mean luminance, if known.

@@ -65,7 +65,7 @@ pub(super) fn explain(problems: Vec<Problem>, scene: &Scene, missing: &[Missing]
         n => format!(" and {n} more positions"),
     };
     let wanted: Vec<_> = if first.path == room {
-        let SceneSize { height, width, depth } = enough;
+        let SceneSize { height, width, depth, .. } = enough;
         vec![format!("\"scene_size\": {{ \"height\": {height}, \"width\": {width}, \"depth\": {depth} }}")]
     } else {
         short.iter().map(|((axis, _, extent), _)| format!("\"{axis}\": {}", extent(&mut enough))).collect()

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     parameter::{
         ABOVE_ZERO, Value,
-        kind::colour,
+        kind::{RGB, colour},
         limits::{Limits, number},
     },
     registry::Registry,
@@ -78,6 +78,33 @@ pub enum Kind {
     Part,
     /// A list of parts.
     Parts,
+}
+
+/// The names of coordinates.
+pub const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Kind {
+    /// The names of its numbers if it has several, as of [parameters](crate::parameter::kind::Kind::entries).
+    #[must_use]
+    pub const fn entries(&self) -> &'static [&'static str] {
+        match self {
+            Self::Position | Self::Direction | Self::Rotation => &AXES,
+            Self::Colour => &RGB,
+            _ => &[],
+        }
+    }
+
+    /// True for yes or no.
+    #[must_use]
+    pub const fn is_flag(&self) -> bool {
+        matches!(self, Self::Flag(_))
+    }
+
+    /// True if scene files have a text.
+    #[must_use]
+    pub const fn is_text(&self) -> bool {
+        matches!(self, Self::Text(_) | Self::Id(_) | Self::Choice(_))
+    }
 }
 
 /// The meaning of a field's absence in a file.
@@ -197,6 +224,7 @@ impl Field {
             }
             Kind::Count(min) => Limits::between(min.into(), f64::INFINITY).whole(),
             Kind::Rotation => any.slider(-180.0, 180.0),
+            Kind::Colour => Limits::between(0.0, 255.0).whole(),
             _ => any.slider(-1.0, 1.0),
         }
     }

@@ -3,13 +3,14 @@
 use std::{
     collections::HashMap,
     fmt,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex},
 };
 
 use glam::Vec3;
 
 use super::{Declaration, ObjectType, PolygonMesh};
 use crate::{
+    caught::lock,
     optics::colour::Encoding,
     parameter::{Parameter, TypeComponent, Value, Values, words},
 };
@@ -96,7 +97,7 @@ impl ShapeEntry {
     /// The bounds of an object with these parameters.
     #[must_use]
     pub fn bounds(&self, parameters: &Values) -> Bounds {
-        let mut known = self.bounds.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = lock(&self.bounds);
         if known.len() >= KEPT {
             known.clear();
         }

@@ -4,14 +4,15 @@ use super::{
     Condition, Expression, Operand, Sign, Term, Value,
     evaluate::operands,
     never,
-    quantity::{Argument, Kind, kind_of_parameter},
+    quantity::{Argument, Kind, type_of},
     scene,
 };
 use crate::{
     document::Selection,
     lesson::controls,
+    parameter::Parameter,
     registry::Registry,
-    scene::Scene,
+    scene::{Field, Scene},
     text::{did_you_mean, listed, quoted},
 };
 
@@ -185,12 +186,14 @@ fn of_knob(
     selection: Option<Selection>,
     registry: &Registry,
 ) -> Result<Kind, String> {
-    match name {
-        "exposure" => return Ok(Kind::Number),
-        "tone_mapping" | "encoding" => return Ok(Kind::Text),
-        _ => {}
-    }
-    if let Some(parameter) = controls::parameters(registry).find(|p| p.name == name) {
+    let of = |entries: &[&str], is_text, is_flag, part: &str| {
+        type_of(entries, is_text, is_flag).ok_or_else(|| {
+            let count = ["", "", "two", "three"].get(entries.len()).unwrap_or(&"several");
+            format!("{name} is {count} numbers; compare one of them, as in scene.{part}.{name}[0]")
+        })
+    };
+    let parameter = controls::parameters(registry).find(|p| p.name == name);
+    if let Some(Parameter { kind, .. }) = parameter.filter(|_| !controls::is_of_display(name)) {
         let used = match selection {
             Some(Selection::Object(i)) => scene.objects.get(i).and_then(|object| {
                 let model = registry.model(scene.model_of(object))?;
@@ -209,18 +212,11 @@ fn of_knob(
         if used == Some(false) {
             return Err(format!("the part that the step selects has no knob {}", quoted(name)));
         }
-        return kind_of_parameter(&parameter.kind).ok_or_else(|| {
-            format!("{name} is three numbers; compare one of them, as in scene.objects[0].material.{name}[0]")
-        });
+        return of(kind.entries(), kind.is_text(), kind.is_flag(), "objects[0].material");
     }
-    match name {
-        "intensity" | "luminous_flux" | "colour_temperature" | "size" | "tessellation" | "field_of_view" => {
-            Ok(Kind::Number)
-        }
-        "colour" => {
-            Err("colour is three numbers; compare one of them, as in scene.lights[0].colour[0]".to_owned())
-        }
-        _ => {
+    match controls::field(name).filter(|_| controls::KNOBS.contains(&name)) {
+        Some(Field { kind, .. }) => of(kind.entries(), kind.is_text(), kind.is_flag(), "lights[0]"),
+        None => {
             let known = controls::knobs(registry);
             let near = did_you_mean(name, known.iter().map(|k| (*k, *k)));
             Err(format!("there is no parameter {}{near}", quoted(name)))

@@ -5,11 +5,11 @@
 use super::{
     Condition, Term,
     evaluate::{self, operands},
-    quantity::{Argument, Asked, DISPLAY},
+    quantity::{Argument, Asked},
 };
 use crate::{
     document::Selection,
-    lesson::Situation,
+    lesson::{Situation, controls},
     text::path::{Path, Segment},
 };
 
@@ -133,7 +133,7 @@ impl Knowledge {
             (_, Argument::Path(path)) => self.active && unchanged(path),
             (_, Argument::Name(name)) => {
                 let path = match self.selection {
-                    _ if DISPLAY.contains(&name.as_str()) => Path::root().key("display"),
+                    _ if controls::is_of_display(name) => Path::root().key("display"),
                     Some(Selection::Object(i)) => Path::root().key("objects").index(i),
                     Some(Selection::Light(i)) => Path::root().key("lights").index(i),
                     Some(Selection::Observer) => Path::root().key("observer"),

@@ -7,10 +7,9 @@ use crate::{
     channel::DebugChannel,
     curves::Kind as Plot,
     document::Selection,
-    lesson::{Situation, kind_of, state},
+    lesson::{Situation, controls, kind_of, state},
     matching::highlight_width,
     optics::{Frame, TermSelection, albedo::directional_in_batches, colour::luminance, geometry::direction},
-    parameter::ParameterKind,
     reflection::{ModelEntry, Surface},
     registry::Registry,
     scene::{Scene, error::Path, variant::LETTERS},
@@ -258,12 +257,9 @@ fn albedo(surface: &dyn Surface, angles: &[f64]) -> f64 {
     albedos.iter().map(|albedo| albedo.max_element()).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Parameters of the display, which exist whatever is selected.
-pub(super) const DISPLAY: [&str; 3] = ["exposure", "tone_mapping", "encoding"];
-
 /// The value of a parameter of the selected part.
 fn knob(s: &Situation, name: &str) -> Result<Value, String> {
-    if DISPLAY.contains(&name) {
+    if controls::is_of_display(name) {
         return scene::value(s.scene, &Path::root().key("display").key(name.to_owned()), s.registry);
     }
     let entry = |list: &'static str, i: usize| Path::root().key(list).index(i);
@@ -321,12 +317,12 @@ pub(super) fn asked(word: &str) -> Result<Asked, (usize, String)> {
     }
 }
 
-/// The type of a parameter for comparisons; `None` for those with several numbers.
-pub(super) fn kind_of_parameter(kind: &ParameterKind) -> Option<Kind> {
-    match (kind.components(), kind.limits()) {
-        (1, Some(_)) => Some(Kind::Number),
-        (1, None) if kind.is_flag() => Some(Kind::Truth),
-        (1, None) => Some(Kind::Text),
+/// The type for comparisons of a value whose numbers have these names if it has several; `None` for those.
+pub(super) fn type_of(entries: &[&str], is_text: bool, is_flag: bool) -> Option<Kind> {
+    match (entries, is_text, is_flag) {
+        ([], true, _) => Some(Kind::Text),
+        ([], _, true) => Some(Kind::Truth),
+        ([], ..) => Some(Kind::Number),
         _ => None,
     }
 }

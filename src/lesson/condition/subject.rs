@@ -3,9 +3,9 @@
 use super::quantity::{Argument, Asked, Kind};
 use crate::{
     lesson::{Situation, controls},
-    parameter::{Parameter, ParameterKind},
+    parameter::{Parameter, limits::Limits},
     registry::Registry,
-    scene::Scene,
+    scene::{Field, Scene},
     text::path::Segment,
 };
 
@@ -17,10 +17,6 @@ pub(super) struct Subject {
     pub(super) unit: &'static str,
 }
 
-/// The names of the entries of colours and of positions.
-const RGB: [&str; 3] = ["red", "green", "blue"];
-const XYZ: [&str; 3] = ["x", "y", "z"];
-
 /// The sentence for a Boolean quantity with this value, if it has a special one.
 pub(super) fn truth(asked: &Asked, value: bool) -> Option<&'static str> {
     let said = asked.quantity.words[usize::from(value)];
@@ -31,28 +27,33 @@ pub(super) fn truth(asked: &Asked, value: bool) -> Option<&'static str> {
 pub(super) fn range(asked: &Asked, registry: &Registry) -> Option<[f64; 2]> {
     match &asked.argument {
         Argument::None | Argument::Angle(_) => asked.quantity.range,
-        Argument::Name(name) => parameter(name, registry).and_then(|p| of_kind(&p.kind)),
+        Argument::Name(name) => parameter(name, registry).and_then(|p| p.kind.limits()).map(ends),
         Argument::Path(path) => match path.segments() {
             [Segment::Key(_), Segment::Key(count)] if count == "count" => Some([0.0, f64::INFINITY]),
-            [.., Segment::Key(key), Segment::Index(0..3)] if key == "colour" => Some([0.0, 255.0]),
-            [.., Segment::Key(key)] | [.., Segment::Key(key), Segment::Index(0..3)] => {
-                parameter(key, registry).and_then(|p| of_kind(&p.kind))
+            [.., Segment::Key(key), Segment::Index(_)] => {
+                let parameter = || parameter(key, registry).and_then(|p| p.kind.limits());
+                list_field(key).map(Field::limits).or_else(parameter).map(ends)
             }
+            [.., Segment::Key(key)] => parameter(key, registry).and_then(|p| p.kind.limits()).map(ends),
             _ => None,
         },
     }
 }
 
-/// The range of a parameter's numbers.
-fn of_kind(kind: &ParameterKind) -> Option<[f64; 2]> {
-    let range = kind.limits()?;
+/// The ends of a range as people write them.
+fn ends(range: Limits) -> [f64; 2] {
     let decimal = |v: f64| if range.whole { v } else { (v as f32).to_string().parse().unwrap_or(v) };
-    Some([range.min, range.max].map(decimal))
+    [range.min, range.max].map(decimal)
 }
 
 /// The parameter with this name, of a material, a light or a shape.
-fn parameter<'r>(name: &str, registry: &'r Registry) -> Option<&'r Parameter> {
+pub(super) fn parameter(name: &str, registry: &Registry) -> Option<&'static Parameter> {
     controls::parameters(registry).find(|p| p.name == name)
+}
+
+/// The field of a part of a scene that has several numbers.
+fn list_field(key: &str) -> Option<&'static Field> {
+    controls::field(key).filter(|field| !field.kind.entries().is_empty())
 }
 
 /// The subject for sentences about a quantity.
@@ -81,9 +82,8 @@ fn of_path(path: &[Segment], scene: &Scene, registry: &Registry) -> Subject {
             Subject { name: format!("the number of {list}"), unit: "" }
         }
         [.., Segment::Key(name), Segment::Index(i)] => {
-            let is_colour =
-                name == "colour" || parameter(name, registry).is_some_and(|p| p.kind.components() > 1);
-            let names = if is_colour { RGB } else { XYZ };
+            let of_parameter = || parameter(name, registry).map_or(&[][..], |p| p.kind.entries());
+            let names = list_field(name).map_or_else(of_parameter, |field| field.kind.entries());
             let whole = key(name, registry);
             let whole_name =
                 if whole.name.starts_with("the ") { whole.name } else { format!("the {}", whole.name) };
@@ -116,7 +116,7 @@ fn key(name: &str, registry: &Registry) -> Subject {
     match parameter(name, registry) {
         Some(p) => {
             // Codes of a colour have no unit, and a word that is its own label needs no symbol.
-            let unit = if p.unit == "sRGB" { "" } else { p.unit };
+            let unit = if p.kind.is_measured() { p.unit } else { "" };
             let name = match p.label {
                 "" => plain(),
                 label if label.replace(' ', "_") == p.name => format!("the {label}"),

@@ -396,6 +396,8 @@ fn the_part_that_fails_is_said_with_its_value() {
             "green of the base colour is 68; it must be below 60",
         ),
         ("scene.lights[0].position[2] < 0", "z of the position is 9; it must be below 0"),
+        ("scene.objects[0].rotation[1] > 10", "y of the rotation is 0°; it must be above 10°"),
+        ("scene.lights[0].colour[2] < 10", "blue of the colour is 255; it must be below 10"),
         ("scene.objects.count = 2", "the number of objects is 1; it must be higher"),
         // A number that must be met exactly is the solution.
         ("knob.k_s = 0", "the specular coefficient k_s is 0.5; it must be lower"),
@@ -459,6 +461,25 @@ fn the_part_that_fails_is_said_with_its_value() {
             "the size of “ball” is 2; it must be above 3. Or: the size of object 1 is 2; it must be above 3"
         )
     );
+}
+
+#[test]
+fn a_numbered_choice_is_said_with_the_number_that_it_must_be() {
+    let registry = Registry::builtin();
+    let mut scene = scene(15);
+    scene.lights[0].light_type = "environment".to_owned();
+    scene.lights[0].parameters.set("sky_type", Given::Choice("5".into()));
+    let situation = situation(&scene, &registry);
+    for (text, said) in [
+        ("scene.lights[0].sky_type = \"12\"", "the type of sky is 5 uniform; it must be 12 clear"),
+        ("\"12\" = scene.lights[0].sky_type", "the type of sky is 5 uniform; it must be 12 clear"),
+        ("not scene.lights[0].sky_type != \"12\"", "the type of sky is 5 uniform; it must be 12 clear"),
+        ("scene.lights[0].sky_type != \"5\"", "the type of sky is 5 uniform; it must be another"),
+        // A name is not given away.
+        ("scene.lights[0].source = \"sky\"", "the source is studio"),
+    ] {
+        assert_eq!(condition(text).unmet(&situation).as_deref(), Some(said), "{text}");
+    }
 }
 
 #[test]

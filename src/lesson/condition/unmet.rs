@@ -12,6 +12,8 @@ use crate::{
     curves::Kind as Plot,
     lesson::Situation,
     optics::tone::ToneMapping,
+    parameter::Parameter,
+    registry::Registry,
     text::{path::Segment, shortened},
 };
 
@@ -20,7 +22,8 @@ const MOST: usize = 3;
 
 impl Condition {
     /// The first part that fails, as in "N·L is 0.975; it must be above 0.98"; `None` if the condition holds.
-    /// Names every alternative. Does not reveal a solution that is a name or a single number.
+    /// Names every alternative. Does not reveal a solution that is a name or a single number,
+    /// except that of a numbered choice.
     #[must_use]
     pub fn unmet(&self, situation: &Situation) -> Option<String> {
         let state = State { situation, known: RefCell::default() };
@@ -104,7 +107,6 @@ fn comparison(left: &Operand, sign: Sign, right: &Operand, state: &State) -> Str
         (Ok(now), Ok(bound)) => (now, bound),
         (Err(why), _) | (_, Err(why)) => return why,
     };
-    let another = if sign == Sign::NotEqual { "; it must be another" } else { "" };
     match (&now, &bound) {
         (Value::Number(now), Value::Number(bound)) => {
             let other = match &right.what {
@@ -114,7 +116,15 @@ fn comparison(left: &Operand, sign: Sign, right: &Operand, state: &State) -> Str
             number(asked, *now, sign, *bound, other.as_deref(), situation)
         }
         (Value::Truth(_), Value::Truth(_)) => truth(left, state),
-        (Value::Text(now), _) => text(asked, now, situation) + another,
+        (Value::Text(now), bound) => {
+            let must = match (sign, bound) {
+                (Sign::NotEqual, _) => "; it must be another".to_owned(),
+                (Sign::Equal, Value::Text(bound)) => numbered(asked, bound, situation.registry)
+                    .map_or_else(String::new, |name| format!("; it must be {name}")),
+                _ => String::new(),
+            };
+            text(asked, now, situation) + &must
+        }
         _ => format!("{} has a value of another type", subject::of(asked, situation).name),
     }
 }
@@ -199,25 +209,37 @@ fn text(asked: &Asked, now: &str, situation: &Situation) -> String {
         "probe.object" => format!("the pinned pixel is on “{}”", shortened(now)),
         _ => {
             let subject = subject::of(asked, situation).name;
-            let last = match &asked.argument {
-                Argument::Name(name) => name.as_str(),
-                Argument::Path(path) => match path.segments().last() {
-                    Some(Segment::Key(key)) => key.as_ref(),
-                    _ => "",
-                },
-                Argument::None | Argument::Angle(_) => "",
-            };
-            let shown = match last {
+            let shown = match last(asked) {
                 "reflection_model" => model(),
                 "shading_model" => shading(),
                 "tone_mapping" => ToneMapping::from_id(now).map_or(now, |curve| curve.name()),
                 "encoding" if now == "srgb" => "sRGB",
-                name => {
-                    let options = registry.material_parameter(name).map_or(&[][..], |p| p.kind.options());
-                    options.iter().find(|(id, _)| *id == now).map_or(now, |(_, name)| *name)
-                }
+                name => subject::parameter(name, registry).and_then(|p| option(p, now)).unwrap_or(now),
             };
             format!("{subject} is {}", shortened(shown))
         }
     }
+}
+
+/// The last word of a quantity: the key of a value of the scene, or the name of a parameter.
+fn last(asked: &Asked) -> &str {
+    match &asked.argument {
+        Argument::Name(name) => name,
+        Argument::Path(path) => match path.segments().last() {
+            Some(Segment::Key(key)) => key,
+            _ => "",
+        },
+        Argument::None | Argument::Angle(_) => "",
+    }
+}
+
+/// The name of a choice in the window.
+fn option(parameter: &Parameter, id: &str) -> Option<&'static str> {
+    parameter.kind.options().iter().find(|(known, _)| *known == id).map(|(_, name)| *name)
+}
+
+/// The name of a choice that has a number. Unlike a name, such a number can be looked up but not be found by thinking.
+fn numbered(asked: &Asked, id: &str, registry: &Registry) -> Option<&'static str> {
+    let parameter = subject::parameter(last(asked), registry).filter(|p| p.kind.is_numbered())?;
+    option(parameter, id)
 }

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use bevy_egui::egui::Key;
 
 use super::state::{Action, LessonCommand, Session, Shortcut};
-use crate::registry::Registry;
+use crate::{registry::Registry, text::quoted};
 
 mod edit;
 mod elsewhere;
@@ -105,6 +105,8 @@ pub struct Command {
     pub foreign: bool,
     /// The keys.
     pub keys: Vec<Shortcut>,
+    /// Sentences about default keys that cannot be read. The program has none.
+    pub unreadable: Vec<String>,
     group: Option<Group>,
     rank: i8,
     /// The tooltip of its menu entry; empty for none.
@@ -151,6 +153,7 @@ pub(super) fn command(
         glyph: "",
         foreign: false,
         keys: Vec::new(),
+        unreadable: Vec::new(),
         group: None,
         rank: 0,
         tip: Cow::Borrowed(""),
@@ -167,8 +170,18 @@ pub(super) fn command(
 
 impl Command {
     /// The default keys, separated by spaces.
-    fn keys(self, keys: &str) -> Self {
-        Self { keys: keys.split_whitespace().filter_map(|key| Shortcut::read(key).ok()).collect(), ..self }
+    fn keys(mut self, keys: &str) -> Self {
+        for key in keys.split_whitespace() {
+            match Shortcut::read(key) {
+                Ok(key) => self.keys.push(key),
+                Err(why) => self.unreadable.push(format!(
+                    "The default key {} of the command {} cannot be read: {why}.",
+                    quoted(key),
+                    quoted(&self.id)
+                )),
+            }
+        }
+        self
     }
 
     /// It cannot be used now, for this reason.
@@ -384,4 +397,18 @@ pub fn with_keys(root: &Menu) -> Vec<(Vec<&'static str>, &Command)> {
     all.retain(|(_, command)| !command.absent && !command.keys.is_empty());
     all.sort_by_key(|(_, command)| (command.heading(), command.rank));
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_default_key_that_cannot_be_read_is_reported_and_the_others_stay() {
+        let command = command("save", "Save", Action::Save).keys("Strg+S F4");
+        assert_eq!(command.keys, [Shortcut::read("F4").expect("a key")]);
+        let why = "The default key \"Strg+S\" of the command \"save\" cannot be read: \"Strg\" is not a modifier; use \
+                   Ctrl, Shift or Alt.";
+        assert_eq!(command.unreadable, [why]);
+    }
 }

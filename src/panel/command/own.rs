@@ -178,13 +178,17 @@ mod tests {
         registry::Registry,
     };
 
+    /// All commands with their default keys.
+    fn root() -> Menu {
+        let mut session = Session::default();
+        session.panels = Panels::builtin().infos().collect();
+        command::declared(&session, &Registry::builtin(), true, true)
+    }
+
     /// The keys in force for some settings, and the problems to be reported.
     fn checked(json: &str) -> (Vec<(String, String)>, Vec<String>) {
         let given: GivenKeys = serde_json::from_str(json).expect("JSON");
-        let mut session = Session::default();
-        session.panels = Panels::builtin().infos().collect();
-        let root = command::declared(&session, &Registry::builtin(), true, true);
-        let (replaced, problems) = check(&given, &root);
+        let (replaced, problems) = check(&given, &root());
         let spelled =
             |keys: Vec<Shortcut>| keys.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
         (replaced.into_iter().map(|(id, keys)| (id, spelled(keys))).collect(), problems)
@@ -192,6 +196,19 @@ mod tests {
 
     fn pairs(all: &[(&str, &str)]) -> Vec<(String, String)> {
         all.iter().map(|(id, keys)| ((*id).to_owned(), (*keys).to_owned())).collect()
+    }
+
+    #[test]
+    fn every_default_key_can_be_read_and_belongs_to_no_one_else() {
+        let root = root();
+        let commands = root.commands();
+        assert!(commands.iter().filter(|(_, command)| !command.keys.is_empty()).count() > 60);
+        for (_, command) in commands {
+            assert_eq!(command.unreadable, Vec::<String>::new());
+            for key in &command.keys {
+                assert_eq!(reserved(*key), None, "{key} of {}", command.id);
+            }
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::{
         knob::{self, Caption},
         prelude::*,
     },
-    scene::{Display, SceneSize, Variant},
+    scene::{Display, Variant},
 };
 
 pub(super) fn room(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -29,12 +29,13 @@ pub(super) fn room(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
     ui.add_space(6.0);
     section(ui, "Room", true, |ui| {
-        let size = s.scene_size;
+        let mut size = s.scene_size;
         let help = "Width along x, height along y, depth along z. One corner of the room is the origin; everything stands in it.";
         let limits = [0, 1, 2].map(|axis| session.document.dimension_limits(axis, registry));
         let caption = Caption::new("size", "m", help);
         if let Some(c) = knob::vector_knob(ui, "size", &caption, size.corner(), &limits) {
-            context.edit(Edit::from(SceneSize { width: c.x, height: c.y, depth: c.z }));
+            [size.width, size.height, size.depth] = c.to_array();
+            context.edit(Edit::from(size));
         }
     });
     section(ui, "Display", true, |ui| display(ui, context));

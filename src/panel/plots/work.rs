@@ -3,7 +3,7 @@
 
 use std::{
     sync::{
-        Condvar, LazyLock, Mutex, MutexGuard, PoisonError,
+        Condvar, LazyLock, Mutex, MutexGuard,
         atomic::{AtomicU64, Ordering},
     },
     thread,
@@ -14,7 +14,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::request::{Drawn, Key, NoCurve, Recipe};
 use crate::{
-    caught::catch,
+    caught::{catch, lock},
     curves::{Detail, Kind, Setup},
     panel::{prelude::*, state::Slot},
     progress::Progress,
@@ -113,7 +113,7 @@ impl Worker {
 
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 
     fn is_closed(&self, ctx: &Context) -> bool {

@@ -232,11 +232,8 @@ impl<'a> Stand<'a> {
     pub(super) fn intensity(&self, light: &Light, entry: &LightEntry) -> (f32, bool) {
         let default = entry.declaration.default_intensity;
         let mut scene = self.scene.clone();
-        scene.observer = Observer {
-            position: self.eye,
-            direction: self.turn * Vec3::NEG_Z,
-            field_of_view: scene.observer.field_of_view,
-        };
+        scene.observer =
+            Observer { position: self.eye, direction: self.turn * Vec3::NEG_Z, ..scene.observer };
         scene.objects.sort_by(|a, b| a.position.distance(self.eye).total_cmp(&b.position.distance(self.eye)));
         scene.objects.truncate(PROBED);
         for object in &mut scene.objects {

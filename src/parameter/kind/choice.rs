@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use serde_json::json;
 
 use super::{
-    Cursor, Encoding, Header, Json, Kind, Member, Parameter, ParameterKind, Payload, Place, Reader, Type,
-    Value,
+    Cursor, Encoding, Fields, Header, Json, Kind, Member, Parameter, ParameterKind, Payload, Place, Reader,
+    Type, Value, header,
 };
 use crate::text::{did_you_mean, json::Ast, quoted};
 
@@ -83,8 +83,13 @@ impl Kind for Choice {
         if self.is_flag() {
             return "true or false".to_owned();
         }
-        let names: Vec<_> = self.options.iter().map(|(id, _)| format!("\"{id}\"")).collect();
-        format!("one of {}", names.join(", "))
+        match self.options {
+            [(first, _), .., (last, _)] if self.is_numbered() => format!("one of \"{first}\" to \"{last}\""),
+            all => {
+                let names: Vec<_> = all.iter().map(|(id, _)| format!("\"{id}\"")).collect();
+                format!("one of {}", names.join(", "))
+            }
+        }
     }
 
     fn parse(&self, text: &str) -> Option<Value> {
@@ -162,7 +167,8 @@ impl Kind for Choice {
 
     fn hint(&self, value: &Value) -> String {
         let Value::Choice(id) = value else { return String::new() };
-        if self.is_flag() {
+        // Similar digits are not near numbers.
+        if self.is_flag() || self.is_numbered() && id.trim().parse::<f64>().is_ok() {
             return String::new();
         }
         let names = self.options.iter().map(|(id, name)| (*name, *id));
@@ -180,6 +186,14 @@ impl Kind for Choice {
 
     fn options(&self) -> &'static [(&'static str, &'static str)] {
         self.options
+    }
+
+    fn is_numbered(&self) -> bool {
+        let number = |(id, _): &(&str, &str)| id.parse::<i64>().ok();
+        let follows = |pair: &[(&str, &str)]| {
+            number(&pair[0]).is_some_and(|one| number(&pair[1]) == one.checked_add(1))
+        };
+        self.options.len() > 2 && self.options.windows(2).all(follows)
     }
 
     fn is_flag(&self) -> bool {
@@ -231,9 +245,14 @@ pub(crate) fn one_of<'a>(choices: impl Iterator<Item = [&'a str; 3]>) -> Json {
 
 /// The types in custom models.
 pub(super) const TYPES: &[Type] = &[
-    Type { name: "choice", keys: &["choices"], read: declared },
-    Type { name: "flag", keys: &[], read: declared_flag },
+    Type { name: "choice", keys: &["choices"], fits: header::has_choices, read: declared },
+    Type { name: "flag", keys: &[], fits: has_flag, read: declared_flag },
 ];
+
+fn has_flag(fields: &Fields) -> bool {
+    let is_flag = |default: Cursor| matches!(default.value, Ast::BooleanLit(_));
+    !header::has_choices(fields) && fields.get("default").is_some_and(is_flag)
+}
 
 fn declared(header: &mut Header) -> Option<ParameterKind> {
     let (mut options, usual) = match header.shared {

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::{
     Cursor, Encoding, Header, Json, Kind, Limits, Parameter, ParameterKind, Payload, Place, Reader, Type,
-    Value, Vec3, all, joined,
+    Value, Vec3, all, header, joined,
 };
 
 /// What a value holds: an sRGB-encoded colour.
@@ -16,6 +16,9 @@ pub type Field = Vec3;
 
 /// The components of a linear colour, which may be beyond their range by as much as 8 bits round it away.
 const LINEAR: RangeInclusive<f32> = -0.5 / 255.0 / 12.92..=1.0 + 0.5 / 255.0;
+
+/// The unit.
+const UNIT: &str = "sRGB";
 
 /// The legal values, as the end of a sentence.
 pub const RULE: &str = "three whole numbers from 0 to 255: [red, green, blue]";
@@ -31,7 +34,7 @@ impl Parameter {
     /// A colour: three sRGB-encoded integers, 0–255.
     #[must_use]
     pub const fn colour(name: &'static str, default: [u8; 3]) -> Self {
-        Self::new(name, ParameterKind::Colour(Colour { default })).unit("sRGB")
+        Self::new(name, ParameterKind::Colour(Colour { default })).unit(UNIT)
     }
 }
 
@@ -67,6 +70,10 @@ impl Kind for Colour {
 
     fn limits(&self) -> Option<Limits> {
         Some(Limits::between(0.0, 255.0).whole())
+    }
+
+    fn unit(&self) -> &'static str {
+        UNIT
     }
 
     fn is_measured(&self) -> bool {
@@ -140,7 +147,8 @@ fn hexadecimal(text: &str) -> Option<[u8; 3]> {
 }
 
 /// The type in custom models.
-pub(super) const TYPES: &[Type] = &[Type { name: "colour", keys: &[], read: declared }];
+pub(super) const TYPES: &[Type] =
+    &[Type { name: "colour", keys: &[], fits: header::has_list, read: declared }];
 
 fn declared(header: &mut Header) -> Option<ParameterKind> {
     let Some(value) = header.fields.get("default") else {

@@ -8,6 +8,9 @@ pub struct Type {
     pub name: &'static str,
     /// Its keys, besides the default.
     pub keys: &'static [&'static str],
+    /// True if a declaration that names no type is of this one. If it may be of several, it must name one; if it fits
+    /// none, it is of the first.
+    pub fits: fn(&Fields) -> bool,
     /// Reads a declaration.
     pub read: fn(&mut Header) -> Option<ParameterKind>,
 }
@@ -41,6 +44,16 @@ pub(super) fn number(reader: &mut dyn Declarations, value: Cursor) -> Option<f32
         reader.wrong(value, "it must be a number");
     }
     number
+}
+
+/// True if a declaration has choices.
+pub(super) fn has_choices(fields: &Fields) -> bool {
+    fields.get("choices").is_some()
+}
+
+/// True if the default is a list, and not a mistake in a declaration with choices.
+pub(super) fn has_list(fields: &Fields) -> bool {
+    !has_choices(fields) && fields.get("default").is_some_and(|default| default.list().is_some())
 }
 
 impl Header<'_> {

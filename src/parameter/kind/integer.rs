@@ -104,8 +104,12 @@ impl Kind for Integer {
 }
 
 /// The type in custom models.
-pub(super) const TYPES: &[Type] =
-    &[Type { name: "integer", keys: &["range", "min", "max", "slider_max"], read: declared }];
+pub(super) const TYPES: &[Type] = &[Type {
+    name: "integer",
+    keys: &["range", "min", "max", "slider_max"],
+    fits: |_| false,
+    read: declared,
+}];
 
 fn declared(header: &mut Header) -> Option<ParameterKind> {
     let known = match header.shared {

@@ -41,6 +41,9 @@ macro_rules! every_kind {
 }
 pub(crate) use every_kind;
 
+/// The names of the numbers of a colour.
+pub const RGB: [&str; 3] = ["red", "green", "blue"];
+
 /// The folder of a scene file, and the files outside it that the scene may name.
 pub type Place<'a> = (&'a Path, &'a Outside);
 
@@ -85,6 +88,19 @@ pub trait Kind {
     /// How many numbers it has.
     fn components(&self) -> usize {
         lanes(self.wgsl())
+    }
+
+    /// The names of its numbers if it has several. Tables call columns by the first letters.
+    fn entries(&self) -> &'static [&'static str] {
+        match self.components() {
+            1 => &[],
+            count => RGB.get(..count).unwrap_or(&RGB),
+        }
+    }
+
+    /// The unit of a parameter of a custom model that gives none.
+    fn unit(&self) -> &'static str {
+        ""
     }
 
     /// True if its numbers are quantities in the unit of the parameter and in a range of the declaration.
@@ -166,6 +182,11 @@ pub trait Kind {
     /// The name of each choice in files, and that in the window.
     fn options(&self) -> &'static [(&'static str, &'static str)] {
         &[]
+    }
+
+    /// True if the choices have numbers, one after the other, in place of names.
+    fn is_numbered(&self) -> bool {
+        false
     }
 
     /// True if the choices are those of a [flag](ParameterKind::flag).

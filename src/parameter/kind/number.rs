@@ -96,9 +96,9 @@ impl Kind for Number {
     }
 }
 
-/// The type in custom models.
+/// The type in custom models, also of declarations that name no type and fit no other.
 pub(super) const TYPES: &[Type] =
-    &[Type { name: "number", keys: &["range", "min", "max", "above"], read: declared }];
+    &[Type { name: "number", keys: &["range", "min", "max", "above"], fits: |_| false, read: declared }];
 
 fn declared(header: &mut Header) -> Option<ParameterKind> {
     let usual = match header.shared {

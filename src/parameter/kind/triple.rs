@@ -105,8 +105,12 @@ impl Kind for Triple {
 }
 
 /// The type in custom models.
-pub(super) const TYPES: &[Type] =
-    &[Type { name: "triple", keys: &["range", "min", "max", "above"], read: declared }];
+pub(super) const TYPES: &[Type] = &[Type {
+    name: "triple",
+    keys: &["range", "min", "max", "above"],
+    fits: header::has_list,
+    read: declared,
+}];
 
 fn declared(header: &mut Header) -> Option<ParameterKind> {
     let usual = match header.shared {

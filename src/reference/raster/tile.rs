@@ -135,7 +135,7 @@ impl<const S: usize, const E: usize> Tile<S, E> {
 
     /// Draws lights at the samples where they are nearer than anything drawn before; infinitely distant ones
     /// where there is nothing.
-    pub(in crate::reference) fn show(&mut self, lights: &mut Part) {
+    pub(in crate::reference) fn show(&mut self, lights: &Part) {
         let samples = const { positions::<S>() }.map(|at| at.map(|c| c as f32 / SUBPIXEL as f32));
         for (i, (nearness, colour)) in self.nearness.iter_mut().zip(&mut self.colour).enumerate() {
             let shown = lights.pixel([i % E, i / E], samples);

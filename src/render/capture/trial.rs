@@ -3,7 +3,7 @@
 
 use std::{
     io::{self, BufRead, Write},
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex},
     thread,
     time::{Duration, Instant},
 };
@@ -22,6 +22,7 @@ use bevy::{
 
 use super::gpu::{GpuError, GpuRenderer, Output};
 use crate::{
+    caught::lock,
     parameter::Values,
     registry::Registry,
     render::{
@@ -84,7 +85,7 @@ impl Deadline {
         thread::spawn(move || {
             loop {
                 thread::sleep(limit / 4);
-                let since = *since.lock().unwrap_or_else(PoisonError::into_inner);
+                let since = *lock(&since);
                 if since.is_some_and(|since| since.elapsed() > limit) {
                     std::process::exit(3);
                 }
@@ -94,7 +95,7 @@ impl Deadline {
     }
 
     fn set(&self, since: Option<Instant>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = since;
+        *lock(&self.0) = since;
     }
 }
 
@@ -121,7 +122,7 @@ struct Failure(Arc<Mutex<Option<String>>>);
 
 impl Failure {
     fn take(&self) -> Option<String> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+        lock(&self.0).take()
     }
 }
 
@@ -132,7 +133,7 @@ impl Stage {
             app.insert_resource(failure.clone()).insert_resource(RenderErrorHandler(|error, main, _| {
                 if let Some(failure) = main.get_resource::<Failure>() {
                     let text = error.description.lines().map(str::trim).collect::<Vec<_>>().join(" ");
-                    *failure.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(text);
+                    *lock(&failure.0) = Some(text);
                 }
                 RenderErrorPolicy::Ignore
             }));

@@ -8,7 +8,7 @@
 //! A driver may also crash, or never finish. The window therefore does all this, and also draws something, in
 //! a separate process ([`process`]), and continues meanwhile.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use bevy::{
     prelude::*,
@@ -20,7 +20,10 @@ use bevy::{
 };
 use naga::Module;
 
-use crate::shader::{compose::Composed, limits};
+use crate::{
+    caught::lock,
+    shader::{compose::Composed, limits},
+};
 
 mod attempt;
 mod explain;
@@ -43,7 +46,7 @@ struct SharedExample(Arc<Mutex<Option<Example>>>);
 
 impl SharedExample {
     fn lock(&self) -> std::sync::MutexGuard<'_, Option<Example>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.0)
     }
 }
 

@@ -10,7 +10,7 @@ use std::{
     io::{BufRead as _, BufReader, Write as _},
     path::{Path, PathBuf},
     process::{Child, Command, ExitStatus, Stdio},
-    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc},
+    sync::{Arc, Condvar, Mutex, MutexGuard, mpsc},
     thread,
     time::{Duration, Instant},
 };
@@ -18,9 +18,9 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::verdict::Verdict;
-use crate::files::{Shown as _, words};
 use crate::{
-    files,
+    caught::{lock, unpoisoned},
+    files::{self, Shown as _, words},
     shader::{
         check::{ShaderProblem, locate},
         compose::{Composed, LineMap},
@@ -120,7 +120,7 @@ struct Waiting {
 
 impl Shared {
     fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 }
 
@@ -227,8 +227,7 @@ impl Worker {
     /// The next shader to try; `None` if there will be no more.
     fn next(&mut self) -> Option<(u64, Request)> {
         let waits = |state: &mut State| !state.closed && state.queue.is_empty();
-        let state = self.shared.news.wait_while(self.shared.lock(), waits);
-        let mut state = state.unwrap_or_else(PoisonError::into_inner);
+        let mut state = unpoisoned(self.shared.news.wait_while(self.shared.lock(), waits));
         let waiting = state.queue.pop_front().filter(|_| !state.closed)?;
         state.current = Some(waiting.key);
         Some((waiting.key, waiting.request))

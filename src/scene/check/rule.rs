@@ -19,7 +19,7 @@ use crate::{
 /// A position of a light, an object or the observer.
 pub fn position(room: SceneSize, position: Vec3) -> Rule {
     must(room.contains(position), || {
-        let SceneSize { width, height, depth } = room;
+        let SceneSize { width, height, depth, .. } = room;
         format!(
             "a position must be inside the room: 0 < x ≤ {width} (width), 0 < y ≤ {height} (height), \
              0 < z ≤ {depth} (depth)"

@@ -123,7 +123,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                 ("shapes", shapes(&registry)),
             ],
         ),
-        ("docs/window.md", vec![("channels", channels())]),
+        ("docs/window.md", vec![("channels", channels()), ("quantities", quantities_of_plots())]),
         ("docs/keys.md", vec![("commands", commands(&registry))]),
         (
             "docs/comparing.md",
@@ -136,7 +136,12 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
         ),
         (
             "docs/command-line.md",
-            vec![("noise", noise()), ("explain", explained()), ("kinds of plots", kinds_of_plots())],
+            vec![
+                ("noise", noise()),
+                ("channels", ids_of_channels()),
+                ("explain", explained()),
+                ("kinds of plots", kinds_of_plots()),
+            ],
         ),
         ("docs/worked-examples.md", worked_examples(&registry)),
         (
@@ -196,6 +201,12 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
 fn kinds_of_plots() -> String {
     let row = |kind: Kind| vec![code(kind.id()), kind.declaration().row.to_owned()];
     table(&["`--kind`", "curve"], Kind::ALL.into_iter().map(row))
+}
+
+/// The quantities of plots as the window calls them.
+fn quantities_of_plots() -> String {
+    let row = |kind: Kind| kind.declaration().choice.map(str::to_owned).to_vec();
+    table(&["quantity", "curve"], Kind::ALL.into_iter().map(row))
 }
 
 /// The commands, with their usual keys and their places in menus.
@@ -575,10 +586,26 @@ fn scene_limits() -> String {
     table(&["limit of", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
 }
 
+/// What a channel shows.
+fn shows(channel: DebugChannel) -> String {
+    let what = match channel {
+        wires if wires.has_wires() => "lines and dots",
+        light if light.is_of_light() => "light",
+        _ => "geometry",
+    };
+    if channel.has_light() { format!("{what}, one light") } else { what.to_owned() }
+}
+
 /// The debug channels.
 fn channels() -> String {
-    let rows = DebugChannel::ALL.map(|c| vec![c.name().to_owned(), c.explanation().to_owned()]);
-    table(&["channel", "picture"], rows.into_iter())
+    let row = |c: DebugChannel| vec![c.name().to_owned(), shows(c), c.explanation().to_owned()];
+    table(&["channel", "shows", "picture"], DebugChannel::ALL.into_iter().map(row))
+}
+
+/// The debug channels by their ids.
+fn ids_of_channels() -> String {
+    let row = |c: DebugChannel| vec![code(c.id()), c.name().to_owned(), shows(c)];
+    table(&["`--channel`", "channel", "shows"], DebugChannel::ALL.into_iter().map(row))
 }
 
 /// The modules as `lib.rs` lists them.

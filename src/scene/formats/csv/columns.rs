@@ -12,7 +12,7 @@ use crate::{
     scene::{
         Display, Field, Light, Object, Observer, Scene, SceneSize,
         error::{Path, Problem},
-        field::Kind,
+        field::{AXES, Kind},
         part::Structure as _,
         read::keys::OTHER_WORDS,
     },
@@ -54,17 +54,6 @@ impl Part {
     }
 }
 
-/// The components of vectors and of colours in column names.
-const AXES: [&str; 3] = ["x", "y", "z"];
-const CHANNELS: [&str; 3] = ["r", "g", "b"];
-
-/// True if parts of tables have a vector under this key.
-fn is_vector(key: &str) -> bool {
-    let kinds = Part::ALL.into_iter().flat_map(Part::fields);
-    let mut named = kinds.filter(|field| field.key == key);
-    named.any(|field| matches!(field.kind, Kind::Position | Kind::Direction | Kind::Rotation))
-}
-
 /// A column that a table may have.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Column {
@@ -74,6 +63,8 @@ pub(super) struct Column {
     pub(super) keys: Vec<&'static str>,
     /// The index in the list if the column is one component of it.
     pub(super) component: Option<usize>,
+    /// The names of the components of the list.
+    entries: &'static [&'static str],
     /// The parts in which a field of this name is a text.
     texts: Vec<Part>,
     /// The parts that have the field.
@@ -85,16 +76,17 @@ impl Column {
     pub(super) fn is_text(&self, part: Part) -> bool {
         self.texts.contains(&part)
     }
-}
 
-/// The names of the components of a list.
-pub(super) fn components(key: &str) -> [&'static str; 3] {
-    if is_vector(key) { AXES } else { CHANNELS }
-}
+    /// The names of the columns of the components.
+    pub(super) fn components(&self) -> Vec<String> {
+        let letter = |entry: &&str| entry.chars().take(1).collect::<String>();
+        self.entries.iter().map(|entry| format!("{}.{}", self.name, letter(entry))).collect()
+    }
 
-/// True if each component of a list has its own column in a new table.
-pub(super) fn is_spread(key: &str) -> bool {
-    is_vector(key)
+    /// True if each component has its own column in a new table: coordinates have, colours have not.
+    pub(super) fn is_spread(&self) -> bool {
+        self.entries == AXES
+    }
 }
 
 /// All columns that a table may have, in the order of a new table.
@@ -132,32 +124,30 @@ impl All {
     fn parameters(&mut self, part: Part, before: &[&'static str], parameters: &'static [Parameter]) {
         for p in parameters {
             let keys: Vec<_> = before.iter().copied().chain([p.name]).collect();
-            self.add(part, keys, p.kind.components(), p.kind.is_text());
+            self.add(part, keys, p.kind.entries(), p.kind.is_text());
         }
     }
 
     fn field(&mut self, part: Part, within: Option<&Field>, field: &Field) {
         let keys = within.into_iter().chain([field]).map(|field| field.key).collect();
-        let components = if matches!(field.kind, Kind::Colour) || is_vector(field.key) { 3 } else { 1 };
-        let is_text = matches!(field.kind, Kind::Text(_) | Kind::Id(_) | Kind::Choice(_));
-        self.add(part, keys, components, is_text);
+        self.add(part, keys, field.kind.entries(), field.kind.is_text());
     }
 
-    fn add(&mut self, part: Part, keys: Vec<&'static str>, of: usize, is_text: bool) {
-        let names = components(keys.last().copied().unwrap_or_default());
-        let each = (0..of).map(Some).filter(|_| of > 1);
-        for component in [None].into_iter().chain(each) {
-            let mut name = keys.join(".");
-            if let Some(i) = component {
-                name = format!("{name}.{}", names[i]);
-            }
-            let at = self.0.iter().position(|column| column.name == name).unwrap_or_else(|| {
-                let column =
-                    Column { name, keys: keys.clone(), component, texts: Vec::new(), of: Vec::new() };
+    fn add(&mut self, part: Part, keys: Vec<&'static str>, entries: &'static [&'static str], is_text: bool) {
+        let (name, component, texts, of) = (keys.join("."), None, Vec::new(), Vec::new());
+        let whole = Column { name, keys, component, entries, texts, of };
+        let each = whole.components().into_iter().enumerate();
+        let each = each.map(|(i, name)| Column { name, component: Some(i), ..whole.clone() });
+        for column in [whole.clone()].into_iter().chain(each) {
+            let at = self.0.iter().position(|known| known.name == column.name).unwrap_or_else(|| {
                 self.0.push(column);
                 self.0.len() - 1
             });
             let column = &mut self.0[at];
+            // A key may stand for one number in some parts, and for a list in others.
+            if column.entries.is_empty() {
+                column.entries = entries;
+            }
             if is_text && !column.texts.contains(&part) {
                 column.texts.push(part);
             }
@@ -252,15 +242,10 @@ pub fn table(registry: &Registry) -> String {
         let key = column.keys.last().copied().unwrap_or_default();
         let lights = registry.lights().iter().any(|l| l.parameter(key).is_some());
         let shapes = registry.shapes().iter().any(|s| s.parameter(key).is_some());
-        column.keys[0] == "material" || (lights || shapes) && !is_vector(key)
+        column.keys[0] == "material" || (lights || shapes) && !column.is_spread()
     };
     for column in all(registry).iter().filter(|column| column.component.is_none() && !parameters(column)) {
-        let key = column.keys.last().copied().unwrap_or_default();
-        let is_list = is_vector(key) || key == "colour";
-        let spread = match components(key) {
-            names if is_list => names.map(|name| format!(", `{}.{name}`", column.name)).join(""),
-            _ => String::new(),
-        };
+        let spread: String = column.components().iter().map(|name| format!(", `{name}`")).collect();
         let rows: Vec<_> = column.of.iter().map(|part| part.name()).collect();
         // Writing to a String cannot fail.
         let _ = writeln!(text, "| `{}`{spread} | {} |", column.name, rows.join(", "));

@@ -3,7 +3,7 @@
 use std::{borrow::Cow, collections::HashSet};
 
 use super::{
-    columns::{self, Columns, Part},
+    columns::{self, Column, Columns, Part},
     grid::{Grid, Row, with_line_feeds},
     rows::decimal_commas,
 };
@@ -98,6 +98,7 @@ pub(super) fn table(json: &str, old: Option<&str>, registry: &Registry) -> Strin
     let manner = old.map_or_else(Manner::default, |old| Manner::of(old, registry));
     // It was written by the writer of JSON.
     let Ok(Some(Ast::Object(scene))) = json::parse(json, &STRICT) else { return String::new() };
+    let known = columns::all(registry);
     let mut rows = vec![Cells { part: Part::Scene, list: Vec::new() }];
     for property in &scene.properties {
         let (part, values) = match (property.name.as_str(), &property.value) {
@@ -105,17 +106,17 @@ pub(super) fn table(json: &str, old: Option<&str>, registry: &Registry) -> Strin
             ("objects", Ast::Array(list)) => (Part::Object, &list.elements[..]),
             ("observer", value) => (Part::Observer, std::slice::from_ref(value)),
             (key, value) => {
-                flatten(key, value, json, &manner, &mut rows[0].list);
+                flatten(key, value, json, &manner, &known, &mut rows[0].list);
                 continue;
             }
         };
         for value in values {
             let mut list = Vec::new();
-            flatten("", value, json, &manner, &mut list);
+            flatten("", value, json, &manner, &known, &mut list);
             rows.push(Cells { part, list });
         }
     }
-    let names = names(&rows, &manner, registry);
+    let names = names(&rows, &manner, known);
     let mut out = String::with_capacity(json.len());
     if manner.has_mark {
         out.push('\u{FEFF}');
@@ -141,7 +142,14 @@ pub(super) fn table(json: &str, old: Option<&str>, registry: &Registry) -> Strin
 }
 
 /// The values within a value, each as a cell with the name of its column.
-fn flatten(name: &str, value: &Ast, json: &str, manner: &Manner, cells: &mut Vec<(String, String)>) {
+fn flatten(
+    name: &str,
+    value: &Ast,
+    json: &str,
+    manner: &Manner,
+    known: &[Column],
+    cells: &mut Vec<(String, String)>,
+) {
     use jsonc_parser::common::Ranged as _;
     let number = |value: &Ast| {
         let text = value.text(json);
@@ -152,15 +160,15 @@ fn flatten(name: &str, value: &Ast, json: &str, manner: &Manner, cells: &mut Vec
             for property in &object.properties {
                 let key = property.name.as_str();
                 let inner = if name.is_empty() { key.to_owned() } else { format!("{name}.{key}") };
-                flatten(&inner, &property.value, json, manner, cells);
+                flatten(&inner, &property.value, json, manner, known, cells);
             }
         }
         Ast::Array(list) => {
-            let key = name.rsplit('.').next().unwrap_or_default();
-            let each = columns::components(key).map(|component| format!("{name}.{component}"));
+            let column = known.iter().find(|column| column.name == name);
+            let each = column.map_or_else(Vec::new, Column::components);
             let has = |name: &str| manner.columns.iter().any(|column| column == name);
-            let is_spread = each.iter().any(|name| has(name)) || columns::is_spread(key) && !has(name);
-            if is_spread {
+            let is_spread = column.is_some_and(Column::is_spread);
+            if each.iter().any(|name| has(name)) || is_spread && !has(name) {
                 cells.extend(each.into_iter().zip(list.elements.iter().map(number)));
             } else {
                 let all: Vec<_> = list.elements.iter().map(number).collect();
@@ -173,10 +181,10 @@ fn flatten(name: &str, value: &Ast, json: &str, manner: &Manner, cells: &mut Vec
 }
 
 /// The columns of the table: the existing ones, and those that are needed.
-fn names(rows: &[Cells], manner: &Manner, registry: &Registry) -> Vec<String> {
+fn names(rows: &[Cells], manner: &Manner, known: Vec<Column>) -> Vec<String> {
     let used: HashSet<&str> = rows.iter().flat_map(|row| row.list.iter().map(|(n, _)| n.as_str())).collect();
     let mut names = manner.columns.clone();
-    for column in columns::all(registry) {
+    for column in known {
         if used.contains(column.name.as_str()) && !names.contains(&column.name) {
             names.push(column.name);
         }
