@@ -343,7 +343,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
 
         // A tile is finished as soon as the last batch has been drawn into it, which keeps few of them in
         // memory; the picture is assembled when all are finished.
-        let finished: Vec<(usize, Vec<T>)> = tiles
+        let finished: Vec<(usize, Finished<T>)> = tiles
             .par_iter_mut()
             .zip(&bins)
             .enumerate()
@@ -366,19 +366,22 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                 let visible = visible.as_ref().filter(|_| !late());
                 if let Some(lights) = visible.and_then(|visible| visible.within(origin, TILE, S)) {
                     if let (None, Some(light)) = (&tile, lights.throughout) {
-                        return Some((i, vec![finish(even::<S>(light)); TILE * TILE]));
+                        return Some((i, Finished::Even(finish(even::<S>(light)))));
                     }
                     tile.get_or_insert_with(Tile::new).show(&lights);
                 }
-                Some((i, tile?.resolve().map(&finish).collect()))
+                Some((i, Finished::Pixels(tile?.resolve().map(&finish).collect())))
             })
             .collect();
         for (i, pixels) in finished {
             let [left, top] = origin(i, &screen);
             let columns = TILE.min(width - left);
-            for (row, pixels) in pixels.chunks_exact(TILE).take(height - top).enumerate() {
-                let start = (top + row) * width + left;
-                out[start..start + columns].copy_from_slice(&pixels[..columns]);
+            for (row, out) in out.chunks_exact_mut(width).skip(top).take(TILE).enumerate() {
+                let out = &mut out[left..left + columns];
+                match &pixels {
+                    Finished::Even(pixel) => out.fill(*pixel),
+                    Finished::Pixels(pixels) => out.copy_from_slice(&pixels[row * TILE..][..columns]),
+                }
             }
         }
         if rest.is_empty() || late() {
@@ -389,6 +392,14 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
         odd.fetch_or(lights.was_odd(), Ordering::Relaxed);
     }
     out
+}
+
+/// A finished tile.
+enum Finished<T> {
+    /// All pixels are the same.
+    Even(T),
+    /// Row by row.
+    Pixels(Vec<T>),
 }
 
 /// The first pixel of a tile.
