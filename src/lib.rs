@@ -27,6 +27,7 @@
 //! - [`progress`]: how far some work is, and the wish to stop it.
 //! - [`signals`]: Ctrl+C and termination signals.
 //! - [`watch`]: file watching.
+//! - [`linear`]: pictures of linear light in files, Radiance's and OpenEXR's: reading within limits, writing.
 //!
 //! The equations:
 //!
@@ -88,6 +89,8 @@ pub mod failure;
 pub mod progress;
 pub mod signals;
 pub mod watch;
+
+pub mod linear;
 
 pub mod optics;
 pub mod parameter;

@@ -36,11 +36,12 @@ fn channel_viridis(place: f32) -> vec3<f32> {
     return mix(low, high, at - f32(first));
 }
 
-// What a channel makes of a pixel: display codes, light, or in x a place on the scale; w says which. The steps that follow
+// What a channel makes of a pixel: display codes, light, in x a place on the scale, or a direction; w says which. The steps that follow
 // are taken once, at the end: each would stand in every shader as often as it is written.
 const CHANNEL_LIGHT: f32 = 0.0;
 const CHANNEL_CODES: f32 = 1.0;
 const CHANNEL_PLACE: f32 = 2.0;
+const CHANNEL_DIRECTION: f32 = 3.0;
 
 // A cosine; those below 0 are grey, which viridis has not.
 fn channel_cosine(cosine: f32) -> vec4<f32> {
@@ -78,6 +79,12 @@ fn channel_colour(light: vec3<f32>, position: vec3<f32>, normal: vec3<f32>, face
     } else {
         let luminance = dot(clamp(light, vec3(-1e30), vec3(1e30)), vec3(0.2126, 0.7152, 0.0722));
         made = channel_of_light(light, luminance, light * illumination.exposure, pixel);
+    }
+    if illumination.look == LOOK_NUMBERS {
+        return made.xyz;
+    }
+    if made.w == CHANNEL_DIRECTION {
+        made = vec4(0.5 + 0.5 * made.xyz, CHANNEL_CODES);
     }
     if made.w == CHANNEL_PLACE {
         made = vec4(channel_viridis(made.x), CHANNEL_CODES);

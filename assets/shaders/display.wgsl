@@ -11,9 +11,10 @@ const WHITE: f32 = 1.0005;
 fn displayed(light: vec3<f32>) -> vec4<f32> {
     // Values beyond the target's half floats would become infinite, and black in tone mapping.
     let linear = clamp(light, vec3(-BRIGHTEST), vec3(BRIGHTEST));
-    if illumination.is_part != 0u {
-        // Light as it is, marked as something that is seen: src/render/mean.wgsl does the rest with the mean.
-        return vec4(linear, 0.0);
+    if illumination.look != LOOK_DISPLAY {
+        // Light as it is; of a part of a mean marked as something that is seen: src/render/mean.wgsl does the rest with
+        // the mean. Numbers are kept whole.
+        return select(vec4(linear, 0.0), vec4(light, 1.0), illumination.look == LOOK_NUMBERS);
     }
 #ifdef GAMMA_NAIVE
     // The display encodes its input; decoding first undoes that, and the numbers stay unchanged.

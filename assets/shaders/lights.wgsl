@@ -35,12 +35,18 @@ struct Illumination {
     // The samples of light with extent that are taken: the number of the first, and how many.
     first_sample: u32,
     sample_count: u32,
-    // 1 if the picture is a part of a mean, which gets its look later.
-    is_part: u32,
+    // What pixels become.
+    look: u32,
     // Not in use.
     spare: u32,
     lights: array<Light, MAX_LIGHTS>,
 }
+
+// A look for the display; none, as the picture is a part of a mean, which gets its look later; none, as the target takes
+// numbers: light before exposure, directions and distances.
+const LOOK_DISPLAY: u32 = 0u;
+const LOOK_PART: u32 = 1u;
+const LOOK_NUMBERS: u32 = 2u;
 
 // The light that arrives at a point from one light, for red, green and blue: from the direction l, or, if
 // `everywhere` is not zero, equally from all directions.

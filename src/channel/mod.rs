@@ -30,6 +30,9 @@ use crate::{
 };
 
 pub use crate::debug::{DebugChannel, Legend, colours};
+pub use layer::{Layer, LayerKind, layers, too_large};
+
+mod layer;
 
 /// A channel with its settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +45,9 @@ pub struct Setting {
     pub range: [f32; 2],
     /// True if the light shines from its position, false if along its direction.
     pub from_position: bool,
+    /// True for the numbers themselves instead of colours that show them: light before exposure and without bounds,
+    /// x, y and z of directions, distances in metres.
+    pub numbers: bool,
 }
 
 impl Setting {
@@ -61,7 +67,15 @@ impl Setting {
         let mut shining = scene.lights.iter().filter(|light| light.enabled);
         let shown = light.and_then(|place| shining.nth(place));
         let declared = shown.and_then(|light| registry.light(&light.light_type));
-        Self { channel, light, range, from_position: declared.is_some_and(|l| l.declaration.has_position) }
+        let from_position = declared.is_some_and(|l| l.declaration.has_position);
+        Self { channel, light, range, from_position, numbers: false }
+    }
+
+    /// The numbers of a channel, for linear pictures; of [`DebugChannel::Light`], the light of all lights.
+    #[must_use]
+    pub const fn numbers(channel: DebugChannel) -> Self {
+        // A place on this scale is the number.
+        Self { channel, light: None, range: [0.0, 1.0], from_position: false, numbers: true }
     }
 
     /// True if the light with this index among the active ones takes part in the picture.
@@ -255,8 +269,7 @@ mod tests {
         scene.lights.clear();
         assert_eq!(legend(DebugChannel::NDotL, &scene).title, "N·L: no light has a direction");
         assert_eq!(legend(DebugChannel::Light, &scene).title, "One light alone: no light shines");
-        let depth =
-            Setting { channel: DebugChannel::Depth, light: None, range: [0.12, 13.0], from_position: false };
+        let depth = Setting { range: [0.12, 13.0], ..Setting::numbers(DebugChannel::Depth) };
         let depth = depth.legend(&scene, &Registry::builtin());
         assert_eq!(depth.scale, Some(["0.12", "6.56", "13"].map(str::to_owned)));
         assert!(depth.title.ends_with(", m"));

@@ -33,7 +33,7 @@ use crate::{
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// Scene file, or PNG picture; `-` is a scene on standard input
+    /// Scene file, PNG picture, or OpenEXR or Radiance picture with linear light; `-` is a scene on standard input
     #[arg(value_name = "A")]
     a: PathBuf,
     /// The other scene file or picture; without one, the scene is compared with its own variant
@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     /// PNG file for the picture of the comparison
     #[arg(long, short, value_name = "FILE", value_parser = outputs::place())]
     output: Option<PathBuf>,
-    /// Size of the picture in pixels; by default that of a PNG picture, or 1280x720
+    /// Size of the picture in pixels; by default that of a picture, or 1280x720
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
     /// Samples per pixel: 1, or 4 for smooth edges
@@ -134,6 +134,11 @@ impl Input {
             Self::Scene(_, scene) => Some(scene),
             Self::Picture(..) => None,
         }
+    }
+
+    /// True for a picture of linear light.
+    fn is_linear(&self) -> bool {
+        matches!(self, Self::Picture(_, shown) if !shown.has_codes())
     }
 
     fn size(&self) -> Option<[u32; 2]> {
@@ -237,7 +242,28 @@ struct Report {
     channel: &'static str,
     all: Numbers,
     covered: Option<Numbers>,
-    largest: Option<Largest>,
+    largest: Option<Most>,
+}
+
+/// The largest difference, with the display codes of both pictures there, or with their light if one has no codes.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Most {
+    Codes(Largest),
+    Light { x: u32, y: u32, difference: f32, a: [f32; 3], b: [f32; 3] },
+}
+
+impl Most {
+    fn of(largest: Largest, shown: &[Shown; 2]) -> Self {
+        let Largest { x, y, difference, .. } = largest;
+        let light = |shown: &Shown| Some(shown.light()?.pixel(x, y).truncate().to_array());
+        match [&shown[0], &shown[1]].map(light) {
+            [Some(a), Some(b)] if shown.iter().any(|shown| !shown.has_codes()) => {
+                Self::Light { x, y, difference, a, b }
+            }
+            _ => Self::Codes(largest),
+        }
+    }
 }
 
 /// One side of the comparison.
@@ -278,7 +304,15 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if let Some(output) = &arguments.output {
         render::one_picture(output)?;
     }
-    let read = collected(paths.iter().map(|path| Input::read(path, workshop, options)))?;
+    let mut read = collected(paths.iter().map(|path| Input::read(path, workshop, options)))?;
+    // A linear picture beside a scene is shown like the scene.
+    if let Some(display) = read.iter().find_map(|input| Some(input.scene()?.display)) {
+        let shown = |input: Input| match input {
+            Input::Picture(name, shown) => Input::Picture(name, shown.shown_by(&display)),
+            scene => scene,
+        };
+        read = read.into_iter().map(shown).collect();
+    }
     let registry = &workshop.registry;
     if let Some(output) = &arguments.output {
         let named = paths.iter().map(|path| Source::named(path)).collect::<Vec<_>>();
@@ -346,7 +380,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         channel: comparison.channel.id(),
         all: Numbers(measured.all.clone()),
         covered: measured.covered.clone().map(Numbers),
-        largest: differences.largest,
+        largest: differences.largest.map(|largest| Most::of(largest, &shown)),
     };
     let printed = print_json(&report);
     let broken = broken(arguments, &measured, differences.largest)?;
@@ -381,8 +415,13 @@ fn write(output: &Path, size: [u32; 2], rgb8: &[u8], about: &About) -> Outcome {
 fn views<'a>(arguments: &Arguments, read: &'a [Input]) -> Result<(Comparison, Vec<View<'a>>), Failure> {
     let of_file = read.iter().find_map(Input::scene).map(|scene| scene.comparison).unwrap_or_default();
     let mut comparison = arguments.choice.applied(of_file);
+    if let Some(linear) = read.iter().find(|input| input.is_linear()) {
+        comparison.values = Compared::Light;
+        of_light_alone(arguments, linear, read)?;
+    }
     let of_light = comparison.values == Compared::Light;
-    if let Some(picture) = read.iter().find(|input| of_light && input.scene().is_none()) {
+    if let Some(picture) = read.iter().find(|input| of_light && input.scene().is_none() && !input.is_linear())
+    {
         let why = "the linear light of a picture file is unknown; --values codes compares the display codes";
         return Err(Failure::Invalid(format!("{}: {why}", picture.name())));
     }
@@ -408,6 +447,32 @@ fn views<'a>(arguments: &Arguments, read: &'a [Input]) -> Result<(Comparison, Ve
     }
     let views = comparison.views(scene.variants.len()).into_iter().map(|view| View { input, view }).collect();
     Ok((comparison, views))
+}
+
+/// Fails if anything but light is to be compared, which is all that a linear picture has.
+fn of_light_alone(arguments: &Arguments, linear: &Input, read: &[Input]) -> Outcome {
+    let name = linear.name();
+    if arguments.choice.values == Some(Compared::Codes) {
+        let why = format!("--values codes compares display codes, but {name} holds linear light; omit it");
+        return Err(Failure::Usage(why));
+    }
+    if let Some(codes) = read.iter().find(|input| input.scene().is_none() && !input.is_linear()) {
+        let why =
+            "linear light and display codes cannot be compared; give two linear pictures, or two PNG files";
+        return Err(Failure::Invalid(format!("{name} and {}: {why}", codes.name())));
+    }
+    let of_codes = |limit: &&Limit| match limit.metric.way {
+        Way::Pixels(of, _) => of.where_equal.is_some(),
+        Way::Largest(_) => false,
+    };
+    if let Some(limit) = arguments.fail_above.iter().chain(&arguments.fail_below).find(of_codes) {
+        let known = "limits can be on light_rmse, covered.light_rmse and largest";
+        let id = limit.metric.id;
+        return Err(Failure::Usage(format!(
+            "{id} compares display codes, but {name} holds linear light; {known}"
+        )));
+    }
+    Ok(())
 }
 
 /// The view with which A is compared.

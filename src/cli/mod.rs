@@ -46,6 +46,7 @@ mod export;
 mod finite;
 mod lesson;
 mod light_samples;
+mod linear;
 mod matching;
 mod models;
 mod new;
@@ -237,7 +238,7 @@ impl Options {
 enum Command {
     /// Open the window (same as `lcm` alone)
     View(OfScenes<view::Arguments>),
-    /// Render scenes to PNG files
+    /// Render scenes to PNG files, or to OpenEXR and Radiance files with linear light
     Render(OfScenes<render::Arguments>),
     /// Compare two views of a scene, two scenes or two pictures: numbers as JSON, and a picture
     ///

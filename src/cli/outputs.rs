@@ -12,7 +12,11 @@ use super::{Outcome, complain};
 use crate::{
     failure::Failure,
     files::{self, Shown as _, words},
-    render::capture::png::{self, About},
+    linear::{Channels, Format},
+    render::capture::{
+        linear,
+        png::{self, About},
+    },
 };
 
 /// Parser of all files and folders that commands write. `-` is refused: where standard output is allowed, it
@@ -49,10 +53,19 @@ fn refused(refused: files::Refused) -> Failure {
 
 /// Writes a picture to a path that was checked before.
 pub(super) fn write_picture(output: &Path, [width, height]: [u32; 2], rgb8: &[u8], about: &About) -> Outcome {
-    png::write(output, width, height, rgb8, about).map_err(|e| match e.kind() {
+    png::write(output, width, height, rgb8, about).map_err(|e| unwritten(output, &e))
+}
+
+/// Writes a linear picture to a path that was checked before.
+pub(super) fn write_linear(output: &Path, format: Format, channels: &Channels, about: &About) -> Outcome {
+    linear::write(output, format, channels, about).map_err(|e| unwritten(output, &e))
+}
+
+fn unwritten(output: &Path, error: &io::Error) -> Failure {
+    match error.kind() {
         io::ErrorKind::BrokenPipe => Failure::Closed,
-        _ => Failure::Write(format!("{} could not be written: {}", output.shown(), words(&e))),
-    })
+        _ => Failure::Write(format!("{} could not be written: {}", output.shown(), words(error))),
+    }
 }
 
 /// Tidies the folder of a file to be written, and reports problems that need the user's attention.

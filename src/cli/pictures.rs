@@ -1,28 +1,100 @@
-//! Pictures as inputs: PNG files.
+//! Pictures as inputs: PNG files, and OpenEXR and Radiance files with linear light.
 
 use std::{
     io::{Cursor, ErrorKind},
     path::Path,
 };
 
+use glam::{DVec3, Vec4};
 use png::{ColorType, Decoder, DecodingError, Transformations};
 
 use super::render::MAX_SIDE;
 use crate::files::Shown as _;
-use crate::{compare::Shown, failure::Failure, files, scene::load::MAX_PICTURE_BYTES};
+use crate::{
+    compare::Shown,
+    failure::Failure,
+    files,
+    linear::{self, Format, Limits, MAX_PIXELS, Pixels},
+    reference::Picture,
+    scene::load::{MAX_FILE_BYTES, MAX_PICTURE_BYTES},
+};
 
 /// True if a path leads to a picture, judging by its content or its name.
 pub(super) fn is_picture(path: &Path) -> bool {
     let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
-    named || files::PNG.begins(path)
+    named || Format::of(path).is_some() || files::PICTURES.iter().any(|picture| picture.begins(path))
 }
 
-/// Reads a PNG file: its 8-bit colours, unchanged.
+/// Reads a picture: the 8-bit colours of a PNG file, unchanged, or linear light.
 pub(super) fn read(path: &Path) -> Result<Shown, Failure> {
     let name = path.shown();
     let bytes = files::read_input(path, MAX_PICTURE_BYTES)
         .map_err(|error| Failure::Invalid(format!("{name} could not be read: {error}")))?;
-    decode(&bytes).map_err(|what| Failure::Invalid(format!("{name}: {what}")))
+    let is_linear = |format: Format| bytes.starts_with(format.signature().begins);
+    let shown = match Format::of(path) {
+        None if !is_linear(Format::Exr) && !is_linear(Format::Hdr) => decode(&bytes),
+        _ => linear::read::<Light>(&bytes, &LIMITS).and_then(Light::shown),
+    };
+    shown.map_err(|what| Failure::Invalid(format!("{name}: {what}")))
+}
+
+/// Limits of linear pictures: a scene may be in the header, and layers beside the picture.
+const LIMITS: Limits = Limits {
+    head: 2 * MAX_FILE_BYTES as usize,
+    channels: 1024,
+    size: [MAX_SIDE as usize; 2],
+    surroundings: false,
+};
+
+/// The light of a file.
+struct Light {
+    picture: Picture,
+    scale: DVec3,
+    /// True if the file has no coverage.
+    is_opaque: bool,
+    /// The first pixel that is no light: row, column, and its number.
+    odd: Option<(usize, usize, f32)>,
+}
+
+impl Pixels for Light {
+    fn check(width: usize, height: usize) -> Result<(), String> {
+        let most = MAX_SIDE as usize;
+        let fits =
+            (1..=most).contains(&width) && (1..=most).contains(&height) && width * height <= MAX_PIXELS;
+        let rule = format!("each side must have 1 to {most}, and both together at most {MAX_PIXELS}");
+        fits.then_some(()).ok_or_else(|| format!("the picture has {width}×{height} pixels, but {rule}"))
+    }
+
+    fn new(width: usize, height: usize, scale: DVec3) -> Self {
+        let pixels = vec![Vec4::ZERO; width * height];
+        let picture = Picture { width: width as u32, height: height as u32, pixels };
+        Self { picture, scale, is_opaque: false, odd: None }
+    }
+
+    fn add(&mut self, column: usize, row: usize, [r, g, b, a]: [f32; 4]) {
+        let Picture { width, pixels, .. } = &mut self.picture;
+        let Some(pixel) = pixels.get_mut(row * *width as usize + column) else { return };
+        let light = (DVec3::new(r.into(), g.into(), b.into()) * self.scale).as_vec3();
+        self.is_opaque |= a.is_nan();
+        *pixel = light.extend(if a.is_nan() { 1.0 } else { a });
+        let odd = light.to_array().into_iter().find(|number| !number.is_finite());
+        if let Some(number) = odd.filter(|_| self.odd.is_none_or(|(r, c, _)| (row, column) < (r, c))) {
+            self.odd = Some((row, column, number));
+        }
+    }
+}
+
+impl Light {
+    fn shown(self) -> Result<Shown, String> {
+        match self.odd {
+            Some((row, column, number)) => Err(format!(
+                "the pixel in column {}, row {} has {number}; light must be finite",
+                column + 1,
+                row + 1
+            )),
+            None => Ok(Shown::linear(self.picture, !self.is_opaque)),
+        }
+    }
 }
 
 fn decode(bytes: &[u8]) -> Result<Shown, String> {

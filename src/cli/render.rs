@@ -1,4 +1,4 @@
-//! `lcm render`: scenes to PNG files.
+//! `lcm render`: scenes to PNG files, and to OpenEXR and Radiance files with linear light.
 
 use std::{
     borrow::Cow,
@@ -15,6 +15,7 @@ use clap::{Args, ValueEnum};
 use super::{
     FINE, Options, Outcome, collected, finite, gauged,
     light_samples::{self, Sampling},
+    linear::{self, Kinds},
     one_of, outputs, progress,
     scenes::Source,
     style,
@@ -24,12 +25,13 @@ use super::{
 use crate::files::Shown as _;
 use crate::{
     caption::{self, Sampled},
-    channel::{DebugChannel, Legend, Setting},
+    channel::{DebugChannel, Layer, LayerKind, Legend, Setting, layers, too_large},
     compare::{Cell, Shown, compose, with_legends},
     explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
-    files::{Kind, is_descriptor, kind, printable},
+    files::{Kind, PNG, is_descriptor, kind, printable},
+    linear::{Channels, Format, MAX_PIXELS},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     progress::Progress,
     reference::{self, LightSamples, Reached, Until},
@@ -63,7 +65,8 @@ pub(super) struct Arguments {
     /// Scene files; `-` is standard input; without any, the default scene
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
-    /// PNG file, or folder for the pictures of several scenes; by default the folder renders
+    /// PNG file, OpenEXR file (.exr) or Radiance file (.hdr) with linear light, or folder for the pictures of several
+    /// scenes; by default the folder renders
     #[arg(long, short, value_name = "FILE|FOLDER", value_parser = outputs::place())]
     output: Option<PathBuf>,
     /// Size of the picture in pixels
@@ -104,6 +107,8 @@ pub(super) struct Arguments {
     /// Leave the legend of the channel out
     #[arg(long, requires = "channel")]
     no_legend: bool,
+    #[arg(long, value_name = "LAYERS", value_parser = linear::kinds, help = linear::help())]
+    layers: Option<Kinds>,
     /// Add a strip below the picture that says what it shows; the height of the strip is added to that of --size
     #[arg(long)]
     caption: bool,
@@ -116,6 +121,13 @@ pub(super) struct Arguments {
     /// Leave the scene out of the picture's file: lcm cannot open the picture then
     #[arg(long)]
     no_scene: bool,
+}
+
+impl Arguments {
+    /// The kinds of layers beside the picture.
+    fn kinds(&self) -> &[LayerKind] {
+        self.layers.as_ref().map_or(&[][..], |kinds| &kinds.0)
+    }
 }
 
 #[cfg(target_os = "linux")]
@@ -226,6 +238,21 @@ impl Job<'_> {
         [self.arguments.size.width, self.arguments.size.height]
     }
 
+    /// The layers of a linear picture.
+    fn layers(&self, part: &Part, registry: &Registry) -> Vec<Layer> {
+        layers(&part.scene, part.terms, self.arguments.kinds(), registry)
+    }
+
+    /// The metadata of the picture.
+    fn about(&self, renderer: &str, light: &str, registry: &Registry) -> About {
+        let about = About::scene(&pictured(self), registry)
+            .with("Source", self.source.name())
+            .with("Renderer", renderer);
+        let about = self.channel.into_iter().fold(about, |about, s| about.with("Channel", s.channel.id()));
+        let about = light_samples::noted(about, light);
+        if self.arguments.no_scene { about.without_scene() } else { about }
+    }
+
     /// True if what is shown of a scene depends on samples of lights with extent.
     fn converges(&self, scene: &Scene, registry: &Registry) -> bool {
         self.channel.is_none_or(|setting| rests_on_samples(setting.channel))
@@ -246,6 +273,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
     let changes = Changes::new(arguments, &workshop.registry)?;
     let files = files(&sources, arguments.output.as_deref())?;
+    files.iter().try_for_each(|file| fits(arguments, file))?;
     let renderer = renderer(arguments)?;
 
     // All scenes are read before the first is rendered, so that errors in the last one appear at once.
@@ -265,9 +293,16 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             other => other,
         })
     }))?;
+    for ((plan, source), file) in plans.iter().zip(&sources).zip(&files) {
+        holds(arguments, plan, file, registry)
+            .map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?;
+    }
     // By now the registry knows the files of models and shaders.
     let read = inputs(sources.iter().filter_map(Source::path), &scenes, registry);
-    files.iter().try_for_each(|file| outputs::picture(file, &read))?;
+    for file in &files {
+        let format = Format::of(file).map_or(PNG, Format::signature);
+        outputs::of_format(file, format, &read)?;
+    }
     for part in plans.iter().flat_map(|plan| &plan.parts) {
         drawable(registry, &part.scene)?;
     }
@@ -335,6 +370,57 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     Ok(())
 }
 
+/// Fails if an option does not suit the format of the picture.
+fn fits(arguments: &Arguments, file: &Path) -> Outcome {
+    let usage = |why: String| Err(Failure::Usage(why));
+    let (name, png) = (file.shown(), file.with_extension("png"));
+    let Some(format) = Format::of(file) else {
+        return match arguments.layers {
+            Some(_) => usage("--layers needs an OpenEXR file, e.g. -o room.exr".to_owned()),
+            None => Ok(()),
+        };
+    };
+    if format == Format::Hdr && arguments.layers.is_some() {
+        let exr = file.with_extension(Format::Exr.extension());
+        return usage(format!("{name} cannot hold --layers; -o {} can", exr.shown()));
+    }
+    let png = png.shown();
+    if arguments.channel.is_some() {
+        let layers = "--layers normals, face_normals or depth adds numbers to an OpenEXR file";
+        return usage(format!(
+            "--channel draws display codes, but {name} holds light; use -o {png}, or {layers}"
+        ));
+    }
+    if arguments.caption {
+        return usage(format!("--caption draws display codes, but {name} holds light; use -o {png}"));
+    }
+    let Size { width, height } = arguments.size;
+    if width as usize * height as usize > MAX_PIXELS {
+        return usage(format!(
+            "{width}x{height} are more pixels than {name} can hold; at most {MAX_PIXELS} are possible"
+        ));
+    }
+    Ok(())
+}
+
+/// The reason why a linear picture cannot hold what it would show.
+fn holds(arguments: &Arguments, plan: &Plan, file: &Path, registry: &Registry) -> Result<(), String> {
+    let Some(format) = Format::of(file) else { return Ok(()) };
+    let [part] = plan.parts.as_slice() else {
+        let count = plan.parts.len();
+        let name = file.shown();
+        return Err(format!(
+            "{name} holds the light of one view, but the scene shows {count}; --view A draws one alone"
+        ));
+    };
+    let Size { width, height } = arguments.size;
+    let layers = layers(&part.scene, part.terms, arguments.kinds(), registry);
+    match too_large(&layers, format, [width, height]) {
+        Some(why) => Err(format!("{}: {why}; choose fewer --layers or a smaller --size", file.shown())),
+        None => Ok(()),
+    }
+}
+
 /// The requested renderer. Samples of lights with extent are counted on the CPU.
 fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
     let Some(given) = arguments.sampling.given() else { return Ok(arguments.renderer) };
@@ -382,8 +468,8 @@ struct Painter {
     gpu: bool,
     /// The program that tries shaders in a separate process.
     trial_program: Option<PathBuf>,
-    /// The renderer of the last picture, with its size and samples: the next picture likely has the same.
-    last: Option<((u32, u32, u32), GpuRenderer)>,
+    /// The renderer of the last picture, with its size, samples and output: the next picture likely has the same.
+    last: Option<((u32, u32, u8, gpu::Output), GpuRenderer)>,
     /// The results on the CPU of models that tests do not cover.
     tried: Tried,
 }
@@ -416,6 +502,9 @@ impl Painter {
 
     /// Renders one picture.
     fn draw(&mut self, job: &Job, registry: &Registry, progress: &Progress) -> Result<Painted, Failure> {
+        if let (Some(format), [part]) = (Format::of(job.file), job.plan.parts.as_slice()) {
+            return self.draw_linear(job, (part, format), registry, progress);
+        }
         let gpu = self.takes_gpu(job.plan, registry);
         if gpu && job.plan.needs_light() {
             return Err(Failure::NoRenderer(format!(
@@ -456,43 +545,100 @@ impl Painter {
             }
             None => rgb8,
         };
-        let renderer = if gpu { "GPU" } else { "CPU" };
-        let about = About::scene(&pictured(job), registry)
-            .with("Source", job.source.name())
-            .with("Renderer", renderer);
-        let about = job.channel.into_iter().fold(about, |about, s| about.with("Channel", s.channel.id()));
-        let about = light_samples::noted(about, &light);
-        let about = if job.arguments.no_scene { about.without_scene() } else { about };
+        let about = job.about(renderer_name(gpu), &light, registry);
         let (rgb8, size) = captioned(job, registry, rgb8, &rests_on);
         outputs::write_picture(job.file, size, &rgb8, &about)?;
         Ok(Painted { remarks, light })
     }
 
-    fn on_gpu(&mut self, job: &Job, part: &Part, registry: &Registry) -> Result<Drawn, Failure> {
-        let Cell { width, height, .. } = part.cell;
-        let key = (width, height, job.arguments.samples);
-        let failed = |e: GpuError| match e {
-            GpuError::Invalid(_) | GpuError::Endless(_) => e.into(),
-            e => Failure::NoRenderer(format!("{}: {e}", job.file.shown())),
+    /// Renders a linear picture with its layers.
+    fn draw_linear(
+        &mut self,
+        job: &Job,
+        (part, format): (&Part, Format),
+        registry: &Registry,
+        progress: &Progress,
+    ) -> Result<Painted, Failure> {
+        let gpu = self.takes_gpu(job.plan, registry);
+        let layers = job.layers(part, registry);
+        let (channels, reached, remarks) = match gpu {
+            true => self.layers_on_gpu(job, part, &layers, registry, progress)?,
+            false => layers_on_cpu(job, part, &layers, registry, progress)?,
         };
+        let light = caption::line(&caption::sampled(reached.as_slice()));
+        let about = job.about(renderer_name(gpu), &light, registry);
+        outputs::write_linear(job.file, format, &channels, &about)?;
+        Ok(Painted { remarks, light })
+    }
+
+    fn layers_on_gpu(
+        &mut self,
+        job: &Job,
+        part: &Part,
+        layers: &[Layer],
+        registry: &Registry,
+        progress: &Progress,
+    ) -> Result<(Channels, Option<Reached>, Vec<String>), Failure> {
+        let renderer = self.renderer(job, part, gpu::Output::Linear, registry)?;
+        let [width, height] = job.size();
+        let (mut channels, mut odd) = (Channels::new(width, height), false);
+        for (i, layer) in layers.iter().enumerate() {
+            (progress.tell)(i as f32 / layers.len() as f32, &layer.name);
+            let scene = layer.scene(&part.scene, registry);
+            let (picture, is_odd) =
+                renderer.light(layer, scene, job.arguments.samples).map_err(|e| failed(job, e))?;
+            if let Some(problem) = renderer.shader_problem() {
+                return Err(invalid(registry, &problem));
+            }
+            odd |= is_odd;
+            channels.add(&layer.name, layer.channels, &picture.pixels);
+        }
+        let reached = has_extent(part.scene.shining(), registry)
+            .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
+        let remark = odd.then(|| {
+            finite::remark_on_cpu(part, registry).unwrap_or_else(|| {
+                "some light is not finite: not a number became 0, infinite 1e30".to_owned()
+            })
+        });
+        Ok((channels, reached, remark.into_iter().collect()))
+    }
+
+    /// The renderer of the GPU for a part of a picture.
+    fn renderer(
+        &mut self,
+        job: &Job,
+        part: &Part,
+        output: gpu::Output,
+        registry: &Registry,
+    ) -> Result<&mut GpuRenderer, Failure> {
+        let Cell { width, height, .. } = part.cell;
+        let samples = if job.arguments.samples == 4 && output == gpu::Output::Display { 4 } else { 1 };
+        let key = (width, height, samples, output);
         // An endless loop on a GPU cannot be stopped.
         for object in part.scene.objects.iter().take(MOST_TRIED) {
             if let Some(model) = registry.model(part.scene.model_of(object)) {
-                check_that_it_ends(model, &object.material, Encoding::Srgb).map_err(|e| failed(e.into()))?;
+                check_that_it_ends(model, &object.material, Encoding::Srgb)
+                    .map_err(|e| failed(job, e.into()))?;
             }
         }
-        let renderer = match &mut self.last {
-            Some((last, renderer)) if *last == key => renderer,
-            slot => {
-                let samples = if job.arguments.samples == 4 { 4 } else { 1 };
-                let renderer = GpuRenderer::extended(width, height, samples, gpu::Output::Display, |app| {
-                    try_apart(app, registry, self.trial_program.clone());
-                    app.insert_resource(registry.clone());
-                })
-                .map_err(failed)?;
-                &mut slot.insert((key, renderer)).1
-            }
-        };
+        if self.last.as_ref().is_none_or(|(last, _)| *last != key) {
+            self.last = None;
+            let renderer = GpuRenderer::extended(width, height, samples, output, |app| {
+                try_apart(app, registry, self.trial_program.clone());
+                app.insert_resource(registry.clone());
+            });
+            self.last = Some((key, renderer.map_err(|e| failed(job, e))?));
+        }
+        match &mut self.last {
+            Some((_, renderer)) => Ok(renderer),
+            None => Err(failed(job, GpuError::NoAdapter)),
+        }
+    }
+
+    fn on_gpu(&mut self, job: &Job, part: &Part, registry: &Registry) -> Result<Drawn, Failure> {
+        let Cell { width, height, .. } = part.cell;
+        let failed = |e: GpuError| failed(job, e);
+        let renderer = self.renderer(job, part, gpu::Output::Display, registry)?;
         renderer.set_scene(part.scene.clone());
         renderer.set_terms(part.terms);
         renderer.set_channel(job.channel);
@@ -516,6 +662,49 @@ impl Painter {
         let remark = finite::remark_on_gpu(part, registry, &channel, &mut self.tried);
         Ok(Drawn { shown, reached, remarks: remark.into_iter().collect() })
     }
+}
+
+/// The name of a renderer in the metadata of pictures.
+fn renderer_name(gpu: bool) -> &'static str {
+    if gpu { "GPU" } else { "CPU" }
+}
+
+/// The failure of the GPU renderer.
+fn failed(job: &Job, error: GpuError) -> Failure {
+    match error {
+        GpuError::Invalid(_) | GpuError::Endless(_) => error.into(),
+        error => Failure::NoRenderer(format!("{}: {error}", job.file.shown())),
+    }
+}
+
+/// Fails if the CPU renderer cannot draw a part of a picture.
+fn can_draw(job: &Job, part: &Part, registry: &Registry) -> Outcome {
+    let without =
+        job.arguments.sampling.given().map_or_else(String::new, |given| format!(" without {given}"));
+    cpu_can_draw_or(&part.scene, registry, &format!("--renderer gpu{without}"))
+}
+
+fn layers_on_cpu(
+    job: &Job,
+    part: &Part,
+    layers: &[Layer],
+    registry: &Registry,
+    progress: &Progress,
+) -> Result<(Channels, Option<Reached>, Vec<String>), Failure> {
+    can_draw(job, part, registry)?;
+    let Cell { width, height, .. } = part.cell;
+    let settings = reference::Settings { width, height, samples: job.arguments.samples, terms: part.terms };
+    let odd = AtomicBool::new(false);
+    let until = job.arguments.sampling.until();
+    let (channels, end) =
+        reference::render_layers(layers, &part.scene, registry, &settings, until, &odd, progress)
+            .map_err(|cancelled| Failure::Invalid(cancelled.to_string()))?;
+    // An endless function is detected only when it runs.
+    can_draw(job, part, registry)?;
+    let odd = odd.into_inner().then(|| finite::remark_on_cpu(part, registry)).flatten();
+    let reached = Some(end).filter(|end| end.samples > 0);
+    let noisy = reached.and_then(|reached| job.arguments.sampling.remark(reached));
+    Ok((channels, reached, odd.into_iter().chain(noisy).collect()))
 }
 
 /// The legends of a channel in the views of a picture; if there are several, with the letters of their views.
@@ -557,12 +746,7 @@ fn try_apart(app: &mut App, registry: &Registry, program: Option<PathBuf>) {
 }
 
 fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> Result<Drawn, Failure> {
-    let can_draw = || {
-        let without =
-            job.arguments.sampling.given().map_or_else(String::new, |given| format!(" without {given}"));
-        cpu_can_draw_or(&part.scene, registry, &format!("--renderer gpu{without}"))
-    };
-    can_draw()?;
+    can_draw(job, part, registry)?;
     let Cell { width, height, .. } = part.cell;
     let settings = reference::Settings { width, height, samples: job.arguments.samples, terms: part.terms };
     // A channel does not record non-finite light.
@@ -599,7 +783,7 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> R
         of_codes(reference::render_rgb8_noting(&lit, registry, &settings, &odd))?
     };
     // An endless function is detected only when it runs.
-    can_draw()?;
+    can_draw(job, part, registry)?;
     let odd = odd.into_inner().then(|| finite::remark_on_cpu(part, registry)).flatten();
     let noisy = reached.and_then(|reached| job.arguments.sampling.remark(reached));
     Ok(Drawn { shown, reached, remarks: odd.into_iter().chain(noisy).collect() })
@@ -725,7 +909,7 @@ impl<'a> Changes<'a> {
 fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
     let folder = match output {
         None => Path::new(RENDERS_DIR),
-        Some(path) => match (is_file(path)?, sources) {
+        Some(path) => match (is_file(path, true)?, sources) {
             (true, [_]) => return Ok(vec![path.to_owned()]),
             (true, _) => {
                 let (file, count) = (path.shown(), sources.len());
@@ -755,12 +939,13 @@ pub(super) fn one_picture(path: &Path) -> Outcome {
     if stdout.iter().any(|name| path == Path::new(name)) {
         return Err(usage("standard output is for the numbers; name a PNG file"));
     }
-    if is_file(path)? { Ok(()) } else { Err(usage("name a PNG file")) }
+    if is_file(path, false)? { Ok(()) } else { Err(usage("name a PNG file")) }
 }
 
-/// True if `-o` is a file, and not a folder. A path that ends in `.png` is one, unless it is an existing folder; so
-/// is a device or a pipe. Other picture formats are refused; anything else is a folder.
-fn is_file(path: &Path) -> Result<bool, Failure> {
+/// True if `-o` is a file, and not a folder. A path that ends in `.png` is one, unless it is an existing folder, and so
+/// is one of a linear picture, where these are possible, and a device or a pipe. Other picture formats are refused;
+/// anything else is a folder.
+fn is_file(path: &Path, linear: bool) -> Result<bool, Failure> {
     match kind(path) {
         Ok(Kind::Folder) => return Ok(false),
         Ok(Kind::Device | Kind::Pipe) => return Ok(true),
@@ -773,11 +958,13 @@ fn is_file(path: &Path) -> Result<bool, Failure> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     match extension.as_str() {
         "png" => Ok(true),
+        _ if linear && Format::of(path).is_some() => Ok(true),
         "jpg" | "jpeg" | "gif" | "bmp" | "tif" | "tiff" | "webp" | "exr" | "hdr" | "ppm" | "tga" | "svg"
         | "pdf" => {
             let (file, png) = (path.shown(), path.with_extension("png"));
             let hint = format!("did you mean {}?", png.shown());
-            Err(Failure::Usage(format!("-o {file}: only PNG files can be written; {hint}")))
+            let formats = if linear { "PNG, OpenEXR and Radiance" } else { "PNG" };
+            Err(Failure::Usage(format!("-o {file}: only {formats} files can be written; {hint}")))
         }
         _ if path.is_file() => {
             Err(Failure::Write(format!("-o {} is not a PNG file; name a PNG file or a folder", path.shown())))
@@ -803,7 +990,9 @@ mod tests {
     fn pictures_are_named_after_their_scenes() {
         assert_eq!(named(&["scenes/room.json"], None), Ok(vec!["renders/room.png".to_owned()]));
         assert_eq!(named(&["-"], None), Ok(vec!["renders/stdin.png".to_owned()]));
-        assert_eq!(named(&["a/room.json"], Some("x/y.PNG")), Ok(vec!["x/y.PNG".to_owned()]));
+        for file in ["x/y.PNG", "x/y.exr", "x/y.HDR"] {
+            assert_eq!(named(&["a/room.json"], Some(file)), Ok(vec![file.to_owned()]));
+        }
         assert_eq!(
             named(&["a.json", "b.json"], Some("out")),
             Ok(vec!["out/a.png".to_owned(), "out/b.png".to_owned()])
@@ -817,6 +1006,7 @@ mod tests {
         assert!(said(&["a.json", "b.json"], Some("x.png")).contains("is one file, but there are 2 scenes"));
         assert!(said(&["a/x.json", "b/x.json"], None).contains("would both be written to renders/x.png"));
         assert!(said(&["a.json"], Some("x.jpg")).contains("did you mean x.png?"));
+        assert!(one_picture(Path::new("x.exr")).is_err(), "numbers have no linear picture beside them");
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub(super) struct Choice {
     channel: Option<Channel>,
     /// Compare display codes, or linear light: codes or light
     #[arg(long, value_parser = |text: &str| word::<Compared>(text, Comparison::values))]
-    values: Option<Compared>,
+    pub(super) values: Option<Compared>,
     /// Multiply differences by this, 1 to 100, before they become colours; else by what fits the largest one
     #[arg(long, value_name = "FACTOR", value_parser = |text: &str| number(text, Comparison::amplification))]
     amplification: Option<f32>,

@@ -18,6 +18,8 @@ pub struct Shown {
     light: Option<Picture>,
     covered: Option<Vec<bool>>,
     outlines: Option<Vec<bool>>,
+    /// True if the codes only make light visible, and say nothing of a display.
+    is_linear: bool,
 }
 
 /// A number of bytes, or of pixels, that does not match the size of a picture.
@@ -43,7 +45,7 @@ impl Shown {
         if rgb8.len() != 3 * pixels {
             return Err(WrongSize { width, height, found: rgb8.len() / 3 });
         }
-        Ok(Self { width, height, rgb8, light: None, covered: None, outlines: None })
+        Ok(Self { width, height, rgb8, light: None, covered: None, outlines: None, is_linear: false })
     }
 
     /// Adds which pixels are covered by objects.
@@ -76,7 +78,31 @@ impl Shown {
     pub fn of_light(light: Picture, display: &Display) -> Self {
         let (width, height, rgb8) = (light.width, light.height, light.to_rgb8(display));
         let covered = light.pixels.iter().map(|pixel| pixel.w > 0.0).collect();
-        Self { width, height, rgb8, light: Some(light), covered: Some(covered), outlines: None }
+        let light = Some(light);
+        Self { width, height, rgb8, light, covered: Some(covered), outlines: None, is_linear: false }
+    }
+
+    /// A picture of light that no display has shown, from a linear file. `covers` is true if its fourth numbers are
+    /// coverage. It has no display codes to compare; [`rgb8`](Self::rgb8) shows it at 0 EV without tone mapping.
+    #[must_use]
+    pub fn linear(light: Picture, covers: bool) -> Self {
+        let shown = Self::of_light(light, &Display::default());
+        Self { covered: shown.covered.filter(|_| covers), is_linear: true, ..shown }
+    }
+
+    /// A linear picture as these settings show it; any other as it is.
+    #[must_use]
+    pub fn shown_by(mut self, display: &Display) -> Self {
+        if let Some(light) = self.light.as_ref().filter(|_| self.is_linear) {
+            self.rgb8 = light.to_rgb8(display);
+        }
+        self
+    }
+
+    /// True if the display codes are those of a display, so that they can be compared.
+    #[must_use]
+    pub fn has_codes(&self) -> bool {
+        !self.is_linear
     }
 
     /// A view of a scene, drawn by the CPU renderer; view 0 is the scene itself. The terms of `settings` are

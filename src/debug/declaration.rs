@@ -44,7 +44,7 @@ impl Declaration {
 
 /// The picture of a channel: a formula in Rust and the body of its twin in WGSL, or what is drawn over a dim grey surface.
 /// The WGSL has the fields of [`Leaving`] or [`Point`] by name, `luminance` for `bright`, and returns what
-/// `channels.wgsl` says: display codes, light, or a place on the scale.
+/// `channels.wgsl` says: display codes, light, a place on the scale, or a direction.
 pub enum Shows {
     /// A picture like any other, under one light.
     Picture,
@@ -100,6 +100,8 @@ pub enum Made {
     Codes(Vec3),
     /// A place on the scale, from 0 to 1.
     Place(f32),
+    /// A direction.
+    Direction(Vec3),
 }
 
 impl Made {
@@ -107,12 +109,6 @@ impl Made {
     #[must_use]
     pub fn colour(colour: [u8; 3]) -> Self {
         Self::Codes(codes(colour))
-    }
-
-    /// A direction.
-    #[must_use]
-    pub fn direction(direction: Vec3) -> Self {
-        Self::Codes(0.5 + 0.5 * direction)
     }
 
     /// A cosine; those below 0, and those that are unknown, are grey.
@@ -131,6 +127,16 @@ impl Made {
             Self::Light(light) => light,
             Self::Codes(codes) => codes.map(srgb_decode),
             Self::Place(place) => viridis(place).map(srgb_decode),
+            Self::Direction(direction) => (0.5 + 0.5 * direction).map(srgb_decode),
+        }
+    }
+
+    /// The numbers themselves: x, y and z of a direction; a place alone.
+    #[must_use]
+    pub fn numbers(self) -> Vec3 {
+        match self {
+            Self::Light(numbers) | Self::Codes(numbers) | Self::Direction(numbers) => numbers,
+            Self::Place(place) => Vec3::new(place, 0.0, 0.0),
         }
     }
 }

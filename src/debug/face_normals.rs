@@ -9,8 +9,8 @@ pub(super) static CHANNEL: Declaration = Declaration {
         with it, flat shading with that of the whole polygon. The true shape of the mesh shows.",
     legend: |_| Legend::new("Face normals: x, y, z as red, green, blue").colours(&AXES),
     shows: Shows::Geometry(
-        |point| Made::direction(point.face_normal),
-        "return vec4(0.5 + 0.5 * face_normal, CHANNEL_CODES);",
+        |point| Made::Direction(point.face_normal),
+        "return vec4(face_normal, CHANNEL_DIRECTION);",
     ),
     ..Declaration::PLAIN
 };

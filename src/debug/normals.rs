@@ -9,9 +9,6 @@ pub(super) static CHANNEL: Declaration = Declaration {
         display codes. Phong shading calculates with them. Where they change smoothly, so does the shading, \
         whatever the triangles are.",
     legend: |_| Legend::new("Interpolated normals: x, y, z as red, green, blue").colours(&AXES),
-    shows: Shows::Geometry(
-        |point| Made::direction(point.normal),
-        "return vec4(0.5 + 0.5 * normal, CHANNEL_CODES);",
-    ),
+    shows: Shows::Geometry(|point| Made::Direction(point.normal), "return vec4(normal, CHANNEL_DIRECTION);"),
     ..Declaration::PLAIN
 };

@@ -35,6 +35,12 @@ impl Signature {
 
 /// PNG pictures.
 pub const PNG: Signature = Signature { what: "a PNG file", begins: b"\x89PNG\r\n\x1a\n" };
+/// OpenEXR pictures.
+pub const EXR: Signature = Signature { what: "an OpenEXR file", begins: b"\x76\x2f\x31\x01" };
+/// Radiance pictures, whose first line has `#?RADIANCE` or `#?RGBE`.
+pub const HDR: Signature = Signature { what: "a Radiance file", begins: b"#?R" };
+/// Pictures in which a scene may be.
+pub const PICTURES: [Signature; 3] = [PNG, EXR, HDR];
 
 /// The reason why an output must not be written.
 #[derive(Debug, thiserror::Error)]

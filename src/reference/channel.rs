@@ -122,8 +122,9 @@ impl Parts {
             }
         };
         let v = to_eye.normalize_or_zero();
-        let range = self.setting.range;
-        formula(&Point { normal, face_normal, to_eye, v, l: &l, range }).shown()
+        let Setting { range, numbers, .. } = self.setting;
+        let made = formula(&Point { normal, face_normal, to_eye, v, l: &l, range });
+        if numbers { made.numbers() } else { made.shown() }
     }
 }
 

@@ -22,7 +22,7 @@ use crate::{
 const BRIGHTEST: f32 = 1e30;
 
 /// Light limited to these bounds; NaN becomes dark.
-pub(super) fn within_bounds(light: Vec3) -> Vec3 {
+pub(crate) fn within_bounds(light: Vec3) -> Vec3 {
     light.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
 }
 

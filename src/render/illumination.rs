@@ -24,13 +24,14 @@ use crate::{
 };
 
 /// Number of bytes before the lights: count, terms, exposure, gamma-naive; debug channel, its light, the ends
-/// of its scale; the first sample of light with extent, the number of samples, and whether the picture is
-/// part of a mean.
+/// of its scale; the first sample of light with extent, the number of samples, and the look of pixels.
 pub const HEADER_BYTES: usize = 48;
 /// Offset of the samples among them.
 pub(super) const SAMPLES_AT: usize = 32;
-/// Number of bytes for the samples: the first, their number, and whether the picture is part of a mean.
+/// Number of bytes for the samples: the first, their number, and the look, which is that of the display or none.
 const SAMPLE_BYTES: usize = 12;
+/// The look of pictures whose target takes numbers: `LOOK_NUMBERS` in the shaders.
+const LOOK_NUMBERS: u32 = 2;
 /// Size of one light, in bytes.
 pub const LIGHT_BYTES: usize = 48;
 /// Initial capacity of the parameter buffer, in words: four for each light.
@@ -202,7 +203,10 @@ pub fn illumination_bytes(
     put(4, terms.code().to_le_bytes());
     put(8, exposure_factor(display.exposure).to_le_bytes());
     put(12, u32::from(display.encoding == Encoding::Off).to_le_bytes());
-    if let Some(Setting { channel, light, range: [low, high], from_position }) = channel {
+    if let Some(Setting { channel, light, range: [low, high], from_position, numbers }) = channel {
+        if *numbers {
+            put(SAMPLES_AT + 8, LOOK_NUMBERS.to_le_bytes());
+        }
         put(16, channel.code().to_le_bytes());
         put(20, light.map_or(u32::MAX, |light| light as u32).to_le_bytes());
         let directed = channel.has_light() && !channel.is_picture();
@@ -253,7 +257,7 @@ pub(crate) mod layout {
         ("channel_high", 28),
         ("first_sample", SAMPLES_AT),
         ("sample_count", SAMPLES_AT + 4),
-        ("is_part", SAMPLES_AT + 8),
+        ("look", SAMPLES_AT + 8),
         ("spare", SAMPLES_AT + 12),
         ("lights", HEADER_BYTES),
     ];

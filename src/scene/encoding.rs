@@ -11,12 +11,20 @@ pub(crate) fn decode<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, LoadErr
         LoadError::NotUtf8 { name: name.to_owned(), place: Lines::new(before).place(at), what }
     };
     let first = |what: &str| Err(not_text(0, what.to_owned()));
-    let magic: [(&[u8], &str); 8] = [
+    let magic: [(&[u8], &str); 10] = [
         (b"\xFF\xFE\0\0", "the file is UTF-32; save it as UTF-8"),
         (b"\0\0\xFE\xFF", "the file is UTF-32; save it as UTF-8"),
         (b"\xFF\xFE", "the file is UTF-16 (little-endian); save it as UTF-8"),
         (b"\xFE\xFF", "the file is UTF-16 (big-endian); save it as UTF-8"),
         (b"\x89PNG", "the file is a PNG picture; a scene in it is read if the name of the file ends in .png"),
+        (
+            b"\x76\x2F\x31\x01",
+            "the file is an OpenEXR picture; a scene in it is read if the name of the file ends in .exr",
+        ),
+        (
+            b"#?R",
+            "the file is a Radiance picture; a scene in it is read if the name of the file ends in .hdr",
+        ),
         (b"\xFF\xD8\xFF", "the file is a JPEG picture, not a scene"),
         (b"\x1F\x8B", "the file is compressed (gzip); unpack it first"),
         (b"PK\x03\x04", "the file is a ZIP archive; unpack it first"),

@@ -75,7 +75,9 @@ fn larger_if_picture(
     read: impl Fn(u64) -> Result<Vec<u8>, FileError>,
 ) -> Result<Vec<u8>, FileError> {
     match read(MAX_FILE_BYTES) {
-        Err(FileError::TooLarge(_)) if files::PNG.begins(path) => read(MAX_PICTURE_BYTES),
+        Err(FileError::TooLarge(_)) if files::PICTURES.iter().any(|picture| picture.begins(path)) => {
+            read(MAX_PICTURE_BYTES)
+        }
         read => read,
     }
 }

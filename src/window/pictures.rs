@@ -5,7 +5,7 @@ use std::{
     borrow::Cow,
     collections::VecDeque,
     path::{Path, PathBuf},
-    sync::Mutex,
+    sync::{Mutex, atomic::AtomicBool},
     time::{Duration, Instant},
 };
 
@@ -20,19 +20,27 @@ use super::{
 use crate::{
     caption,
     caught::lock,
+    channel::{LayerKind, layers, too_large},
     compare::{compose, size_around},
     export::write::inputs,
     files::{self, Shown as _, words},
+    linear::Format,
     optics::TermSelection,
-    panel::state::{Effect, PictureEnd, Question, Session},
+    panel::state::{Effect, PictureEnd, Question, Session, Severity},
+    progress::Progress,
+    reference::{Settings, Until, render_layers},
     registry::Registry,
     render::{
-        capture::png::{self, About},
+        capture::{
+            linear,
+            png::{self, About},
+        },
         view::{Drawing, ViewSystems},
     },
     scene::{
         Scene,
         comparison::{Compared, Layout},
+        has_extent,
         variant::LETTERS,
     },
 };
@@ -82,7 +90,10 @@ fn take(
         let Effect::Picture { view, file, overwrite } = effect.clone() else { continue };
         let file = file.map(as_png);
         match file.as_deref().map_or(Ok(true), |file| may_write(file, overwrite, &session, &registry)) {
-            Ok(true) => pictures.wanted.push_back(Wanted { view, file, since: Instant::now() }),
+            Ok(true) => {
+                announce(file.as_deref(), &mut session, &registry);
+                pictures.wanted.push_back(Wanted { view, file, since: Instant::now() });
+            }
             Ok(false) => {
                 let path = file.unwrap_or_default();
                 session.questions.ask(Question::ReplacePicture { view, path });
@@ -101,7 +112,7 @@ fn take(
         && let Some(job) = job.take()
     {
         let broken = PictureEnd::Failed("The picture was not taken: an internal error.".to_owned());
-        work.begin((), || {}, broken, move |_| job.run(&read));
+        work.begin((), || {}, broken, move |progress| job.run(&read, progress));
     }
     if !wanted.is_empty() || job.is_some() || work.running().is_some() {
         requests.write(RequestRedraw);
@@ -172,18 +183,28 @@ fn as_png(file: PathBuf) -> PathBuf {
 
 /// Returns false if the file exists, so that the user must be asked.
 fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registry) -> Result<bool, String> {
-    if !file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+    let is_png = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    let Some(format) = Format::of(file).map(Format::signature).or(is_png.then_some(files::PNG)) else {
         let png = file.with_extension("png");
         return Err(format!(
-            "The picture was not saved to {}: only PNG files can be written; name it {}.",
+            "The picture was not saved to {}: only PNG, OpenEXR (.exr) and Radiance (.hdr) files can be written; name it {}.",
             file.shown(),
             png.file_name().unwrap_or_default().to_string_lossy()
         ));
-    }
+    };
     let inputs = inputs(session.path.as_deref(), [session.document.scene()], registry);
-    files::may_overwrite(file, files::PNG, inputs.iter().map(PathBuf::as_path))
+    files::may_overwrite(file, format, inputs.iter().map(PathBuf::as_path))
         .map_err(|refused| format!("The picture was not saved: {refused}."))?;
     Ok(overwrite || !file.exists())
+}
+
+/// Says that a linear picture takes long, if it does.
+fn announce(file: Option<&Path>, session: &mut Session, registry: &Registry) {
+    let linear = file.filter(|file| Format::of(file).is_some());
+    if let Some(file) = linear.filter(|_| has_extent(session.document.shining(), registry)) {
+        let text = format!("{} is drawn on the CPU with its layers, which takes a while.", file.shown());
+        session.say(Severity::Info, text);
+    }
 }
 
 /// A picture with all its inputs.
@@ -199,7 +220,15 @@ struct Job {
 }
 
 impl Job {
-    fn run(self, read: &[Vec<u8>]) -> PictureEnd {
+    fn run(self, read: &[Vec<u8>], progress: &Progress) -> PictureEnd {
+        if let Some((file, format)) = self.file.as_deref().and_then(|file| Some((file, Format::of(file)?))) {
+            return match self.save_linear(file, format, progress) {
+                Ok(()) => PictureEnd::Saved(file.to_owned()),
+                Err(why) => {
+                    PictureEnd::Failed(format!("The picture was not saved to {}: {why}.", file.shown()))
+                }
+            };
+        }
         let drawn = self.draw(read);
         let end = drawn.and_then(|(rgb8, size)| match &self.file {
             Some(file) => self.save(file, &rgb8, size).map(|()| PictureEnd::Saved(file.clone())),
@@ -235,6 +264,34 @@ impl Job {
         let about = About::scene(&self.pictured(), &self.views.registry).with("Renderer", "GPU");
         png::write(file, width, height, rgb8, &about)
             .map_err(|error| format!("{} could not be written: {}.", file.shown(), words(&error)))
+    }
+
+    /// Writes the light of the view as the CPU renderer draws it; to an OpenEXR file with all layers.
+    fn save_linear(&self, file: &Path, format: Format, progress: &Progress) -> Result<(), String> {
+        let SeenViews { registry, shown, size, .. } = &self.views;
+        let [(view, terms)] = shown[..] else {
+            return Err("it holds the light of one view; save the view alone".to_owned());
+        };
+        let seen = self.views.seen(view).ok_or("the view is no longer there")?;
+        for model in seen.objects.iter().filter_map(|object| registry.model(seen.model_of(object))) {
+            if let Some(why) = model.not_on_cpu() {
+                let command = "lcm render --renderer gpu -o FILE.exr draws it";
+                return Err(format!("the CPU cannot run {}: {why}; {command}", model.declaration.id));
+            }
+        }
+        let kinds = if format == Format::Exr { LayerKind::ALL } else { &[] };
+        let layers = layers(&seen, terms, kinds, registry);
+        let [width, height] = size.to_array();
+        if let Some(why) = too_large(&layers, format, [width, height]) {
+            return Err(why);
+        }
+        let settings = Settings { width, height, terms, ..Settings::default() };
+        let odd = AtomicBool::default();
+        let (channels, _) =
+            render_layers(&layers, &seen, registry, &settings, Until::default(), &odd, progress)
+                .map_err(|cancelled| cancelled.to_string())?;
+        let about = About::scene(&self.pictured(), registry).with("Renderer", "CPU");
+        linear::write(file, format, &channels, &about).map_err(|error| words(&error))
     }
 
     /// The scene of the picture, with the observer at the camera, so that opening the picture shows the same view.

@@ -85,10 +85,11 @@ impl Pair<'_> {
     #[must_use]
     pub fn measure_by(&self, metrics: &[&'static Metric]) -> Option<Measured> {
         let has_light = self.a.light().is_some() && self.b.light().is_some();
+        let has_codes = self.a.has_codes() && self.b.has_codes();
         let mut kinds: Vec<&Pixels> = Vec::new();
         for metric in metrics {
             if let Way::Pixels(of, _) = metric.way
-                && (has_light || of.where_equal.is_some())
+                && (if of.where_equal.is_some() { has_codes } else { has_light })
                 && !kinds.iter().any(|kind| std::ptr::eq(*kind, of))
             {
                 kinds.push(of);

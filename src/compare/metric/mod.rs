@@ -49,7 +49,7 @@ pub enum Way {
 #[derive(Debug)]
 pub struct Pixels {
     /// The numbers where the display codes are equal, with everything around that filters reach. `None` if they rest on
-    /// light: then there is no metric where a picture has none.
+    /// light: then there is no metric where a picture has none. The others have none where a picture has no codes.
     pub where_equal: Option<f32>,
     /// A function with the memory that it needs; there is one for each thread.
     pub measure: fn() -> Measure,

@@ -33,8 +33,8 @@ pub(super) struct Average {
 }
 
 impl Average {
-    /// An empty average for a file with these numbers of columns and rows.
-    pub(super) fn new(width: usize, height: usize) -> Result<Self, String> {
+    /// Checks the numbers of columns and rows of a file.
+    pub(super) fn check_size(width: usize, height: usize) -> Result<(), String> {
         let [most, half] = [MAX_FILE_COLUMNS, MAX_FILE_COLUMNS / 2];
         if height == 0 || width > most || height > half || width != 2 * height {
             return Err(format!(
@@ -42,16 +42,21 @@ impl Average {
                  {most} × {half} pixels"
             ));
         }
+        Ok(())
+    }
+
+    /// An empty average for a file with these checked numbers of columns and rows.
+    pub(super) fn of_size(width: usize, height: usize) -> Self {
         let columns = width.min(MAX_COLUMNS);
         let size = [columns, columns / 2];
-        Ok(Self {
+        Self {
             size,
             columns: shares(width, columns, |from, to| (to - from) as f64),
             rows: shares(height, size[1], |from, to| band(from, to, height * size[1])),
             sums: vec![DVec3::ZERO; columns * size[1]],
             scale: DVec3::ONE,
             problem: None,
-        })
+        }
     }
 
     /// The average for a file whose values times `scale` are cd/m².

@@ -27,7 +27,7 @@ use crate::{
 
 /// The numbers of a picture with these pixels: column and row to colour.
 fn numbers(width: usize, pixel: impl Fn(usize, usize) -> [f32; 3]) -> Vec<f32> {
-    let mut average = Average::new(width, width / 2).expect("a legal size");
+    let mut average = Average::of_size(width, width / 2);
     for i in 0..width * width / 2 {
         average.add(i % width, i / width, pixel(i % width, i / width));
     }

@@ -53,11 +53,12 @@ fn pictures(to: &mut List) {
     let (save, copy) = if alone { ("Save all views…", "Copy all views") } else { ("Save…", "Copy") };
     let copied = |view| Action::Do(Effect::Picture { view, file: None, overwrite: false });
     to.menu(Menu::new("Picture").width(super::show::WIDTH), |to| {
-        let file = "Write the picture as it is shown to a PNG file, without handles and labels. The file holds the scene, \
-                    so it can be opened again.";
+        let file = "Write the picture as it is shown to a PNG file, without handles and labels, or its linear light to an \
+                    OpenEXR file (.exr) with layers or a Radiance file (.hdr). The file holds the scene, so it can be \
+                    opened again.";
         let save = command("save_picture", save, Action::Do(Effect::Pick(Pick::Picture(None))));
         to.add(save.says("Save the picture…").keys("Ctrl+P").tip(file));
-        let help = "Write the picture of the active view to a PNG file";
+        let help = "Write the picture of the active view to a PNG, OpenEXR (.exr) or Radiance (.hdr) file";
         let name = format!("Save view {letter} alone…");
         let save = command("save_view", name, Action::Do(Effect::Pick(Pick::Picture(Some(view)))));
         to.add(save.tip(help).absent(!alone));

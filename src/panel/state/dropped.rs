@@ -27,7 +27,8 @@ impl Session {
     /// the scene, and selects a model.
     pub(super) fn dropped(&mut self, paths: Vec<PathBuf>, registry: &Registry) {
         let Some(first) = paths.first().cloned() else { return };
-        if let Some(scene) = paths.iter().find(|path| formats::is_scene_file(path, registry)) {
+        let is_scene = |path: &&PathBuf| formats::is_scene_file(path, registry) && formats::holds_scene(path);
+        if let Some(scene) = paths.iter().find(is_scene) {
             return self.carry_out(Action::Open(scene.clone()), registry);
         }
         if let Some(lesson) = paths.iter().find(|path| ends_in(path, &["md"]) || path.is_dir()) {

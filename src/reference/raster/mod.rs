@@ -8,6 +8,7 @@ use crate::shading::Varying;
 
 mod tile;
 
+pub(crate) use tile::sample_positions;
 pub(super) use tile::{TILE, Tile, even};
 
 /// Steps per pixel of the grid to which corners are snapped.

@@ -26,6 +26,15 @@ const fn positions<const S: usize>() -> [[i64; 2]; S] {
     out
 }
 
+/// The samples of a pixel from its upper left corner, in pixels.
+pub(crate) fn sample_positions(samples: u32) -> Vec<[f32; 2]> {
+    let place = |at: &[i64; 2]| at.map(|c| c as f32 / SUBPIXEL as f32);
+    match samples {
+        0 | 1 => positions::<1>().iter().map(place).collect(),
+        _ => positions::<4>().iter().map(place).collect(),
+    }
+}
+
 /// The samples of one tile of the picture, `E` pixels wide and high.
 pub(in crate::reference) struct Tile<const S: usize, const E: usize = TILE> {
     /// Nearest `1 / w` so far; 0 for background.

@@ -265,6 +265,12 @@ impl GpuRenderer {
         &mut self.app
     }
 
+    /// Width and height of the pictures, in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
     /// Shows another scene from the next frame on.
     pub fn set_scene(&mut self, scene: Scene) {
         self.app.world_mut().resource_mut::<CurrentScene>().set_if_neq(CurrentScene(scene));

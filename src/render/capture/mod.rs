@@ -1,8 +1,10 @@
-//! Rendering without a window: [`gpu`] draws the pictures of `lcm render`, [`evaluate`] computes values,
-//! [`trial`] draws small pictures to try shaders, [`png`] writes files.
+//! Rendering without a window: [`gpu`] draws the pictures of `lcm render`, [`light`] those in linear light,
+//! [`evaluate`] computes values, [`trial`] draws small pictures to try shaders, [`png`] and [`linear`] write files.
 
 pub mod evaluate;
 pub mod gpu;
+pub mod light;
+pub mod linear;
 pub mod png;
 pub mod settle;
 pub mod trial;

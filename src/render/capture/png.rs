@@ -18,8 +18,8 @@ use crate::{
 /// The metadata of a picture: texts for picture viewers, and the scene, which the program can open again.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct About {
-    texts: Vec<(&'static str, String)>,
-    scene: Option<String>,
+    pub(super) texts: Vec<(&'static str, String)>,
+    pub(super) scene: Option<String>,
 }
 
 impl About {

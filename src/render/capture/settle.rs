@@ -168,7 +168,7 @@ impl GpuRenderer {
         self.app.world().get_resource::<ShapeMeshes>().and_then(ShapeMeshes::problem)
     }
 
-    fn edit_camera(&mut self, change: impl FnOnce(&mut EntityWorldMut)) {
+    pub(super) fn edit_camera(&mut self, change: impl FnOnce(&mut EntityWorldMut)) {
         let world = self.app.world_mut();
         let mut cameras = world.query_filtered::<Entity, With<PictureCamera>>();
         if let Some(camera) = cameras.iter(world).next() {
@@ -178,7 +178,7 @@ impl GpuRenderer {
 }
 
 /// Sets the background of a camera; without one it draws over the existing picture.
-fn set_background(camera: &mut EntityWorldMut, background: ClearColorConfig) {
+pub(super) fn set_background(camera: &mut EntityWorldMut, background: ClearColorConfig) {
     if let Some(mut lens) = camera.get_mut::<Camera3d>() {
         lens.depth_load_op = match background {
             ClearColorConfig::None => Camera3dDepthLoadOp::Load,

@@ -8,24 +8,31 @@
 use std::{any::Any, path::Path as FilePath, sync::Arc};
 
 pub use super::error::UnknownExtension;
-use super::{Scene, error::LoadError, schema};
+use super::{Scene, error::LoadError, load::MAX_FILE_BYTES, schema};
 use crate::{
+    files, linear,
     registry::{FormatEntry, Registry},
     text::listed,
 };
 
 mod csv;
+mod exr;
+mod hdr;
 mod json;
 mod parsed;
+mod picture;
 mod png;
 mod source;
 
 pub(super) use parsed::{Located, checked};
 pub use {
     csv::{Csv, column_table},
+    exr::Exr,
+    hdr::Hdr,
     json::Json,
     parsed::Parsed,
-    png::{Png, SCENE_KEYWORD},
+    picture::SCENE_KEYWORD,
+    png::Png,
     source::Source,
 };
 
@@ -182,7 +189,9 @@ impl SceneFormats for Registry {
 }
 
 /// The built-in formats.
-static BUILT_IN: [&dyn SceneFormat; 3] = [&Json, &Csv, &Png];
+static BUILT_IN: [&dyn SceneFormat; 5] = [&Json, &Csv, &Png, &Exr, &Hdr];
+/// Those of pictures.
+static PICTURES: [&dyn SceneFormat; 3] = [&Png, &Exr, &Hdr];
 
 /// All formats: the built-in ones, JSON first, and those that were added.
 pub fn all(registry: &Registry) -> impl Iterator<Item = &dyn SceneFormat> {
@@ -238,7 +247,20 @@ pub fn is_scene_file(path: &FilePath, registry: &Registry) -> bool {
 
 /// True if a file has the extension of pictures, which may hold a scene.
 pub(super) fn is_picture(path: &FilePath) -> bool {
-    extension(path).is_some_and(|extension| Png.extensions().contains(&&*extension))
+    extension(path).is_some_and(|own| PICTURES.iter().any(|format| format.extensions().contains(&&*own)))
+}
+
+/// True if a file holds a scene, or is none of the pictures that may hold one. Linear pictures are also pictures of
+/// surroundings, which hold none.
+#[must_use]
+pub fn holds_scene(path: &FilePath) -> bool {
+    let find: fn(&[u8], u64) -> Result<String, String> = match linear::Format::of(path) {
+        Some(linear::Format::Exr) => exr::scene_text,
+        Some(linear::Format::Hdr) => hdr::scene_text,
+        None => return true,
+    };
+    // It is in the header.
+    files::read_start(path, 2 * MAX_FILE_BYTES).is_ok_and(|start| find(&start, MAX_FILE_BYTES).is_ok())
 }
 
 /// True if a file has the extension of a format that can be written.
@@ -254,7 +276,7 @@ pub fn extensions(registry: &Registry) -> Vec<&'static str> {
     all(registry).flat_map(|format| format.extensions().iter().copied()).collect()
 }
 
-/// All extensions with the names of their formats: "*.json (JSON), *.csv (CSV) or *.png (PNG picture)".
+/// All extensions with the names of their formats: "*.json (JSON), *.csv (CSV), *.png (PNG picture) or …".
 #[must_use]
 pub fn shown_extensions(registry: &Registry) -> String {
     let each: Vec<_> = all(registry)

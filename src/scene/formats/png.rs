@@ -9,20 +9,11 @@ use std::io::Read as _;
 
 use flate2::{Crc, read::ZlibDecoder};
 
-use super::{Parsed, SceneFormat, Source, json};
-use crate::{
-    files,
-    registry::Registry,
-    scene::{error::LoadError, load::MAX_FILE_BYTES},
-    text::{listed, place::Lines, quoted},
+use super::{
+    Parsed, SceneFormat, Source,
+    picture::{self, NOT_TEXT, Others, SCENE_KEYWORD, too_large, truncated, until_zero},
 };
-
-/// The keyword of the text that contains the scene of a picture: JSON as in a scene file.
-pub const SCENE_KEYWORD: &str = "lights-camera-models scene";
-/// The way to make a picture with a scene, for messages.
-const WRITERS: &str = "pictures that this program writes have one, unless --no-scene is given";
-/// Maximum number of keywords that a message lists.
-const MOST_NAMED: usize = 3;
+use crate::{files, registry::Registry, scene::error::LoadError};
 
 /// Pictures with a scene. They can only be read.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,21 +33,7 @@ impl SceneFormat for Png {
     }
 
     fn read<'a>(&self, source: &'a Source<'_>, registry: &'a Registry) -> Result<Parsed<'a>, LoadError> {
-        let failed = |what| LoadError::Picture { name: source.name.to_owned(), what };
-        let text = scene_text(source.bytes, MAX_FILE_BYTES).map_err(failed)?;
-        let text = source.derived(|| text);
-        let empty = || failed("the scene in the picture is empty".to_owned());
-        if text.trim().is_empty() {
-            return Err(empty());
-        }
-        let parsed = json::parse(text, source, registry).map_err(|(at, what)| {
-            let place = Lines::new(text).place(at);
-            failed(format!(
-                "the scene in the picture is not JSON: {what} (line {}, column {} of it)",
-                place.line, place.column
-            ))
-        })?;
-        Ok(parsed.ok_or_else(empty)?.without_places())
+        picture::parsed(source, registry, scene_text)
     }
 }
 
@@ -68,17 +45,13 @@ struct Chunk<'a> {
 }
 
 /// The text of the scene in a picture; `most` is its maximum size in bytes.
-fn scene_text(bytes: &[u8], most: u64) -> Result<String, String> {
+pub(super) fn scene_text(bytes: &[u8], most: u64) -> Result<String, String> {
     let Some(mut rest) = bytes.strip_prefix(files::PNG.begins) else {
         return Err("this is not a PNG picture, though its name ends in .png".to_owned());
     };
-    let mut others = Vec::new();
+    let mut others = Others::default();
     loop {
-        let Some((chunk, after)) = next_chunk(rest) else {
-            return Err(format!(
-                "the picture is truncated, and there is no scene in what is left; {WRITERS}"
-            ));
-        };
+        let (chunk, after) = next_chunk(rest).ok_or_else(truncated)?;
         rest = after;
         match &chunk.kind {
             b"iTXt" | b"tEXt" | b"zTXt" => {
@@ -86,28 +59,12 @@ fn scene_text(bytes: &[u8], most: u64) -> Result<String, String> {
                 if &chunk.kind == b"iTXt" && name == SCENE_KEYWORD.as_bytes() {
                     return unpacked(&chunk, most).map_err(|what| format!("the scene in the picture {what}"));
                 }
-                others.push(quoted(&String::from_utf8_lossy(name)));
+                others.add(name);
             }
-            b"IEND" => return Err(without_scene(others)),
+            b"IEND" => return Err(others.without_scene()),
             _ => {}
         }
     }
-}
-
-/// The message for a complete picture without a scene, perhaps with other texts.
-fn without_scene(mut others: Vec<String>) -> String {
-    others.dedup();
-    let more = others.len().saturating_sub(MOST_NAMED);
-    others.truncate(MOST_NAMED);
-    if more > 0 {
-        others.push(format!("{more} more"));
-    }
-    let only = if others.is_empty() {
-        String::new()
-    } else {
-        format!(", only texts called {}", listed(&others, "and"))
-    };
-    format!("there is no scene in this picture{only}; {WRITERS}")
 }
 
 /// The first chunk, and the bytes after it; `None` if the bytes end within it.
@@ -127,12 +84,6 @@ fn next_chunk(bytes: &[u8]) -> Option<(Chunk<'_>, &[u8])> {
     Some((Chunk { kind: *kind, content: &checked[4..], whole }, rest))
 }
 
-/// The bytes before the first zero, and those after it.
-fn until_zero(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
-    let end = bytes.iter().position(|b| *b == 0)?;
-    Some((&bytes[..end], &bytes[end + 1..]))
-}
-
 /// The content of an iTXt chunk: keyword, 0, compression flag, method, language, 0, translated keyword, 0,
 /// text.
 fn unpacked(chunk: &Chunk, most: u64) -> Result<String, String> {
@@ -146,23 +97,22 @@ fn unpacked(chunk: &Chunk, most: u64) -> Result<String, String> {
         let (_, text) = until_zero(rest)?;
         Some((*compressed, *method, text))
     };
-    let too_large = || format!("is larger than {} MiB, the most allowed; it was not read", most >> 20);
     let bytes = match fields() {
-        Some((0, _, text)) if text.len() as u64 > most => return Err(too_large()),
+        Some((0, _, text)) if text.len() as u64 > most => return Err(too_large(most)),
         Some((0, _, text)) => text.to_vec(),
         Some((1, 0, packed)) => {
             let mut text = Vec::new();
             let unpacked = ZlibDecoder::new(packed).take(most + 1).read_to_end(&mut text);
             unpacked.map_err(|_| "is damaged: it cannot be decompressed".to_owned())?;
             if text.len() as u64 > most {
-                return Err(too_large());
+                return Err(too_large(most));
             }
             text
         }
         Some(_) => return Err("is compressed in an unknown way".to_owned()),
         None => return Err("is damaged: it has no text".to_owned()),
     };
-    String::from_utf8(bytes).map_err(|_| "is damaged: it is not UTF-8 text".to_owned())
+    String::from_utf8(bytes).map_err(|_| NOT_TEXT.to_owned())
 }
 
 #[cfg(test)]
@@ -171,7 +121,7 @@ mod tests {
 
     use flate2::{Compression, write::ZlibEncoder};
 
-    use super::*;
+    use super::{super::picture::WRITERS, *};
 
     fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
         let checked = [kind, content].concat();

@@ -46,7 +46,10 @@ fn wrong_usage_has_status_2() {
         (&["render", "--exposure", "-17"], "the exposure must be between -16 and 16 EV"),
         (&["render", "a.json", "b.json", "-o", "x.png"], "-o x.png is one file, but there are 2 scenes"),
         (&["render", "a/x.json", "b/x.json"], "would both be written to renders/x.png"),
-        (&["render", "-o", "x.jpg"], "only PNG files can be written; did you mean x.png?"),
+        (
+            &["render", "-o", "x.jpg"],
+            "only PNG, OpenEXR and Radiance files can be written; did you mean x.png?",
+        ),
         (&["render", "-", "-"], "- can be given only once"),
         (&["render", "--exposure", "x"], "it must be a number of EV, e.g. -1.5"),
         (&["plot", "phong", "--theta-i", "x"], "it must be a number of degrees, e.g. 22.5"),

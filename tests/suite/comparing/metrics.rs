@@ -6,6 +6,7 @@ use flate2::{Compression, Crc, write::ZlibEncoder};
 use glam::Vec4;
 use lights_camera_models::{
     compare::{Cell, Measured, Pair, Shown, Unequal, cells, compose, size_around},
+    linear::{Channels, Format, Notes},
     parameter::Value,
     reference::{Picture, Settings},
     registry::Registry,
@@ -598,6 +599,150 @@ fn limits_set_the_exit_status() {
     let covered = run(folder.path(), &scenes);
     assert_eq!(covered.status, Some(1));
     assert!(covered.err.starts_with("covered.flip is "), "{}", covered.err);
+}
+
+#[test]
+fn linear_pictures_are_compared_by_their_light() {
+    let folder = folder();
+    let draw = |scene: &str, file: &str| {
+        let drawn = ["render", scene, "--renderer", "cpu", "--size", "96x54", "-o", file, "--view", "A"];
+        let drawn = run(folder.path(), &drawn);
+        assert_eq!(drawn.status, Some(0), "{}", drawn.err);
+    };
+    for (scene, file) in [
+        ("all.json", "a.exr"),
+        ("all.json", "a.hdr"),
+        ("phong.json", "b.exr"),
+        ("phong.json", "b.hdr"),
+        ("all.json", "a.png"),
+    ] {
+        draw(scene, file);
+    }
+    let compared = |arguments: &[&str]| {
+        let run = run(folder.path(), &[&["compare"], arguments].concat());
+        assert_eq!(run.status, Some(0), "{arguments:?}: {}", run.err);
+        numbers(&run)
+    };
+    // The numbers are those of the scenes' light.
+    let scenes = compared(&["all.json", "phong.json", "--size", "96x54", "--values", "light"]);
+    let files = compared(&["a.exr", "b.exr"]);
+    let light = |numbers: &Json, of: &str| numbers[of]["light_rmse"].as_f64().expect("a number");
+    assert!(light(&scenes, "all") > 1e-3);
+    for of in ["all", "covered"] {
+        assert_eq!(files[of]["light_rmse"], scenes[of]["light_rmse"], "{of}");
+        assert_eq!(files[of]["pixels"], scenes[of]["pixels"], "{of}");
+    }
+    assert_eq!((&files["values"], &files["width"]), (&json!("light"), &json!(96)));
+    assert_eq!(files["largest"]["difference"], scenes["largest"]["difference"]);
+    let [a, b] = ["a", "b"].map(|side| {
+        [0, 1, 2].map(|c| files["largest"][side][c].as_f64().expect("the light there, not its codes"))
+    });
+    let most = (0..3).map(|c| (b[c] - a[c]).abs()).fold(0.0, f64::max);
+    let difference = files["largest"]["difference"].as_f64().expect("a number").abs();
+    assert!((most / difference - 1.0).abs() < 1e-3, "{a:?} {b:?} {difference}");
+    // There are no display codes.
+    for metric in ["rmse", "psnr", "ssim", "flip"] {
+        assert_eq!(files["all"][metric], Json::Null, "{metric}");
+    }
+    assert!(scenes["all"]["rmse"].as_f64() > Some(0.0));
+    // A scene against its own light, and formats against each other.
+    assert_eq!(light(&compared(&["all.json", "a.exr"]), "all"), 0.0);
+    assert_eq!(compared(&["all.json", "a.exr"])["largest"], Json::Null);
+    let step = light(&compared(&["a.exr", "a.hdr"]), "all");
+    assert!(step > 0.0 && step < 0.01, "{step}");
+    let radiance = compared(&["a.hdr", "b.hdr"]);
+    assert_eq!(radiance["covered"], Json::Null, "Radiance has no coverage");
+    assert!((light(&radiance, "all") / light(&files, "all") - 1.0).abs() < 0.1);
+    // Limits and pictures.
+    let limited = |limit: &str| run(folder.path(), &["compare", "a.exr", "b.exr", "--fail-above", limit]);
+    assert_eq!(limited("light_rmse=1000").status, Some(0));
+    let broken = limited("covered.light_rmse=1e-6");
+    assert!(broken.status == Some(1) && broken.err.starts_with("covered.light_rmse is "), "{}", broken.err);
+    assert!(limited("largest=1e-6").err.starts_with("largest is "));
+    for layout in ["difference", "side_by_side", "wipe"] {
+        let drawn = compared(&["a.exr", "b.exr", "--layout", layout, "-o", "map.png"]);
+        assert_eq!(drawn["values"], "light");
+        assert!(read_png(&folder.path().join("map.png")).is_ok(), "{layout}");
+    }
+    for (arguments, status, expected) in [
+        (
+            &["a.exr", "a.png"][..],
+            1,
+            "a.exr and a.png: linear light and display codes cannot be compared; give two linear pictures, or two PNG",
+        ),
+        (&["a.png", "a.hdr"], 1, "a.hdr and a.png: linear light and display codes cannot be compared"),
+        (
+            &["a.exr", "b.exr", "--values", "codes"],
+            2,
+            "--values codes compares display codes, but a.exr holds",
+        ),
+        (
+            &["a.exr", "b.exr", "--fail-above", "flip=0.1"],
+            2,
+            "flip compares display codes, but a.exr holds linear",
+        ),
+        (
+            &["a.exr", "b.exr", "--fail-below", "psnr=30"],
+            2,
+            "limits can be on light_rmse, covered.light_rmse and",
+        ),
+        (&["a.exr"], 2, "a.exr is a picture; name another file to compare it with"),
+        (&["a.exr", "b.exr", "--size", "20x10"], 1, "pictures must have the same size"),
+        (&["a.exr", "b.exr", "-o", "x.exr"], 2, "only PNG files can be written; did you mean x.png?"),
+    ] {
+        let run = run(folder.path(), &[&["compare"], arguments].concat());
+        assert!(run.status == Some(status) && run.err.contains(expected), "{arguments:?}: {}", run.err);
+        check_wording(&run.err);
+    }
+}
+
+#[test]
+fn linear_pictures_that_are_wrong_are_refused() {
+    let folder = folder();
+    let mut channels = Channels::new(4, 2);
+    let mut pixels = vec![Vec4::ONE; 8];
+    channels.add("", &["R", "G", "B"], &pixels);
+    let put = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).expect("written");
+    let whole = channels.encode(Format::Exr, &Notes::default()).expect("written");
+    put("good.exr", &whole);
+    put("short.exr", &whole[..whole.len() - 3]);
+    put("not_a.exr", b"{}");
+    put("not_a.hdr", b"{}");
+    put("huge.hdr", b"#?RADIANCE\n\n-Y 16384 +X 16384\naaaa");
+    put("wide.hdr", b"#?RADIANCE\n\n-Y 1 +X 20000\naaaa");
+    put("empty.hdr", b"#?RADIANCE\n\n-Y 8192 +X 8192\naaaa");
+    put("endless.hdr", &[b"#?RADIANCE\n".to_vec(), b"# a\n".repeat(1 << 20)].concat());
+    pixels[5].y = f32::NAN;
+    let mut odd = Channels::new(4, 2);
+    odd.add("", &["R", "G", "B"], &pixels);
+    put("odd.exr", &odd.encode(Format::Exr, &Notes::default()).expect("written"));
+    let mut depth = Channels::new(4, 2);
+    depth.add("depth", &["Z"], &pixels);
+    put("depth.exr", &depth.encode(Format::Exr, &Notes::default()).expect("written"));
+    for (name, expected) in [
+        ("short.exr", "short.exr: the OpenEXR picture is incomplete or broken ("),
+        (
+            "not_a.exr",
+            "not_a.exr: it does not begin like a Radiance picture (#?RADIANCE) or an OpenEXR picture",
+        ),
+        ("not_a.hdr", "not_a.hdr: it does not begin like a Radiance picture"),
+        (
+            "huge.hdr",
+            "huge.hdr: the picture has 16384×16384 pixels, but each side must have 1 to 16384, and both",
+        ),
+        ("wide.hdr", "wide.hdr: the picture has 20000×1 pixels"),
+        ("empty.hdr", "empty.hdr: the file ends before its last pixel"),
+        ("endless.hdr", "endless.hdr: the header of a Radiance picture must end with an empty line"),
+        ("odd.exr", "odd.exr: the pixel in column 2, row 2 has NaN; light must be finite"),
+        ("depth.exr", "depth.exr: no layer has the channels R, G and B; the channels are depth.Z"),
+        ("none.exr", "none.exr could not be read"),
+    ] {
+        let run = run(folder.path(), &["compare", "good.exr", name]);
+        assert!(run.status == Some(1) && run.err.contains(expected), "{name}: {}", run.err);
+    }
+    // Without coverage, every pixel counts alike.
+    let same = numbers(&run(folder.path(), &["compare", "good.exr", "good.exr"]));
+    assert_eq!((&same["all"]["light_rmse"], &same["covered"]), (&json!(0.0), &Json::Null));
 }
 
 #[test]

@@ -10,10 +10,12 @@ use std::{
     time::{Duration, Instant},
 };
 
+use glam::DVec3;
 use lights_camera_models::{
     custom,
     lesson::{Condition, Lesson},
     light::{ies, panorama},
+    linear::{self, Limits, MAX_PIXELS, Pixels},
     panel::{
         command::{Menu, declared, own},
         progress, settings,
@@ -74,6 +76,27 @@ fn condition(bytes: &[u8]) -> Result<(), String> {
 
 fn scene(bytes: &[u8], name: &str) -> Result<(), String> {
     load::from_bytes(bytes, name, &REGISTRY, Defaults::Use).map(drop).map_err(|e| e.to_string())
+}
+
+/// A linear picture, with the limits of pictures that are compared.
+fn linear_picture(bytes: &[u8]) -> Result<(), String> {
+    /// Counts pixels.
+    struct Count(usize);
+    impl Pixels for Count {
+        fn check(width: usize, height: usize) -> Result<(), String> {
+            (width.saturating_mul(height) <= MAX_PIXELS).then_some(()).ok_or_else(|| "too large".to_owned())
+        }
+
+        fn new(_: usize, _: usize, _: DVec3) -> Self {
+            Self(0)
+        }
+
+        fn add(&mut self, _: usize, _: usize, _: [f32; 4]) {
+            self.0 += 1;
+        }
+    }
+    let limits = Limits { head: 128 << 20, channels: 1024, size: [16_384; 2], surroundings: false };
+    linear::read::<Count>(bytes, &limits).map(|count| assert!(count.0 <= MAX_PIXELS))
 }
 
 fn model(bytes: &[u8]) -> Result<(), String> {
@@ -236,6 +259,41 @@ fn readers() -> Vec<Reader> {
             pairs: &[],
             phrases: &["\0\0\0\0iTXt\0\0\0\0", "\0\0\0\0tEXt\0\0\0\0", "iTXtlights-camera-models scene\0"],
             read: |bytes| scene(&[b"\x89PNG\r\n\x1a\n", bytes].concat(), "a.png"),
+        },
+        Reader {
+            name: "scene in an OpenEXR picture",
+            around: ["v/1\u{1}\u{2}\0\0\0".into(), String::new()],
+            pairs: &[],
+            phrases: &[
+                "a\0string\0\u{1}\0\0\0a",
+                "a\0float\0\0\0\0\0",
+                "lights-camera-models scene\0string\0\u{2}\0\0\0{}",
+            ],
+            read: |bytes| scene(bytes, "a.exr"),
+        },
+        Reader {
+            name: "scene in a Radiance picture",
+            around: split(
+                "#?RADIANCE\n# lights-camera-models scene begins\nHERE# lights-camera-models scene ends\n\n-Y 1 +X 1\naaaa",
+                "HERE",
+            ),
+            pairs: &[("# [\n", "# ]\n"), ("# {\"a\":\n", "# }\n")],
+            phrases: &["# []\n", "# \"a\": 1,\n", "# \n", "#\n", "# lights-camera-models scene begins\n"],
+            read: |bytes| scene(bytes, "a.hdr"),
+        },
+        Reader {
+            name: "linear picture to compare",
+            around: ["#?RADIANCE\n\n-Y 8192 +X 8192\n".into(), String::new()],
+            pairs: &[],
+            phrases: &["\u{1}\u{1}\u{1}\u{1}", "\u{2}\u{2} \0", "aaaa"],
+            read: linear_picture,
+        },
+        Reader {
+            name: "layers of a linear picture to compare",
+            around: ["v/1\u{1}\u{2}\0\0\0".into(), String::new()],
+            pairs: &[],
+            phrases: &["channels\0chlist\0\u{1}\0\0\0\0", "R\0\u{2}\0\0\0\0\0\0\0\u{1}\0\0\0\u{1}\0\0\0", "a\0"],
+            read: linear_picture,
         },
         Reader {
             name: "declaration",

@@ -8,6 +8,7 @@ mod finite;
 pub(crate) mod golden;
 mod gpu_parity;
 mod hot_swap;
+pub(crate) mod linear;
 mod memory;
 mod reference;
 pub(crate) mod reload;

@@ -113,13 +113,12 @@ fn a_format_from_outside_is_read_and_checked_like_ours() {
 
 #[test]
 fn an_unknown_extension_is_told_with_those_that_are_known() {
-    let ours = "room.txt: .txt is not the extension of a scene; scenes are *.json (JSON), *.csv (CSV) or *.png (PNG picture)";
+    let ours = "room.txt: .txt is not the extension of a scene; scenes are *.json (JSON), *.csv (CSV), *.png (PNG picture), \
+                *.exr (OpenEXR picture) or *.hdr (Radiance picture)";
     assert_eq!(said("{}", "room.txt", &Registry::builtin()), ours);
     let theirs = said("{}", "room.txt", &registry());
     assert!(
-        theirs.ends_with(
-            "scenes are *.json (JSON), *.csv (CSV), *.png (PNG picture) or *.spheres (list of spheres)"
-        ),
+        theirs.ends_with("*.exr (OpenEXR picture), *.hdr (Radiance picture) or *.spheres (list of spheres)"),
         "{theirs}"
     );
     check_wording(&theirs);
@@ -171,7 +170,10 @@ fn each_mistake_of_a_format_is_told_by_name() {
     assert_eq!(registry.scene_formats().len(), 1, "nothing was added");
     registry.add_scene_format(Other::GOOD);
     let names: Vec<_> = formats::all(&registry).map(SceneFormat::name).collect();
-    assert_eq!(names, ["JSON", "CSV", "PNG picture", "list of spheres", "other"]);
+    assert_eq!(
+        names,
+        ["JSON", "CSV", "PNG picture", "OpenEXR picture", "Radiance picture", "list of spheres", "other"]
+    );
 }
 
 #[test]

@@ -159,6 +159,62 @@ fn each_mistake_of_a_picture_is_told_and_ends_with_status_1() {
     assert!(run.err.contains("a scene in it is read if the name of the file ends in .png"), "{}", run.err);
 }
 
+/// An OpenEXR file with a text and without pixels, and a Radiance file with these lines as its remarks.
+fn linear(keyword: &str, text: &[u8]) -> [Vec<u8>; 2] {
+    let length = (text.len() as u32).to_le_bytes();
+    let exr =
+        [b"v/1\x01\x02\0\0\0".as_slice(), keyword.as_bytes(), b"\0string\0", &length, text, b"\0"].concat();
+    let lines = text.split(|byte| *byte == b'\n').flat_map(|line| [b"# ".as_slice(), line, b"\n"].concat());
+    let hdr = format!("#?RADIANCE\n# {keyword} begins\n").into_bytes().into_iter().chain(lines);
+    let hdr = hdr.chain(format!("# {keyword} ends\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\naaaa").into_bytes());
+    [exr, hdr.collect()]
+}
+
+#[test]
+fn each_mistake_of_a_linear_picture_is_told_and_ends_with_status_1() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = written(&Scene::default());
+    let broken = scene.replace("\"height\": 10", "\"height\": 1000");
+    assert_ne!(broken, scene);
+    let cut = |whole: [Vec<u8>; 2]| whole.map(|bytes| bytes[..60].to_vec());
+    let cases: [([Vec<u8>; 2], &str); 7] = [
+        (linear("comments", b"a"), "pictures that this program writes have one, unless --no-scene is given"),
+        (
+            cut(linear("comments", &[b'a'; 99])),
+            "the picture is truncated, and there is no scene in what is left",
+        ),
+        ([scene.clone().into_bytes(), scene.clone().into_bytes()], "picture, though its name ends in ."),
+        (linear(SCENE_KEYWORD, b" "), "the scene in the picture is empty"),
+        (linear(SCENE_KEYWORD, b"{\n  \"name\": nobody\n}"), "the scene in the picture is not JSON: "),
+        (linear(SCENE_KEYWORD, b"\xff\xfe"), "the scene in the picture is damaged: it is not UTF-8 text"),
+        // Without a position: nobody sees the text.
+        (linear(SCENE_KEYWORD, broken.as_bytes()), "scene_size.height is 1000, but "),
+    ];
+    for (files, expected) in cases {
+        for (name, bytes) in ["x.exr", "x.hdr"].into_iter().zip(files) {
+            fs::write(folder.path().join(name), bytes).expect("written");
+            for command in ["check", "render", "view"] {
+                let run = lcm_in(folder.path(), &[command, name], b"");
+                assert_eq!(run.status, Some(1), "{command}: {}", run.err);
+                assert!(run.err.starts_with(name) && run.err.contains(expected), "{command}: {}", run.err);
+                check_wording(&run.err);
+            }
+        }
+    }
+    assert!(!folder.path().join("renders").exists(), "nothing was drawn");
+    for (name, bytes) in ["x.exr", "x.hdr"].into_iter().zip(linear(SCENE_KEYWORD, scene.as_bytes())) {
+        fs::write(folder.path().join(name), &bytes).expect("written");
+        assert_eq!(lcm_in(folder.path(), &["check", name], b"").status, Some(0));
+        assert_eq!(lcm_in(folder.path(), &["check", "-"], &bytes).status, Some(0), "by its first bytes");
+        // Under another name, the message explains what to do.
+        fs::write(folder.path().join("x.json"), &bytes).expect("written");
+        let run = lcm_in(folder.path(), &["check", "x.json"], b"");
+        let ending = &name[1..];
+        let expected = format!("a scene in it is read if the name of the file ends in {ending}");
+        assert!(run.err.contains(&expected), "{}", run.err);
+    }
+}
+
 #[test]
 fn files_that_a_scene_names_are_looked_for_beside_its_picture() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -314,6 +370,22 @@ fn a_file_that_is_dropped_on_the_window_opens() {
     assert!(said(&app, ".txt is not the extension of a scene"));
     drop(&mut app, &["notes.txt", "gold.png"]);
     assert_eq!(title(&app), "Gold");
+    // A linear picture with a scene is a scene; one without is a picture of surroundings.
+    let silver = Scene { name: Some("Silver".to_owned()), ..Scene::default() };
+    let [exr, hdr] = linear(SCENE_KEYWORD, written(&silver).as_bytes());
+    fs::write(at("silver.exr"), exr).expect("written");
+    fs::write(at("silver.hdr"), hdr).expect("written");
+    fs::copy(root().join("scenes/room.hdr"), at("room.hdr")).expect("copied");
+    let lights = |app: &App| app.world().resource::<Session>().document.lights.len();
+    for name in ["silver.exr", "silver.hdr"] {
+        drop(&mut app, &["gold.png"]);
+        assert_eq!(title(&app), "Gold");
+        drop(&mut app, &[name]);
+        assert_eq!(title(&app), "Silver", "{name}");
+    }
+    let count = lights(&app);
+    drop(&mut app, &["room.hdr"]);
+    assert_eq!((title(&app), lights(&app)), ("Silver".to_owned(), count + 1));
     // A question about unsaved work comes first.
     app.world_mut().resource_mut::<Session>().document.amend(|scene| scene.name = Some("Mine".to_owned()));
     drop(&mut app, &["gold.png"]);

@@ -15,7 +15,9 @@ use lights_camera_models::{
     window::LabPlugins,
 };
 
-use crate::{helpers::screen::Picture, library::plugins::app, window::panels::Bench};
+use crate::{
+    helpers::screen::Picture, library::plugins::app, renderers::linear::read_exr, window::panels::Bench,
+};
 
 /// A red sphere that view B shows in blue.
 const SCENE: &str = r#"{
@@ -149,12 +151,59 @@ fn nothing_is_replaced_unasked_and_only_pictures_are_written() {
     assert_eq!(asked, Some(Question::ReplacePicture { view: None, path: file.clone() }));
     assert_eq!(fs::read(&file).expect("it is there"), before);
     let said = take(&mut app, None, &folder.path().join("taken.jpg"), true);
-    assert!(said[0].1.contains("only PNG files can be written; name it taken.png"), "{said:?}");
+    let formats = "only PNG, OpenEXR (.exr) and Radiance (.hdr) files can be written; name it taken.png";
+    assert!(said[0].1.contains(formats), "{said:?}");
     let notes = folder.path().join("notes.png");
     fs::write(&notes, "no picture").expect("writable");
     let said = take(&mut app, None, &notes, true);
     assert!(said[0].0 == Severity::Error && said[0].1.starts_with("The picture was not saved"), "{said:?}");
     assert_eq!(fs::read(&notes).expect("it is there"), b"no picture");
+}
+
+#[test]
+fn the_ending_of_a_name_asks_for_linear_light() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut app = lab(folder.path());
+    let at = |name: &str| folder.path().join(name);
+    // The camera is elsewhere, which is where the picture opens.
+    session(&mut app).facts.eye.x += 0.5;
+    session(&mut app).facts.camera_is_free = true;
+    for name in ["a.exr", "a.hdr"] {
+        let saved = take(&mut app, None, &at(name), false);
+        assert_eq!(saved, [(Severity::Info, format!("Saved the picture to {}.", at(name).display()))]);
+        let scene = opened(&at(name));
+        assert_eq!(scene.observer.position.x, session(&mut app).document.observer.position.x + 0.5);
+        assert_eq!(take(&mut app, None, &at(name), false), []);
+        let asked = session(&mut app).questions.open.take();
+        assert_eq!(asked, Some(Question::ReplacePicture { view: None, path: at(name) }));
+    }
+    let channels = read_exr(&at("a.exr"));
+    assert_eq!(channels["R"].len(), 120 * 90);
+    assert!(channels.contains_key("depth.Z") && channels.contains_key("light_1.G"));
+    // Uniform light of 1 lx on a red sphere.
+    assert_eq!([channels["R"][45 * 120 + 60], channels["G"][45 * 120 + 60]], [1.0, 0.0]);
+    assert_eq!([channels["A"][0], channels["R"][0]], [0.0; 2], "the background is no light");
+    // The light of several views is several pictures.
+    side_by_side(&mut app);
+    session(&mut app).document.change(
+        "Layout",
+        lights_camera_models::document::Extent::Rest,
+        Default::default(),
+        |scene| scene.comparison.layout = lights_camera_models::scene::comparison::Layout::SideBySide,
+    );
+    let said = take(&mut app, None, &at("both.exr"), false);
+    let expected = format!(
+        "The picture was not saved to {}: it holds the light of one view; save the view alone.",
+        at("both.exr").display()
+    );
+    assert_eq!(said, [(Severity::Error, expected)]);
+    assert!(!at("both.exr").exists());
+    let _ = take(&mut app, Some(1), &at("b.exr"), false);
+    assert_eq!(read_exr(&at("b.exr"))["B"][45 * 120 + 60], 1.0, "the sphere is blue there");
+    let notes = at("notes.exr");
+    fs::write(&notes, "no picture").expect("writable");
+    let said = take(&mut app, None, &notes, true);
+    assert!(said[0].1.contains("notes.exr exists and is not an OpenEXR file"), "{said:?}");
 }
 
 #[test]

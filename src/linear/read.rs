@@ -1,0 +1,250 @@
+//! Reads Radiance and OpenEXR pictures with the crates `image` and `exr`, limiting size, memory and time.
+//!
+//! In addition to the [`Limits`] of the reader and of the file size: an OpenEXR file has at most [`MAX_LAYERS`]
+//! layers and at most [`MAX_BLOCKS`] blocks (tiles, or lines compressed together) of at most [`MAX_BLOCK_BYTES`]
+//! bytes. Besides the file and the [`Pixels`], reading takes 12 bytes for each pixel of a Radiance file, and a block
+//! of an OpenEXR file both compressed and decompressed, the latter at most 64 times as large.
+
+use std::io::{Cursor, Read as _};
+
+use exr::{
+    meta::{
+        attribute::{ChannelDescription, EnvironmentMap},
+        header::Header,
+    },
+    prelude::{ReadChannels as _, ReadLayers as _, ReadSpecificChannel as _, Vec2},
+};
+use glam::DVec3;
+use image::{ImageDecoder as _, ImageError, codecs::hdr::HdrDecoder};
+
+use super::REC_709;
+use crate::{
+    caught, files,
+    text::{plural, shortened},
+};
+
+const RADIANCE: [&[u8]; 2] = [b"#?RADIANCE", b"#?RGBE"];
+
+const MAX_LAYERS: usize = 64;
+const MAX_BLOCK_BYTES: usize = 16 << 20;
+const MAX_BLOCKS: usize = 1 << 18;
+
+/// The limits of a reader, and what it reads.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Maximum size of the header of a Radiance file, in bytes.
+    pub head: usize,
+    /// Maximum number of channels of a layer of an OpenEXR file.
+    pub channels: usize,
+    /// Maximum number of columns and of rows of a layer of an OpenEXR file.
+    pub size: [usize; 2],
+    /// True for pictures of surroundings in cd/m²: `whiteLuminance` counts, and there must be no cube map.
+    pub surroundings: bool,
+}
+
+/// Receives the pixels of a file, in any order.
+pub trait Pixels: Sized {
+    /// Checks the width and height.
+    ///
+    /// # Errors
+    /// Returns the rule that the size breaks.
+    fn check(width: usize, height: usize) -> Result<(), String>;
+
+    /// A picture of a checked size without pixels. Numbers of the file times `scale` are light.
+    fn new(width: usize, height: usize, scale: DVec3) -> Self;
+
+    /// Adds a pixel: red, green, blue, and its opacity, which is not a number where the file has none.
+    fn add(&mut self, column: usize, row: usize, pixel: [f32; 4]);
+}
+
+/// Reads a picture, the first layer of an OpenEXR file with the channels R, G and B.
+///
+/// # Errors
+/// Returns the reason why the file is not a picture within the limits.
+pub fn read<P: Pixels>(bytes: &[u8], limits: &Limits) -> Result<P, String> {
+    // Decoders may panic on unforeseen input.
+    let read = caught::catch(|| decode(bytes, limits));
+    read.unwrap_or_else(|_| Err("its pixels do not match its header; save it again".to_owned()))
+}
+
+fn decode<P: Pixels>(bytes: &[u8], limits: &Limits) -> Result<P, String> {
+    if let Some(rest) = RADIANCE.iter().find_map(|begin| bytes.strip_prefix(*begin)) {
+        radiance(rest, limits)
+    } else if bytes.starts_with(files::EXR.begins) {
+        open_exr(bytes, limits)
+    } else {
+        Err("it does not begin like a Radiance picture (#?RADIANCE) or an OpenEXR picture".to_owned())
+    }
+}
+
+/// Reads a Radiance picture after its first word.
+fn radiance<P: Pixels>(rest: &[u8], limits: &Limits) -> Result<P, String> {
+    let head = &rest[..rest.len().min(limits.head)];
+    let end = head.windows(2).position(|two| two == b"\n\n").map(|at| at + 2);
+    let size = end.and_then(|end| head[end..].split_inclusive(|byte| *byte == b'\n').next());
+    let Some(size) = size.filter(|size| size.ends_with(b"\n")) else {
+        return Err(format!(
+            "the header of a Radiance picture must end with an empty line and a line such as “-Y 512 +X \
+             1024” within {} bytes",
+            limits.head
+        ));
+    };
+    let size = String::from_utf8_lossy(size);
+    let words: Vec<_> = size.split_whitespace().collect();
+    let [width, height] = match words[..] {
+        ["-Y", height, "+X", width] => [width, height].map(|word| word.parse().ok()),
+        _ => [None; 2],
+    };
+    let (Some(width), Some(height)) = (width, height) else {
+        return Err(format!(
+            "the size of a Radiance picture must be given as “-Y height +X width”, not “{}”",
+            shortened(size.trim())
+        ));
+    };
+    P::check(width, height)?;
+    let decoder = HdrDecoder::new(RADIANCE[0].chain(rest)).map_err(|error| match error {
+        ImageError::Unsupported(_) => "its FORMAT must be 32-bit_rle_rgbe".to_owned(),
+        error => format!("the header of the Radiance picture cannot be read: {error}"),
+    })?;
+    let meta = decoder.metadata();
+    let exposure = meta.exposure.unwrap_or(1.0);
+    let factors = meta.color_correction.map_or([exposure; 3], |(r, g, b)| [r, g, b].map(|c| c * exposure));
+    if factors.iter().any(|factor| !factor.is_normal() || *factor < 0.0) {
+        return Err("EXPOSURE and COLORCORR must be greater than 0".to_owned());
+    }
+    let mut pixels = vec![0; 12 * width * height];
+    decoder.read_image(&mut pixels).map_err(|error| match error {
+        ImageError::IoError(_) => "the file ends before its last pixel".to_owned(),
+        error => format!("the pixels of the Radiance picture cannot be read: {error}"),
+    })?;
+    // The values of the file were multiplied by these factors.
+    let mut picture = P::new(width, height, DVec3::from_array(factors.map(f64::from)).recip());
+    for (i, pixel) in pixels.chunks_exact(12).enumerate() {
+        let value = |at: usize| f32::from_ne_bytes([pixel[at], pixel[at + 1], pixel[at + 2], pixel[at + 3]]);
+        let [r, g, b] = [0, 4, 8].map(value);
+        picture.add(i % width, i / width, [r, g, b, f32::NAN]);
+    }
+    Ok(picture)
+}
+
+fn open_exr<P: Pixels>(bytes: &[u8], limits: &Limits) -> Result<P, String> {
+    let reader = exr::block::read(Cursor::new(bytes), false).map_err(|error| broken(&error))?;
+    let ([width, height], scale) = within_limits(reader.headers(), limits)?;
+    P::check(width, height)?;
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .specific_channels()
+        .required("R")
+        .required("G")
+        .required("B")
+        .optional("A", f32::NAN)
+        .collect_pixels(
+            |_, _| P::new(width, height, scale),
+            |picture: &mut P, at: Vec2<usize>, (r, g, b, a): (f32, f32, f32, f32)| {
+                picture.add(at.x(), at.y(), [r, g, b, a]);
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_chunks(reader)
+        .map_err(|error| broken(&error))?;
+    Ok(image.layer_data.channel_data.pixels)
+}
+
+fn broken(error: &exr::error::Error) -> String {
+    match error {
+        exr::error::Error::NotSupported(what) => format!(
+            "this kind of OpenEXR picture is not supported ({}); it must have flat pixels, uncompressed or \
+             compressed with RLE, ZIP, PIZ, PXR24 or B44",
+            shortened(what)
+        ),
+        error => {
+            format!("the OpenEXR picture is incomplete or broken ({})", shortened(&error.to_string()))
+        }
+    }
+}
+
+/// The size and the scale of the layer that is read, the first one with red, green and blue, if the file respects
+/// the limits.
+fn within_limits(layers: &[Header], limits: &Limits) -> Result<([usize; 2], DVec3), String> {
+    if layers.len() > MAX_LAYERS {
+        let count = plural(layers.len(), "layer");
+        return Err(format!("the OpenEXR file has {count}; at most {MAX_LAYERS} are read"));
+    }
+    for layer in layers {
+        let channels = layer.channels.list.len();
+        if channels > limits.channels {
+            let most = limits.channels;
+            return Err(format!("a layer has {channels} channels; at most {most} are read"));
+        }
+        let [width, height] = [layer.layer_size.x(), layer.layer_size.y()];
+        let [columns, rows] = limits.size;
+        if width > columns || height > rows {
+            return Err(format!(
+                "a layer has {width} × {height} pixels; at most {columns} × {rows} are read"
+            ));
+        }
+        let block = layer.max_block_pixel_size();
+        let bytes = block.x().saturating_mul(block.y()).saturating_mul(layer.channels.bytes_per_pixel);
+        if bytes > MAX_BLOCK_BYTES || layer.chunk_count > MAX_BLOCKS {
+            return Err(format!(
+                "its tiles have up to {} × {} pixels, and there are {}; at most {MAX_BLOCK_BYTES} bytes per tile and {MAX_BLOCKS} tiles are read",
+                block.x(),
+                block.y(),
+                layer.chunk_count
+            ));
+        }
+    }
+    let colours =
+        |layer: &Header| ["R", "G", "B"].map(|name| layer.channels.list.iter().any(|c| c.name == *name));
+    let Some(layer) = layers.iter().find(|layer| !layer.deep && colours(layer) == [true; 3]) else {
+        let names: Vec<_> = layers
+            .iter()
+            .flat_map(|layer| &layer.channels.list)
+            .map(|channel| channel.name.to_string())
+            .collect();
+        return Err(format!(
+            "no layer has the channels R, G and B; the channels are {}",
+            shortened(&names.join(", "))
+        ));
+    };
+    let is_thin = |channel: &ChannelDescription| channel.sampling.x() != 1 || channel.sampling.y() != 1;
+    if let Some(channel) = layer.channels.list.iter().find(|channel| is_thin(channel)) {
+        let name = shortened(&channel.name.to_string());
+        return Err(format!(
+            "the channel {name} has fewer pixels than the picture; all channels must have the same number"
+        ));
+    }
+    let (own, shared) = (&layer.own_attributes, &layer.shared_attributes);
+    if limits.surroundings && own.environment_map == Some(EnvironmentMap::Cube) {
+        return Err("it is a cube map, but must be equirectangular (latitude and longitude)".to_owned());
+    }
+    let [shown, there] = [shared.display_window.size, layer.layer_size];
+    if shown != there {
+        return Err(format!(
+            "only {} × {} of {} × {} pixels are present (data window and display window); all must be",
+            there.x(),
+            there.y(),
+            shown.x(),
+            shown.y()
+        ));
+    }
+    if let Some(primaries) = &shared.chromaticities {
+        let found =
+            [primaries.red, primaries.green, primaries.blue, primaries.white].map(|at| [at.x(), at.y()]);
+        let near = |(a, b): (&f32, &f32)| (a - b).abs() < 2e-3;
+        if !found.as_flattened().iter().zip(REC_709.as_flattened()).all(near) {
+            let [x, y] = found[0];
+            return Err(format!(
+                "its colours must be linear Rec. 709, but its chromaticities differ (red at {x}, {y}, not 0.64, 0.33)"
+            ));
+        }
+    }
+    let white = own.white_luminance.filter(|_| limits.surroundings).unwrap_or(1.0);
+    if !white.is_normal() || white < 0.0 {
+        return Err(format!("its whiteLuminance must be greater than 0, not {white}"));
+    }
+    Ok(([there.x(), there.y()], DVec3::splat(f64::from(white))))
+}
