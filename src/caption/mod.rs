@@ -83,11 +83,12 @@ pub fn of_views(
     let mut facts = words::surfaces(scene, &said, registry);
     facts.extend(terms.and_then(terms_alone));
     let usual = Display::default();
-    let Display { tone_mapping, exposure, encoding } = scene.display;
+    let Display { tone_mapping, exposure, encoding, .. } = scene.display;
     facts.extend(display(Display {
         tone_mapping: if said.over.tone_mapping.is_some() { usual.tone_mapping } else { tone_mapping },
         exposure: if said.over.exposure.is_some() { usual.exposure } else { exposure },
         encoding: if said.over.encoding.is_some() { usual.encoding } else { encoding },
+        ..usual
     }));
     for view in views {
         let mut of_view = Said::of(scene, *view);
