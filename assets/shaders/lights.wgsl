@@ -37,8 +37,8 @@ struct Illumination {
     sample_count: u32,
     // 1 if the picture is a part of a mean, which gets its look later.
     is_part: u32,
-    // Not in use.
-    spare: u32,
+    // 1 if a background that the scene gives stands in place of what is infinitely far away.
+    has_backdrop: u32,
     lights: array<Light, MAX_LIGHTS>,
 }
 
