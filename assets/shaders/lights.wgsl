@@ -37,8 +37,8 @@ struct Illumination {
     sample_count: u32,
     // What pixels become.
     look: u32,
-    // Not in use.
-    spare: u32,
+    // 1 if a background that the scene gives stands in place of what is infinitely far away.
+    has_backdrop: u32,
     lights: array<Light, MAX_LIGHTS>,
 }
 

@@ -39,7 +39,8 @@ fn fragment(in: SeenStages) -> SeenPixel {
         let light = illumination.lights[i];
         if light_is_visible(light) {
             let seen = seen_light(light, view.world_position, l);
-            if seen.distance != 0.0 {
+            let is_hidden = seen.distance < 0.0 && illumination.has_backdrop != 0u;
+            if seen.distance != 0.0 && !is_hidden {
                 light_there = true;
                 // Several that are infinitely far away add up.
                 let near = select(stretch / seen.distance, 0.0, seen.distance < 0.0);

@@ -180,7 +180,12 @@ mod tests {
             ..Variant::default()
         };
         scene.variants = vec![all, back];
-        scene.display = Display { tone_mapping: ToneMapping::Aces, exposure: -1.0, encoding: Encoding::Srgb };
+        scene.display = Display {
+            tone_mapping: ToneMapping::Aces,
+            exposure: -1.0,
+            encoding: Encoding::Srgb,
+            ..Display::default()
+        };
         assert_eq!(
             headers(&scene),
             [

@@ -123,6 +123,26 @@ pub struct Explanation {
     pub steps: DisplaySteps,
 }
 
+impl Explanation {
+    /// True if the pixel shows a background that the scene gives.
+    #[must_use]
+    pub fn shows_backdrop(&self) -> bool {
+        self.seen.is_none() && self.lamp.is_none() && self.display.backdrop().is_some()
+    }
+
+    /// A pixel without an object or a light, in words.
+    #[must_use]
+    pub fn about_background(&self) -> &'static str {
+        if self.shows_backdrop() {
+            "There is no object at the centre of this pixel, only background: the colour that the scene gives. Lights, \
+             exposure, encoding and tone mapping do not change it."
+        } else {
+            "There is no object at the centre of this pixel, only background. It is not light of the scene: lights and \
+             exposure do not change it, tone mapping does."
+        }
+    }
+}
+
 /// A light with extent that is itself visible at a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lamp {
@@ -435,6 +455,6 @@ fn explanation(shot: Shot, pixel: [u32; 2], found: Option<Probe>, lamp: Option<L
         seen: found.and_then(|found| shot.seen(found)),
         lamp,
         display: scene.display,
-        steps: Picture::display_steps(light, &scene.display),
+        steps: Picture::display_steps(light, &scene.display, pixel[1], settings.height),
     }
 }

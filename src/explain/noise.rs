@@ -47,7 +47,12 @@ impl Explanation {
         let error = self.seen.as_ref()?.error()?;
         Some([error, -error].map(|error| {
             let light = (self.steps.light + error).max(self.steps.light.min(Vec3::ZERO));
-            Picture::display_steps(light.extend(self.steps.coverage), &self.display)
+            Picture::display_steps(
+                light.extend(self.steps.coverage),
+                &self.display,
+                self.pixel[1],
+                self.size[1],
+            )
         }))
     }
 
@@ -182,7 +187,7 @@ mod tests {
         let light = explanation.steps.light;
         // The exposure at which red is just white.
         explanation.display.exposure = -light.x.log2();
-        explanation.steps = Picture::display_steps(light.extend(1.0), &explanation.display);
+        explanation.steps = Picture::display_steps(light.extend(1.0), &explanation.display, 0, 1);
         let [brighter, _] = explanation.brighter_and_darker().expect("noise");
         assert!((brighter.encoded.x - explanation.steps.encoded.x).abs() < 1e-4, "clipped");
         let error = explanation.error_of(encoded).expect("noise");

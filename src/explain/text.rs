@@ -127,11 +127,7 @@ impl Explanation {
                 }
                 say!(out, 1, "L = {} cd/m²", triple(lamp.radiance));
             }
-            (None, None) => out.line(
-                0,
-                "There is no object at the centre of this pixel, only background. It is not light of the scene: lights and \
-                 exposure do not change it, tone mapping does.",
-            ),
+            (None, None) => out.line(0, self.about_background()),
         }
         self.display(&mut out);
         out.text
@@ -251,16 +247,20 @@ impl Explanation {
             say!(out, 1, "light {light}");
             let (ev, factor) = (number(self.display.exposure), number(steps.exposure));
             say!(out, 1, "exposure {ev} EV, factor 2^{ev} = {factor}: {}", say(|steps| steps.exposed));
+        } else if self.shows_backdrop() {
+            say!(out, 1, "background {}, as the scene gives it", triple(steps.exposed));
         } else {
             say!(out, 1, "background {}, whatever the exposure", triple(steps.exposed));
         }
-        if self.display.encoding == Encoding::Off {
+        if self.display.encoding == Encoding::Off && !self.shows_backdrop() {
             let why = "clipped to 0–1 and decoded, since the last step encodes";
             let input = say(|steps| steps.input);
             say!(out, 1, "without encoding, the numbers themselves are to reach the display: {why}: {input}");
         }
-        let tone = self.display.tone_mapping.name();
-        say!(out, 1, "tone mapping, {tone}: {}", say(|steps| steps.mapped));
+        if !self.shows_backdrop() {
+            let tone = self.display.tone_mapping.name();
+            say!(out, 1, "tone mapping, {tone}: {}", say(|steps| steps.mapped));
+        }
         if steps.mapped.is_nan() {
             out.line(1, "what is no number is shown as 0");
         } else if steps.mapped.max_element() > 1.0 || steps.mapped.min_element() < 0.0 {

@@ -25,7 +25,7 @@ use crate::{
         material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
         meshes::{face_mesh, shared_mesh},
     },
-    scene::Object,
+    scene::{Background, Object},
     shader::compose::WRAPPER,
     shading::{ShadingEntry, Stage},
     shape::MeshKey,
@@ -287,10 +287,19 @@ impl<'a> Lit<'a> {
         exposure_factor(self.request.scene.display.exposure)
     }
 
-    /// The light of the background, which is changed by tone mapping, but not by exposure.
+    /// The background as the display shows it, at its upper edge: the colour that the scene gives, or the neutral grey,
+    /// which is changed by tone mapping, but not by exposure.
     #[must_use]
     pub fn background(&self) -> Vec3 {
-        self.request.scene.display.tone_mapping.map(Encoding::Srgb.decode(BACKGROUND))
+        let display = &self.request.scene.display;
+        display.behind(0.0).unwrap_or_else(|| display.tone_mapping.map(Encoding::Srgb.decode(BACKGROUND)))
+    }
+
+    /// The colours of a gradient in the background, sRGB-encoded: at the upper and at the lower edge of the picture.
+    #[must_use]
+    pub fn gradient(&self) -> Option<[[u8; 3]; 2]> {
+        let display = &self.request.scene.display;
+        display.backdrop().filter(|_| display.background == Background::Gradient)
     }
 }
 

@@ -97,6 +97,14 @@ fn words(row: &LightRow, fields: &[super::lights::LightField], name: &str) -> Ve
     fields.iter().find(|field| field.name == name).map(|field| row.words(field)).unwrap_or_default()
 }
 
+/// The background: its code, or those of both edges of a gradient.
+fn background(lit: &Lit) -> Json {
+    match lit.gradient() {
+        Some([top, bottom]) => json!({ "top": top, "bottom": bottom }),
+        None => json!(Encoding::Srgb.encode(lit.background())),
+    }
+}
+
 /// The manifest of a shader.
 #[must_use]
 pub fn manifest(module: &Module, lit: &Lit, drawn: &Drawn, files: Map<String, Json>) -> Json {
@@ -136,7 +144,7 @@ pub fn manifest(module: &Module, lit: &Lit, drawn: &Drawn, files: Map<String, Js
         "depth": { "clear": 0.0, "compare": "greater", "range": "1 near, 0 infinitely far" },
         "colour": "the fragment's colour is encoded for the display: write it to a target that does not encode again",
         "size": [width, height],
-        "background": Encoding::Srgb.encode(lit.background()),
+        "background": background(lit),
         "bindings": bindings,
     })
 }

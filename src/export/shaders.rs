@@ -127,7 +127,13 @@ fn make(request: &Request, progress: &Progress, write: Write) -> Result<Export, 
             "the shader turns y over: the first row of the framebuffer is the upper one".into();
     }
     files.push(File::new("manifest.json", format!("{manifest:#}\n")));
-    Ok(Export { files, notes: lit.notes() })
+    let mut notes = lit.notes();
+    if lit.gradient().is_some() {
+        let why =
+            "the shader of an object does not draw what is behind it; manifest.json has its two colours";
+        notes.push(format!("The background is a gradient, and {why}."));
+    }
+    Ok(Export { files, notes })
 }
 
 /// True if the form is the shader of an object in a text language.

@@ -6,7 +6,7 @@ use glam::Vec3;
 pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
 /// The background colour, sRGB-encoded: a neutral grey, since colour is judged against it. It is not light of the
-/// scene, so exposure does not change it; tone mapping does.
+/// scene, so exposure does not change it; tone mapping does. Scenes may give another one.
 pub const BACKGROUND: [u8; 3] = [46, 46, 46];
 
 /// Decoding of colours on the way in and encoding on the way out.

@@ -84,12 +84,13 @@ pub struct DisplaySteps {
     pub coverage: f32,
     /// The factor of the exposure, `2^EV`.
     pub exposure: f32,
-    /// Light times exposure, plus the background, to which exposure does not apply.
+    /// Light times exposure, plus the neutral background, to which exposure does not apply. A background that the scene
+    /// gives is in it only where nothing else is.
     pub exposed: Vec3,
     /// The input of the tone curve: without encoding, the decoded numbers, so that encoding restores them;
     /// otherwise unchanged.
     pub input: Vec3,
-    /// The result of the tone curve.
+    /// The result of the tone curve. A background that the scene gives is joined to it: the curve does not apply to that.
     pub mapped: Vec3,
     /// Clipped to the range of the display and sRGB-encoded, 0 to 1.
     pub encoded: Vec3,
@@ -101,7 +102,8 @@ pub struct DisplaySteps {
 pub(super) struct DisplayTransform {
     display: Display,
     exposure: f32,
-    background: Vec3,
+    /// The neutral background.
+    grey: Vec3,
     encoder: &'static Encoder,
 }
 
@@ -110,26 +112,40 @@ impl DisplayTransform {
         Self {
             display: *display,
             exposure: exposure_factor(display.exposure),
-            background: display.encoding.decode(BACKGROUND),
+            grey: display.encoding.decode(BACKGROUND),
             encoder: &ENCODER,
         }
     }
 
-    /// Converts the light of objects, and the fraction of the pixel that they cover, to sRGB.
-    pub(super) fn apply(&self, pixel: Vec4) -> [u8; 3] {
-        let [.., c] = self.curve(pixel);
+    /// The background that the scene gives, at the middle of a row of a picture of this height.
+    pub(super) fn behind(&self, row: usize, height: usize) -> Option<Vec3> {
+        self.display.behind((row as f32 + 0.5) / height.max(1) as f32)
+    }
+
+    /// Converts the light of objects, and the fraction of the pixel that they cover, to sRGB. `behind` is the background
+    /// that the scene gives, if any.
+    pub(super) fn apply(&self, pixel: Vec4, behind: Option<Vec3>) -> [u8; 3] {
+        let [.., c] = self.curve(pixel, behind);
         self.codes(c)
     }
 
     /// The light after exposure, the input of the tone curve, and its result.
-    fn curve(&self, pixel: Vec4) -> [Vec3; 3] {
-        let exposed = pixel.truncate() * self.exposure + (1.0 - pixel.w) * self.background;
+    fn curve(&self, pixel: Vec4, behind: Option<Vec3>) -> [Vec3; 3] {
+        let (light, covered) = (pixel.truncate() * self.exposure, pixel.w);
+        let exposed = match behind {
+            None => light + (1.0 - covered) * self.grey,
+            Some(background) if covered <= 0.0 => return [background; 3],
+            // The light of the covered part alone: the background is beyond the curve.
+            Some(_) => light / covered,
+        };
         let input = match self.display.encoding {
             Encoding::Srgb => exposed,
             // The encoding that follows must return the number itself.
             Encoding::Off => exposed.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_decode),
         };
-        [exposed, input, self.display.tone_mapping.map(input)]
+        let mapped = self.display.tone_mapping.map(input);
+        let joined = behind.map_or(mapped, |background| covered * mapped + (1.0 - covered) * background);
+        [exposed, input, joined]
     }
 
     fn codes(&self, c: Vec3) -> [u8; 3] {
@@ -137,8 +153,8 @@ impl DisplayTransform {
     }
 
     /// [`apply`](Self::apply), step by step.
-    pub(super) fn steps(&self, pixel: Vec4) -> DisplaySteps {
-        let [exposed, input, mapped] = self.curve(pixel);
+    pub(super) fn steps(&self, pixel: Vec4, behind: Option<Vec3>) -> DisplaySteps {
+        let [exposed, input, mapped] = self.curve(pixel, behind);
         DisplaySteps {
             light: pixel.truncate(),
             coverage: pixel.w,
@@ -155,7 +171,7 @@ impl DisplayTransform {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::tone::ToneMapping;
+    use crate::{optics::tone::ToneMapping, scene::Background};
 
     #[test]
     fn thresholds_lie_where_the_formula_goes_from_one_code_to_the_next() {
@@ -197,13 +213,15 @@ mod tests {
         for tone_mapping in ToneMapping::ALL {
             for encoding in Encoding::ALL {
                 for exposure in [-1.5, 0.0, 2.0] {
-                    let transform = DisplayTransform::new(&Display { tone_mapping, exposure, encoding });
+                    let display = Display { tone_mapping, exposure, encoding, ..Display::default() };
+                    let transform = DisplayTransform::new(&display);
                     for i in 0..200 {
                         let i = i as f32;
                         let pixel =
                             Vec4::new(0.01 * i, 0.003 * i, 2.0 / (i + 1.0), [0.0, 1.0, 0.5][i as usize % 3]);
-                        let steps = transform.steps(pixel);
-                        assert_eq!(steps.codes, transform.apply(pixel), "{tone_mapping:?} {pixel}");
+                        let behind = (i as u32 % 2 == 0).then_some(Vec3::new(0.2, 0.5, 0.9));
+                        let steps = transform.steps(pixel, behind);
+                        assert_eq!(steps.codes, transform.apply(pixel, behind), "{tone_mapping:?} {pixel}");
                         // Rounding is the last step: the code differs by at most a half.
                         for (code, encoded) in steps.codes.into_iter().zip(steps.encoded.to_array()) {
                             let rest = (f32::from(code) - 255.0 * encoded).abs();
@@ -221,18 +239,41 @@ mod tests {
     fn exposure_changes_light_but_not_the_background() {
         for encoding in Encoding::ALL {
             for exposure in [-3.0, 0.0, 3.0] {
-                let display = Display { exposure, encoding, tone_mapping: ToneMapping::None };
-                assert_eq!(DisplayTransform::new(&display).apply(Vec4::ZERO), BACKGROUND);
+                let display = Display { exposure, encoding, ..Display::default() };
+                assert_eq!(DisplayTransform::new(&display).apply(Vec4::ZERO, None), BACKGROUND);
             }
         }
         let bright = Display { exposure: 1.0, ..Display::default() };
         let pixel = Vec4::new(0.1, 0.2, 0.3, 1.0);
-        assert_eq!(DisplayTransform::new(&bright).apply(pixel), [0.2, 0.4, 0.6].map(encode8));
+        assert_eq!(DisplayTransform::new(&bright).apply(pixel, None), [0.2, 0.4, 0.6].map(encode8));
+    }
+
+    #[test]
+    fn a_background_of_the_scene_is_shown_as_it_is_picked_and_joined_to_what_the_curve_gives() {
+        for tone_mapping in ToneMapping::ALL {
+            for encoding in Encoding::ALL {
+                let plain = Display { tone_mapping, encoding, exposure: 2.0, ..Display::default() };
+                let picked =
+                    Display { background: Background::Colour, background_colour: [250, 120, 3], ..plain };
+                let [before, transform] = [plain, picked].map(|display| DisplayTransform::new(&display));
+                let behind = transform.behind(3, 7);
+                let apply = |pixel| transform.apply(pixel, behind);
+                assert_eq!(apply(Vec4::ZERO), [250, 120, 3], "{tone_mapping:?}");
+                // Where objects cover the pixel, there is no background.
+                let covered = Vec4::new(0.4, 0.1, 0.05, 1.0);
+                assert_eq!(apply(covered), before.apply(covered, None), "{tone_mapping:?}");
+                // Half of a pixel: the mean of both as light of the display.
+                let light = |pixel| transform.steps(pixel, behind).mapped;
+                let mean = 0.5 * (light(covered) + light(Vec4::ZERO));
+                assert!((light(0.5 * covered) - mean).abs().max_element() < 1e-6, "{tone_mapping:?}");
+            }
+        }
     }
 
     #[test]
     fn without_encoding_numbers_go_to_the_display_as_they_are() {
         let display = Display { encoding: Encoding::Off, ..Display::default() };
-        assert_eq!(DisplayTransform::new(&display).apply(Vec4::new(0.0, 0.5, 2.0, 1.0)), [0, 128, 255]);
+        let pixel = Vec4::new(0.0, 0.5, 2.0, 1.0);
+        assert_eq!(DisplayTransform::new(&display).apply(pixel, None), [0, 128, 255]);
     }
 }

@@ -111,7 +111,7 @@ pub struct Picture {
     pub height: u32,
     /// Row by row from the top: red, green and blue of the light of objects and of visible lights (linear
     /// Rec. 709, the mean over the pixel's samples), and the fraction of samples that they cover. The rest is
-    /// [`BACKGROUND`].
+    /// [`BACKGROUND`], or what the scene gives instead of it.
     pub pixels: Vec<Vec4>,
 }
 
@@ -122,10 +122,12 @@ impl Picture {
         self.pixels[y as usize * self.width as usize + x as usize]
     }
 
-    /// The steps of a pixel from light to its codes in [`to_rgb8`](Self::to_rgb8).
+    /// The steps of a pixel from light to its codes in [`to_rgb8`](Self::to_rgb8), in a row, counted from the top, of a
+    /// picture of this height.
     #[must_use]
-    pub fn display_steps(pixel: Vec4, display: &Display) -> DisplaySteps {
-        DisplayTransform::new(display).steps(pixel)
+    pub fn display_steps(pixel: Vec4, display: &Display, row: u32, height: u32) -> DisplaySteps {
+        let display = DisplayTransform::new(display);
+        display.steps(pixel, display.behind(row as usize, height as usize))
     }
 
     /// The picture for a display: exposure, tone mapping, sRGB encoding, eight bits; red, green, blue, row by row from
@@ -133,10 +135,13 @@ impl Picture {
     #[must_use]
     pub fn to_rgb8(&self, display: &Display) -> Vec<u8> {
         let display = DisplayTransform::new(display);
+        let (width, height) = (self.width.max(1) as usize, self.height as usize);
         let mut out = vec![0; self.pixels.len() * 3];
-        out.par_chunks_mut(3 * 4096).zip(self.pixels.par_chunks(4096)).for_each(|(out, pixels)| {
+        let rows = out.par_chunks_mut(3 * width).zip(self.pixels.par_chunks(width)).enumerate();
+        rows.for_each(|(row, (out, pixels))| {
+            let behind = display.behind(row, height);
             for (out, &pixel) in out.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
-                *out = display.apply(pixel);
+                *out = display.apply(pixel, behind);
             }
         });
         out
@@ -271,37 +276,40 @@ impl Drawing<'_> {
     /// The light.
     fn light(&self) -> Picture {
         let Settings { width, height, .. } = *self.shot.settings;
-        Picture { width, height, pixels: self.draw(Vec4::ZERO, |pixel| pixel) }
+        Picture { width, height, pixels: self.draw(|pixel, _| pixel) }
     }
 
     /// The codes on a display.
     fn rgb8(&self, display: &Display) -> Vec<u8> {
         let display = DisplayTransform::new(display);
-        self.draw(display.apply(Vec4::ZERO), |pixel| display.apply(pixel)).into_flattened()
+        let height = self.shot.settings.height as usize;
+        let behind: Vec<_> = (0..height).map(|row| display.behind(row, height)).collect();
+        let finish = |pixel, row: usize| display.apply(pixel, behind.get(row).copied().flatten());
+        self.draw(finish).into_flattened()
     }
 
-    /// The picture: `background` where there is neither an object nor a visible light, and elsewhere the result of
-    /// `finish` for the light.
-    fn draw<T: Copy + Send + Sync>(&self, background: T, finish: impl Fn(Vec4) -> T + Sync) -> Vec<T> {
+    /// The picture: the result of `finish` for the light, which is 0 where there is neither an object nor a visible light,
+    /// and the row.
+    fn draw<T: Copy + Send + Sync>(&self, finish: impl Fn(Vec4, usize) -> T + Sync) -> Vec<T> {
         match self.shot.settings.samples {
-            0 | 1 => draw_sampled::<1, T>(self, background, finish),
-            _ => draw_sampled::<4, T>(self, background, finish),
+            0 | 1 => draw_sampled::<1, T>(self, finish),
+            _ => draw_sampled::<4, T>(self, finish),
         }
     }
 }
 
 fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     &Drawing { shot, sight, samples, end, odd }: &Drawing,
-    background: T,
-    finish: impl Fn(Vec4) -> T + Sync,
+    finish: impl Fn(Vec4, usize) -> T + Sync,
 ) -> Vec<T> {
     let Shot { scene, registry, settings } = shot;
     let late = || end.is_some_and(|end| Instant::now() >= end);
     let (width, height) = (settings.width as usize, settings.height as usize);
-    let mut out = vec![background; width * height];
-    if out.is_empty() {
-        return out;
+    if width * height == 0 {
+        return Vec::new();
     }
+    let mut out = Vec::with_capacity(width * height);
+    (0..height).for_each(|row| out.resize((row + 1) * width, finish(Vec4::ZERO, row)));
     let screen = Screen::new(width, height, S);
     let lights = Lights::new(scene, registry, settings.terms).sampled(samples);
     let lights = if sight.is_some() { lights.raw() } else { lights };
@@ -370,11 +378,14 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                 let visible = visible.as_ref().filter(|_| !late());
                 if let Some(lights) = visible.and_then(|visible| visible.within(origin, TILE, S)) {
                     if let (None, Some(light)) = (&tile, lights.throughout) {
-                        return Some((i, Finished::Even(finish(even::<S>(light)))));
+                        return Some((i, Finished::Even(finish(even::<S>(light), origin[1]))));
                     }
                     tile.get_or_insert_with(Tile::new).show(&lights);
                 }
-                Some((i, Finished::Pixels(tile?.resolve().map(&finish).collect())))
+                let tile = tile?;
+                let pixels = tile.resolve().enumerate();
+                let pixels = pixels.map(|(at, pixel)| finish(pixel, origin[1] + at / TILE)).collect();
+                Some((i, Finished::Pixels(pixels)))
             })
             .collect();
         for (i, pixels) in finished {

@@ -40,6 +40,12 @@ struct Visible {
 }
 
 impl Visible {
+    /// True if all of the light is infinitely far away.
+    fn is_at_infinity(&self, eye: Vec3, ahead: Vec3) -> bool {
+        let towards = self.cone.map_or(ahead, |(cone, _)| cone.axis);
+        self.emitter.seen(&self.record, eye, towards).distance.is_infinite()
+    }
+
     /// The light's radiance and nearness in a direction, if it is there.
     fn seen(&self, ray: &Ray, eye: Vec3) -> Option<Sight> {
         // Rounding of small angles must not exclude any part.
@@ -84,12 +90,16 @@ impl VisibleLights {
     pub(super) fn new(Shot { scene, registry, settings }: Shot) -> Self {
         let encoding = scene.display.encoding;
         let eye = scene.observer.position;
+        let ahead = scene.observer.direction.normalize_or(Vec3::NEG_Z);
+        // A background that the scene gives stands in place of what is infinitely far away.
+        let hides = scene.display.backdrop().is_some();
         let shining = scene.lights.iter().enumerate().filter(|(_, light)| light.enabled);
         let lights = shining.filter_map(|(index, light)| {
             let is_visible = registry.light(&light.light_type)?.is_visible(&light.parameters);
             let (_, emitter, record) = emitter(light, registry, encoding).filter(|_| is_visible)?;
             let cone = emitter.bounds(&record, eye).map(|cone| (cone, cone.half_angle.cos()));
-            Some(Visible { emitter, record, index, cone })
+            let light = Visible { emitter, record, index, cone };
+            (!hides || !light.is_at_infinity(eye, ahead)).then_some(light)
         });
         let size = [settings.width, settings.height];
         let axes = orientation(scene.observer.direction);

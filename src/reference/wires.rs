@@ -249,7 +249,7 @@ impl View<'_> {
                 continue;
             }
             let normal = corner.normal.normalize_or_zero();
-            let colour = || display.apply(draw.shading.vertex(&lighting, &corner).colour.extend(1.0));
+            let colour = || display.apply(draw.shading.vertex(&lighting, &corner).colour.extend(1.0), None);
             let colour = colour_of(&Vertex { normal, colour: gouraud.then_some(&colour) });
             if matches!(shows, Shows::Dots(_)) {
                 wires.dots.push(Dot { at: corner.position, colour });

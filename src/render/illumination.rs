@@ -24,7 +24,8 @@ use crate::{
 };
 
 /// Number of bytes before the lights: count, terms, exposure, gamma-naive; debug channel, its light, the ends
-/// of its scale; the first sample of light with extent, the number of samples, and the look of pixels.
+/// of its scale; the first sample of light with extent, the number of samples, the look of pixels, and whether
+/// the scene gives a background.
 pub const HEADER_BYTES: usize = 48;
 /// Offset of the samples among them.
 pub(super) const SAMPLES_AT: usize = 32;
@@ -203,6 +204,7 @@ pub fn illumination_bytes(
     put(4, terms.code().to_le_bytes());
     put(8, exposure_factor(display.exposure).to_le_bytes());
     put(12, u32::from(display.encoding == Encoding::Off).to_le_bytes());
+    put(SAMPLES_AT + SAMPLE_BYTES, u32::from(display.backdrop().is_some()).to_le_bytes());
     if let Some(Setting { channel, light, range: [low, high], from_position, numbers }) = channel {
         if *numbers {
             put(SAMPLES_AT + 8, LOOK_NUMBERS.to_le_bytes());
@@ -234,7 +236,7 @@ pub fn illumination_bytes(
 /// What shaders must have too.
 #[cfg(test)]
 pub(crate) mod layout {
-    use super::{HEADER_BYTES, SAMPLES_AT};
+    use super::{HEADER_BYTES, SAMPLE_BYTES, SAMPLES_AT};
 
     /// Byte offsets of the fields of `Light` in `lights.wgsl`.
     pub(crate) const LIGHT: [(&str, usize); 6] = [
@@ -258,7 +260,7 @@ pub(crate) mod layout {
         ("first_sample", SAMPLES_AT),
         ("sample_count", SAMPLES_AT + 4),
         ("look", SAMPLES_AT + 8),
-        ("spare", SAMPLES_AT + 12),
+        ("has_backdrop", SAMPLES_AT + SAMPLE_BYTES),
         ("lights", HEADER_BYTES),
     ];
 }

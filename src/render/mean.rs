@@ -48,8 +48,12 @@ pub(super) fn plugin(app: &mut App) {
         .init_resource::<Samples>()
         .add_systems(ExtractSchedule, extract)
         .add_systems(Render, (write, prepare).in_set(RenderSystems::PrepareResources))
-        .add_systems(Core3d, join.after(Core3dSystems::MainPass).before(tonemapping));
+        .add_systems(Core3d, join.in_set(MeanSystems).after(Core3dSystems::MainPass).before(tonemapping));
 }
+
+/// The pass that adds frames to means.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct MeanSystems;
 
 /// The contribution of a view's frame to its mean.
 #[derive(Component, Clone, Copy, Debug)]

@@ -2,6 +2,7 @@
 //! pictures without a window.
 
 pub(crate) mod absorb;
+pub(crate) mod backdrop;
 pub mod camera;
 pub mod capture;
 pub mod converge;

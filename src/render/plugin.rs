@@ -4,6 +4,7 @@ use bevy::{app::MainScheduleOrder, ecs::schedule::LogLevel, prelude::*, render::
 
 use super::{
     absorb::absorb,
+    backdrop,
     camera::follow_scene,
     converge::Convergence,
     entities::{CurrentScene, SceneEntities},
@@ -67,7 +68,7 @@ impl Plugin for ScenePlugin {
             .add_systems(LabFrame, (show_lights.before(exchange), swap.after(exchange)).in_set(Swap))
             .add_systems(LabFrame, (upload_lights, follow_scene).in_set(Upload))
             .add_plugins((live::plugin, view::plugin, tables::plugin, StraightPlugin))
-            .add_plugins((seen::plugin, mean::plugin, noise::plugin));
+            .add_plugins((seen::plugin, mean::plugin, noise::plugin, backdrop::plugin));
         // Systems that access the same data must have a defined order.
         detect(app, LogLevel::Warn);
     }

@@ -122,18 +122,22 @@ pub fn draw(
 ) {
     let entity = view.entity();
     let (camera, view, target, depth) = view.into_inner();
-    let background = match camera.clear_color {
-        ClearColorConfig::Default => Some(clear_colour.0),
-        ClearColorConfig::Custom(colour) => Some(colour),
-        ClearColorConfig::None => None,
-    };
-    if let Some(colour) = target.out_texture_color_attachment(background.map(Into::into)) {
+    if let Some(colour) = target.out_texture_color_attachment(cleared(camera, &clear_colour)) {
         phases.draw(world, entity, (camera, view, depth), colour, &mut context);
     }
 }
 
+/// The colour with which a camera clears its picture; `None` if it draws over the existing one.
+pub(super) fn cleared(camera: &ExtractedCamera, usual: &ClearColor) -> Option<LinearRgba> {
+    match camera.clear_color {
+        ClearColorConfig::Default => Some(usual.0.into()),
+        ClearColorConfig::Custom(colour) => Some(colour.into()),
+        ClearColorConfig::None => None,
+    }
+}
+
 /// Draws objects into the light of a picture.
-fn draw_layer(world: &World, view: ViewQuery<Parts>, phases: Phases, mut context: RenderContext) {
+pub(super) fn draw_layer(world: &World, view: ViewQuery<Parts>, phases: Phases, mut context: RenderContext) {
     let entity = view.entity();
     let (camera, view, target, depth) = view.into_inner();
     phases.draw(world, entity, (camera, view, depth), target.get_color_attachment(), &mut context);

@@ -47,7 +47,7 @@ mod views;
 mod write;
 
 pub use comparison::Comparison;
-pub use display::Display;
+pub use display::{Background, Display};
 pub use field::Field;
 pub use light::{Light, emitter, has_extent, record, shines_from_everywhere};
 pub use object::Object;
@@ -83,7 +83,7 @@ part! {
         observer: Observer = Field::of("", Kind::Part).required("a scene needs one observer"), Observer::default();
         /// The objects, 1 to 10 000.
         objects: Vec<Object> = Field::of("", Kind::Parts).required(""), vec![Object::default()];
-        /// Conversion of light to the picture on the display.
+        /// Conversion of light to the picture on the display, and the background of the picture.
         display: Display = Field::of("", Kind::Part), Display::default();
         /// Variants: the scene with some things changed, to be compared with it. The scene is view A; these are B, C and D.
         variants: Vec<Variant> = Field::of("", Kind::Parts), Vec::new();

@@ -39,6 +39,7 @@ use crate::{
     optics::{colour::Encoding, tone::ToneMapping},
     panel::state::{Clipping, PictureArea, Session},
     render::{
+        backdrop::BackdropSystems,
         entities::CurrentScene,
         overrides::Overrides,
         straight::{self, Straight},
@@ -71,7 +72,11 @@ impl Plugin for ClippingPlugin {
             render
                 .insert_resource(Counter(shader))
                 .add_systems(RenderStartup, prepare)
-                .add_systems(Core3d, count.in_set(Core3dSystems::PostProcess).after(tonemapping))
+                // A background that the scene gives is no light, and may be white.
+                .add_systems(
+                    Core3d,
+                    count.in_set(Core3dSystems::PostProcess).after(tonemapping).before(BackdropSystems),
+                )
                 .add_systems(Straight, count.after(straight::draw));
         }
     }

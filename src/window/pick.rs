@@ -108,8 +108,9 @@ fn lamp_at(scene: &Scene, registry: &Registry, ray: Ray3d) -> Option<(usize, f32
         let (entry, emitter, record) = emitter(light, registry, scene.display.encoding)?;
         let distance = emitter.seen(&record, ray.origin, *ray.direction).distance;
         let is_around = distance.is_infinite() && emitter.bounds(&record, ray.origin).is_none();
+        let is_hidden = distance.is_infinite() && scene.display.backdrop().is_some();
         let is_met = light.enabled && entry.is_visible(&light.parameters) && distance > 0.0;
-        (is_met && !is_around).then_some(distance)
+        (is_met && !is_around && !is_hidden).then_some(distance)
     };
     let lamps = scene.lights.iter().enumerate().filter_map(|(i, light)| Some((i, met(light)?)));
     lamps.min_by(|a, b| a.1.total_cmp(&b.1))

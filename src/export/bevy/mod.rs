@@ -3,7 +3,10 @@
 //! `program` writes `main.rs`, `words` converts values and names to Rust.
 
 use super::{Export, ExportError, File, Form, Makes, Progress, Request, lit::Lit, shader::Host};
-use crate::{optics::tone::exposure_factor, text::template::filled};
+use crate::{
+    optics::tone::{ToneMapping, exposure_factor},
+    text::template::filled,
+};
 
 mod program;
 mod words;
@@ -53,5 +56,12 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         bytes.extend(mesh.indices.iter().flat_map(|i| i.to_le_bytes()));
         files.push(File::new(format!("assets/meshes/{}.bin", mesh.name), bytes));
     }
-    Ok(Export { files, notes: lit.notes() })
+    let mut notes = lit.notes();
+    if display.backdrop().is_some() && display.tone_mapping != ToneMapping::None {
+        let tone = display.tone_mapping.id();
+        notes.push(format!(
+            "Bevy maps the background as well: with the tone mapping {tone} its colours are not quite those of the scene."
+        ));
+    }
+    Ok(Export { files, notes })
 }

@@ -22,7 +22,10 @@ use crate::{
         tone::ToneMapping,
     },
     parameter::Parameter,
-    scene::observer::{NEAR, orientation},
+    scene::{
+        Background,
+        observer::{NEAR, orientation},
+    },
     text::template::{chosen, filled},
 };
 
@@ -30,7 +33,9 @@ use crate::{
 pub(super) fn text(lit: &Lit, package: &str) -> String {
     let Request { scene, stem, size: (width, height), .. } = lit.request;
     let observer = &scene.observer;
-    let [r, g, b] = BACKGROUND;
+    let gradient = scene.display.background == Background::Gradient;
+    let [above, below] = scene.display.backdrop().unwrap_or([BACKGROUND; 2]);
+    let codes = |[r, g, b]: [u8; 3]| format!("{r}, {g}, {b}");
     let title = scene.name.as_deref().unwrap_or(stem);
     let mut names = Names::default();
     let meshes: Vec<_> = lit.meshes.iter().map(|m| names.unique(snake(&m.name))).collect();
@@ -41,6 +46,8 @@ pub(super) fn text(lit: &Lit, package: &str) -> String {
         "lamps" => lit.programs.iter().any(|p| p.shader.reads_lamps),
         "srgb" => spawns.contains("srgb("),
         "polygons" => polygons,
+        "gradient" => gradient,
+        "plain" => !gradient,
         _ => lit.programs.iter().any(|p| !p.faces()),
     });
     let numbers = lit.lights.numbers.chunks(4);
@@ -52,7 +59,8 @@ pub(super) fn text(lit: &Lit, package: &str) -> String {
             ("title", &comment(title)),
             ("description", &comment(scene.description.as_deref().unwrap_or_default())),
             ("size", &format!("{width}, {height}")),
-            ("background", &format!("{r}, {g}, {b}")),
+            ("background", &codes(above)),
+            ("background_below", &codes(below)),
             ("position", &vector(observer.position)),
             ("direction", &vector(observer.direction)),
             ("field_of_view", &number(observer.field_of_view)),

@@ -209,6 +209,10 @@ fn view(
         "exposure": scene.display.exposure,
         "encoding": scene.display.encoding.id(),
         "background": lit.background().map(|v| srgb_encode(v.clamp(0.0, 1.0))).to_array(),
+        "gradient": lit.gradient().map(|colours| {
+            let [top, bottom] = colours.map(|[r, g, b]| format!("#{r:02x}{g:02x}{b:02x}"));
+            format!("linear-gradient({top}, {bottom})")
+        }),
     }))
 }
 

@@ -210,6 +210,12 @@ fn differences(request: &Request) -> Vec<String> {
     let shown = |id: &str| scene.shown().any(|object| scene.shading_model_of(object) == id);
     let display = &scene.display;
     let mut notes = vec!["Mitsuba casts shadows, the lab does not; its background is black".to_owned()];
+    if display.backdrop().is_some() {
+        notes.push(format!(
+            "display.background, {}, is left out: in Mitsuba all that is seen is light, and would light the objects",
+            display.background.id()
+        ));
+    }
     if has_extent(scene.shining(), request.registry) {
         notes.push(
             "Mitsuba does not show the lights themselves; nearer ones hide farther ones, and two-sided ones \

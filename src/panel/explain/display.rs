@@ -15,16 +15,20 @@ pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
         step(ui, "light of the pixel", |steps| steps.light);
         let (ev, factor) = (rows::short(display.exposure), rows::short(steps.exposure));
         step(ui, &format!("exposure {ev} EV, × {factor}"), |steps| steps.exposed);
+    } else if explanation.shows_backdrop() {
+        step(ui, "background, as the scene gives it", |steps| steps.exposed);
     } else {
         step(ui, "background, whatever the exposure", |steps| steps.exposed);
     }
-    if display.encoding == Encoding::Off {
+    if display.encoding == Encoding::Off && !explanation.shows_backdrop() {
         let text = "Without encoding, the numbers themselves are to reach the display: clipped to 0–1 and decoded, since the \
                     last step encodes.";
         rows::note(ui, text);
         step(ui, "decoded", |steps| steps.input);
     }
-    step(ui, &format!("tone mapping, {}", display.tone_mapping.name()), |steps| steps.mapped);
+    if !explanation.shows_backdrop() {
+        step(ui, &format!("tone mapping, {}", display.tone_mapping.name()), |steps| steps.mapped);
+    }
     if steps.mapped.is_nan() {
         rows::note(ui, "What is no number is shown as 0.");
     } else if steps.mapped.max_element() > 1.0 || steps.mapped.min_element() < 0.0 {

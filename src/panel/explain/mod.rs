@@ -203,7 +203,8 @@ fn remarks(explained: &Explained, session: &Session, registry: &Registry) -> Vec
         let why = format!("{not} the CPU cannot run this model, so the numbers are not its own: {trouble}.");
         say(Severity::Warning, &why);
     }
-    if explanation.seen.is_none() && session.settings.theme == ThemeChoice::Light {
+    let is_neutral = explanation.seen.is_none() && !explanation.shows_backdrop();
+    if is_neutral && session.settings.theme == ThemeChoice::Light {
         let text = "The window with the light theme has a light surround here; pictures that are rendered have this background.";
         say(Severity::Info, text);
     }
@@ -265,7 +266,7 @@ fn columns(ui: &mut Ui, explained: &Arc<Explained>, context: &mut PanelContext<'
             vec![(0.3, Box::new(surface)), (0.42, Box::new(lights)), end]
         }
         (None, Some(lamp)) => vec![(0.36, Box::new(|ui| seen_light(ui, lamp, &name))), end],
-        (None, None) => vec![(0.36, Box::new(background)), end],
+        (None, None) => vec![(0.36, Box::new(|ui| background(ui, explanation))), end],
     };
     side_by_side(ui, parts);
 }
@@ -359,11 +360,9 @@ fn seen_light(ui: &mut Ui, lamp: &Lamp, name: &dyn Fn(usize) -> String) {
     rows::step(ui, "L, cd/m²", lamp.radiance, None);
 }
 
-fn background(ui: &mut Ui) {
+fn background(ui: &mut Ui, explanation: &Explanation) {
     rows::heading(ui, "Background");
-    let text = "There is no object at the centre of this pixel. The background is not light of the scene: lights and \
-                exposure do not change it, tone mapping does.";
-    ui.add(Label::new(text).wrap());
+    ui.add(Label::new(explanation.about_background()).wrap());
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The properties of the room and of the display.
+//! The properties of the room, of the display and of the background.
 
 use super::{
     part::{Text, number, section, text_field},
@@ -10,7 +10,7 @@ use crate::{
         knob::{self, Caption},
         prelude::*,
     },
-    scene::{Display, Variant},
+    scene::{Background, Display, Field, Variant},
 };
 
 pub(super) fn room(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -39,6 +39,7 @@ pub(super) fn room(ui: &mut Ui, context: &mut PanelContext<'_>) {
         }
     });
     section(ui, "Display", true, |ui| display(ui, context));
+    section(ui, "Background", true, |ui| background(ui, context));
     let objects = s.objects.len();
     let own = s.objects.iter().filter(|o| o.reflection_model.is_some() || o.shading_model.is_some()).count();
     ui.add_space(8.0);
@@ -77,5 +78,38 @@ fn display(ui: &mut Ui, context: &mut PanelContext<'_>) {
         knob::choice_knob(ui, "encoding", &caption, chosen, &names)
     }) {
         context.edit(Edit::set(Part::Display, Display::encoding, Encoding::ALL[i]));
+    }
+}
+
+/// What all views show behind everything.
+fn background(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let d = context.session().scene().display;
+    let options: Vec<_> = Background::ALL.iter().map(|b| [b.name(), "", b.summary()]).collect();
+    let chosen = Background::ALL.iter().position(|b| *b == d.background).unwrap_or(0);
+    let help = "What the picture shows behind everything, in all views. It lights nothing.";
+    let caption = Caption::of(&Display::background, help);
+    if let Some(i) = knob::choice_with_help(ui, "background", &caption, chosen, &options) {
+        context.edit(Edit::set(Part::Display, Display::background, Background::ALL[i]));
+    }
+    let mut colour = |field: Field, label: &str, help: &str, now: [u8; 3], default: [u8; 3]| {
+        let caption = Caption { label, ..Caption::of(&field, help) };
+        let new = knob::colour_knob(ui, field.key, &caption, now, Some(default));
+        context.edits(new.map(|rgb| Edit::set(Part::Display, field, rgb)));
+    };
+    let usual = Display::default();
+    let (top, top_default) = (d.background_colour, usual.background_colour);
+    match d.background {
+        Background::Environment => {}
+        Background::Colour => {
+            let help = "Shown as it is picked: neither exposure nor tone mapping changes it.";
+            colour(Display::background_colour, "colour", help, top, top_default);
+        }
+        Background::Gradient => {
+            let help = "The colour at the upper edge of the picture, shown as it is picked. The codes change evenly towards the lower edge.";
+            colour(Display::background_colour, "colour at the top", help, top, top_default);
+            let help = "The colour at the lower edge of the picture, shown as it is picked.";
+            let (bottom, default) = (d.background_bottom, usual.background_bottom);
+            colour(Display::background_bottom, "colour at the bottom", help, bottom, default);
+        }
     }
 }

@@ -159,9 +159,10 @@ impl Session {
                 Variant::FIELDS.iter().any(|field| field.key == *name && !matches!(field.kind, Kind::Text(_)))
             }
         };
+        let differs = |(key, value): &(Key, Option<Value>)| self.scene().display.value(*key) != *value;
         match edit {
             Edit::Set { part: from @ (Part::Scene | Part::Display | Part::Object(_)), mut values, what }
-                if values.iter().all(overrides) =>
+                if values.iter().all(|set| overrides(set) || from == Part::Display && !differs(set)) =>
             {
                 if let Part::Object(o) = from
                     && let Some(object) = self.document.objects.get(o)
@@ -171,8 +172,7 @@ impl Session {
                     *value = registry.shape(&object.object_type).map(|shape| shape.tessellation(None).into());
                 }
                 if from == Part::Display {
-                    let now = self.scene().display;
-                    values.retain(|(key, value)| now.value(*key) != *value);
+                    values.retain(differs);
                 }
                 Edit::Set { part: Part::Variant(i), values, what }
             }

@@ -53,6 +53,8 @@ pub(in crate::scene) const OTHER_WORDS: &[(&str, &str)] = &[
     ("parent", "based_on"),
     ("compare", "comparison"),
     ("views", "variants"),
+    ("backdrop", "background"),
+    ("background_top", "background_colour"),
 ];
 
 /// The keys of all light types.

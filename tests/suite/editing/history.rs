@@ -9,7 +9,7 @@ use lights_camera_models::{
     panel::state::{Action, Session},
     parameter::{ParameterKind, Value, kind::number::Number},
     registry::Registry,
-    scene::{Display, Light, Object, Observer, Part, Scene, SceneSize, check},
+    scene::{Background, Display, Light, Object, Observer, Part, Scene, SceneSize, check},
 };
 
 use crate::window::panels::Bench;
@@ -21,6 +21,9 @@ fn changes() -> Vec<Action> {
         Action::Edit(Edit::set(Part::Scene, Scene::description, "Nothing much")),
         Action::Edit(Edit::from(SceneSize { width: 12.0, height: 11.0, depth: 10.0 })),
         Action::Edit(Edit::from(Display { exposure: 1.5, ..Display::default() })),
+        Action::Edit(Edit::set(Part::Display, Display::background, Background::Gradient)),
+        Action::Edit(Edit::set(Part::Display, Display::background_colour, [10, 20, 30])),
+        Action::Edit(Edit::set(Part::Display, Display::background_bottom, [200, 210, 220])),
         Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "phong")),
         Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")),
         Action::Edit(Edit::from(Observer { position: Vec3::new(1.0, 2.0, 9.0), ..Observer::default() })),

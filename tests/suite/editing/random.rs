@@ -20,7 +20,7 @@ use lights_camera_models::{
     recovery::{About, Keeper, Settled, Store},
     registry::Registry,
     scene::{
-        Display, Light, Object, Observer, Part, Scene, SceneSize, check,
+        Background, Display, Light, Object, Observer, Part, Scene, SceneSize, check,
         load::{self, Defaults},
         save,
     },
@@ -249,6 +249,8 @@ impl Desk {
                 exposure: self.number(-4.0, 4.0),
                 tone_mapping: [ToneMapping::AgX, ToneMapping::Aces, ToneMapping::default()][self.below(3)],
                 encoding: [Encoding::Off, Encoding::default()][self.below(2)],
+                background: Background::ALL[self.below(Background::ALL.len())],
+                ..Display::default()
             }),
             4 => Edit::set(
                 Part::Scene,

@@ -10,7 +10,7 @@ use lights_camera_models::{
     reference::{self, Settings},
     registry::Registry,
     scene::{
-        Display, Light, Object, Scene,
+        Background, Display, Light, Object, Scene,
         load::{self, Defaults},
     },
     testing::random,
@@ -117,6 +117,7 @@ fn every_number_leads_to_the_code_of_the_picture() {
             let tones = ToneMapping::ALL;
             scene.display.tone_mapping = tones[(random(&mut seed) * 8.0) as usize % 8];
             scene.display.exposure = 4.0 * random(&mut seed) - 2.0;
+            scene.display.background = Background::ALL[(objects + backgrounds) / 12 % Background::ALL.len()];
             let settings = Settings { terms, ..SMALL };
             let picture = reference::render(&scene, &registry, &settings);
             let codes = picture.to_rgb8(&scene.display);
@@ -313,6 +314,23 @@ fn background_hidden_objects_and_darkness_are_said_plainly() {
     assert_eq!(background.code(), reference::BACKGROUND);
     assert!(background.to_text().contains("only background"), "{}", background.to_text());
     assert_eq!(background.to_json()["background"], true);
+    assert!(background.to_text().contains("whatever the exposure"), "{}", background.to_text());
+
+    // A colour of the scene is shown as it is.
+    let display = Display {
+        tone_mapping: ToneMapping::AgX,
+        encoding: Encoding::Off,
+        exposure: 3.0,
+        background: Background::Colour,
+        background_colour: [12, 200, 255],
+        ..Display::default()
+    };
+    let picked = at(&Scene { display, ..Scene::default() }, [0, 0]);
+    assert_eq!(picked.code(), [12, 200, 255]);
+    let text = picked.to_text();
+    assert!(text.contains("only background: the colour that the scene gives"), "{text}");
+    let steps = text.contains("tone mapping, ") || text.contains("without encoding");
+    assert!(text.contains("as the scene gives it") && !steps, "{text}");
 
     let mut hidden = Scene::default();
     hidden.objects[0].visible = false;

@@ -216,7 +216,7 @@ fn the_pointer_is_followed_unless_a_pixel_is_pinned() {
     assert_eq!(pixel, [offset.x as u32, offset.y as u32]);
     assert!(has_vectors(&mut bench));
     point(&mut bench, away);
-    assert!(shown(&bench).seen.is_none() && bench.says("Background") && !has_vectors(&mut bench));
+    assert!(shown(&bench).seen.is_none() && bench.says("only background") && !has_vectors(&mut bench));
     // Once it has left, the last pixel stays explained; its vectors are hidden.
     point(&mut bench, at);
     let panel = bench.find("Copy").expect("there").rect.center();
@@ -429,7 +429,7 @@ fn what_is_no_number_and_what_the_picture_does_not_show_is_said() {
     let at = corner(&bench);
     point(&mut bench, at);
     bench.settle();
-    assert!(bench.says("Background") && !bench.says("light surround"));
+    assert!(bench.says("only background") && !bench.says("light surround"));
     bench.apply(Action::View(ViewChange::Theme(ThemeChoice::Light)));
     assert!(bench.says("light surround"), "the background of the window is not that of the picture");
     bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));

@@ -69,7 +69,7 @@ fn odd() -> String {
 }
 
 /// A softbox, a tube and a dim studio, of which exported projects take 64 samples in each frame. They do not
-/// draw the lamps themselves.
+/// draw the lamps themselves. Behind the objects is a gradient.
 fn extent() -> String {
     let sphere = |x: f32, model: &str, shading: &str| json!({ "type": "sphere", "position": [x, 5, 5], "size": 3, "reflection_model": model, "shading_model": shading });
     format!(
@@ -85,7 +85,8 @@ fn extent() -> String {
                 { "type": "environment", "source": "studio", "intensity": 0.1, "visible": false }
             ],
             "observer": { "position": [5, 5, 9.9], "direction": [0, 0, -1], "field_of_view": 70 },
-            "objects": [sphere(3.0, "disney", "phong"), sphere(7.0, "lambert", "gouraud")]
+            "objects": [sphere(3.0, "disney", "phong"), sphere(7.0, "lambert", "gouraud")],
+            "display": { "background": "gradient", "background_colour": [240, 200, 90], "background_bottom": [20, 60, 160] }
         })
     )
 }
@@ -230,6 +231,38 @@ fn exported_projects_compile_without_warnings_and_draw_the_picture_of_the_lab() 
     assert!(difference(&pictures[0], &pictures[1]) > 50);
     let usage = Command::new(programs.join("exported_default")).arg("--picture").output().expect("it starts");
     assert_eq!(usage.status.code(), Some(2));
+}
+
+#[test]
+fn exported_projects_have_the_background_of_the_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let assets = root().join("assets");
+    let exported = |display: serde_json::Value| {
+        let mut scene: serde_json::Value = serde_json::from_str(&everything()).expect("JSON");
+        scene["display"] = display;
+        fs::write(folder.path().join("scene.json"), scene.to_string()).expect("writable");
+        let arguments = ["export", "scene.json", "--as", "bevy", "-o", "project", "--overwrite", "--assets"];
+        let arguments = [&arguments[..], &[assets.to_str().expect("Unicode")]].concat();
+        let run = lcm_in(folder.path(), &arguments, &[]);
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        let file = folder.path().join("project/src/main.rs");
+        let formatted = Command::new("rustfmt").args(["--edition", "2024", "--check"]).arg(&file).output();
+        let formatted = formatted.expect("rustfmt is part of Rust");
+        assert!(formatted.status.success(), "{}", String::from_utf8_lossy(&formatted.stdout));
+        (fs::read_to_string(file).expect("text"), run.err)
+    };
+    let (grey, said) = exported(json!({}));
+    assert!(grey.contains("const BACKGROUND: Color = Color::srgb_u8(46, 46, 46);"), "{grey}");
+    assert!(!grey.contains("BACKGROUND_BELOW") && !said.contains("background"), "{said}");
+    let (colour, said) = exported(json!({ "background": "colour", "background_colour": [1, 2, 3] }));
+    assert!(colour.contains("const BACKGROUND: Color = Color::srgb_u8(1, 2, 3);"), "{colour}");
+    assert!(!colour.contains("BACKGROUND_BELOW") && !said.contains("background"), "{said}");
+    let (gradient, said) = exported(json!({ "background": "gradient", "tone_mapping": "aces" }));
+    assert!(
+        gradient.contains("const BACKGROUND_BELOW: Color = Color::srgb_u8(184, 184, 184);"),
+        "{gradient}"
+    );
+    assert!(said.contains("Bevy maps the background as well: with the tone mapping aces"), "{said}");
 }
 
 #[test]

@@ -14,7 +14,7 @@ use lights_camera_models::{
     parameter::Value,
     reference::{self, Picture, Settings},
     registry::Registry,
-    scene::{Light, Object, Scene},
+    scene::{Background, Light, Object, Scene},
 };
 
 const WIDTH: u32 = 128;
@@ -45,6 +45,19 @@ fn skipped() -> bool {
         );
     }
     is_missing
+}
+
+#[test]
+fn a_background_is_left_out_by_name() {
+    let mut scene = Scene::default();
+    let about = |scene: &Scene| {
+        let notes = exported(scene).notes;
+        notes.into_iter().find(|note| note.starts_with("display.background"))
+    };
+    assert_eq!(about(&scene), None);
+    scene.display.background = Background::Gradient;
+    let note = about(&scene).expect("it is said");
+    assert!(note.contains("gradient, is left out: in Mitsuba all that is seen is light"), "{note}");
 }
 
 fn exported(scene: &Scene) -> Export {

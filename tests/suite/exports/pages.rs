@@ -353,6 +353,42 @@ fn pages_have_light_with_extent() {
     }
 }
 
+/// The program paints a gradient itself, and on a page the browser does.
+#[test]
+fn pages_have_the_background_of_the_scene() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(WIDTH, HEIGHT);
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, page_file) = (folder.path().join("scene.json"), folder.path().join("page.html"));
+    let text = fs::read_to_string(shipped("default.json")).expect("readable");
+    let mut pictures = Vec::new();
+    for (background, tone_mapping) in [("colour", "none"), ("colour", "aces"), ("gradient", "reinhard")] {
+        let mut json: Value = serde_json::from_str(&text).expect("JSON");
+        json["display"] = json!({
+            "background": background, "background_colour": [250, 200, 40], "background_bottom": [20, 60, 160],
+            "tone_mapping": tone_mapping,
+        });
+        fs::write(&file, json.to_string()).expect("written");
+        let expected = rendered(&file, folder.path(), &[]);
+        fs::write(&page_file, page(&scene(&file)).expect("a page")).expect("written");
+        for renderer in ["webgpu", "webgl"] {
+            browser.open(&page_file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
+            let (shown, _) = browser.look();
+            let off = difference(&shown, &expected);
+            // Browsers may round a gradient by a level.
+            let mean = if background == "gradient" { 1.0 } else { MEAN };
+            assert!(
+                off.mean < mean && off.beyond < BEYOND,
+                "{background} {tone_mapping} {renderer}: {off:?}"
+            );
+        }
+        pictures.push(expected);
+    }
+    // The wrong twin: another background.
+    let off = difference(&pictures[0], &pictures[2]);
+    assert!(off.mean > 1.0 && off.beyond > BEYOND, "{off:?}");
+}
+
 #[test]
 fn a_page_holds_every_view_with_a_switch() {
     let Some(browser) = Browser::start() else { return };

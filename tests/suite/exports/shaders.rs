@@ -123,6 +123,27 @@ fn the_manifest_has_the_numbers_of_the_scene_at_their_offsets() {
 }
 
 #[test]
+fn the_manifest_has_the_background_and_a_gradient_is_left_to_the_program() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let exported = |display: Value| {
+        let mut scene = full_scene();
+        scene["display"] = display;
+        fs::write(folder.path().join("scene.json"), scene.to_string()).expect("writable");
+        let background = export(folder.path(), "scene.json", "wgsl", &[])["background"].clone();
+        let arguments = ["export", "scene.json", "--as", "wgsl", "-o", "wgsl", "--overwrite"];
+        let said = lcm_in(folder.path(), &arguments, &[]).err;
+        (background, said.contains("The background is a gradient, and the shader of an object does not draw"))
+    };
+    assert_eq!(exported(json!({})), (json!([46, 46, 46]), false));
+    // It is as it is picked, whatever the curve.
+    let colour = json!({ "background": "colour", "background_colour": [200, 0, 30], "tone_mapping": "aces" });
+    assert_eq!(exported(colour), (json!([200, 0, 30]), false));
+    let gradient = json!({ "background": "gradient", "background_colour": [200, 0, 30] });
+    let expected = json!({ "top": [200, 0, 30], "bottom": [184, 184, 184] });
+    assert_eq!(exported(gradient), (expected, true));
+}
+
+#[test]
 fn what_shaders_cannot_hold_is_refused_and_leaves_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut scene = full_scene();

@@ -71,7 +71,8 @@ pub fn full_scene() -> Value {
             { "type": "torus", "position": [8, 8, 5], "tube_radius": 0.1 },
             { "type": "superellipsoid", "position": [5, 8, 5], "vertical_exponent": 0.3, "horizontal_exponent": 1.5 }
         ],
-        "display": { "tone_mapping": "aces", "exposure": -1.5, "encoding": "srgb" },
+        "display": { "tone_mapping": "aces", "exposure": -1.5, "encoding": "srgb", "background": "gradient",
+                     "background_colour": [240, 244, 250], "background_bottom": [90, 100, 120] },
         "variants": [
             {
                 "name": "shiny",

@@ -10,7 +10,7 @@ use lights_camera_models::{
         capture::gpu::{GpuRenderer, Output},
         meshes::ShapeMeshes,
     },
-    scene::{Light, Object, Scene},
+    scene::{Background, Light, Object, Scene},
 };
 
 /// Different shapes that intersect, so that each batch has parts in front of and behind those of others.
@@ -59,19 +59,24 @@ fn picture(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<u8> {
 #[test]
 fn a_picture_in_batches_is_the_same_bit_for_bit() {
     let cases = [
-        (1, Output::Display, ToneMapping::None, "phong"),
-        (1, Output::Display, ToneMapping::Aces, "flat"),
-        (4, Output::Display, ToneMapping::None, "flat"),
-        (4, Output::Display, ToneMapping::Reinhard, "phong"),
-        (1, Output::Linear, ToneMapping::None, "gouraud"),
+        (1, Output::Display, ToneMapping::None, "phong", Background::Gradient),
+        (1, Output::Display, ToneMapping::Aces, "flat", Background::Environment),
+        (4, Output::Display, ToneMapping::None, "flat", Background::Environment),
+        (4, Output::Display, ToneMapping::Reinhard, "phong", Background::Gradient),
+        (1, Output::Linear, ToneMapping::None, "gouraud", Background::Environment),
     ];
-    for (samples, output, tone, shading) in cases {
-        let scene = crossing(11, tone, shading);
+    for (samples, output, tone, shading, background) in cases {
+        let crossing = |count| {
+            let mut scene = crossing(count, tone, shading);
+            scene.display.background = background;
+            scene
+        };
+        let scene = crossing(11);
         let mut whole = renderer(samples, output, None);
         let expected = picture(&mut whole, &scene);
         let all = meshes(&mut whole, |meshes| meshes.bytes());
         let mut batched = renderer(samples, output, Some(all / 4));
-        let case = format!("{samples} samples, {output:?}, {tone:?}, {shading}");
+        let case = format!("{samples} samples, {output:?}, {tone:?}, {shading}, {background:?}");
         assert!(picture(&mut batched, &scene) == expected, "{case}");
         let left = meshes(&mut batched, |meshes| meshes.bytes());
         assert!(all > 0 && left == 0, "{case}: batches leave nothing behind");
@@ -79,10 +84,10 @@ fn a_picture_in_batches_is_the_same_bit_for_bit() {
         assert!(batched.read().expect("a picture") == expected, "{case}: a frame later");
 
         // More pictures by the same renderer: in batches again, whole, and in batches once more.
-        let again = crossing(7, tone, shading);
+        let again = crossing(7);
         let expected_again = picture(&mut whole, &again);
         assert!(picture(&mut batched, &again) == expected_again, "{case}: fewer");
-        let few = crossing(2, tone, shading);
+        let few = crossing(2);
         assert!(picture(&mut batched, &few) == picture(&mut whole, &few), "{case}: without batches");
         assert!(picture(&mut batched, &scene) == expected, "{case}: again");
     }

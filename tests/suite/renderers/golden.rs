@@ -5,7 +5,7 @@ use std::{error::Error, fs, io::BufReader, path::Path};
 
 use glam::Vec3;
 use lights_camera_models::{
-    optics::TermSelection,
+    optics::{TermSelection, tone::ToneMapping},
     reference,
     registry::Registry,
     render::capture::{
@@ -13,7 +13,7 @@ use lights_camera_models::{
         png,
     },
     scene::{
-        Scene, check,
+        Background, Display, Scene, check,
         load::{self, Defaults},
         save,
         schema::FILE_NAME,
@@ -85,6 +85,24 @@ fn views() -> Vec<(String, Scene)> {
     all
 }
 
+/// A colour in place of sky and sun, and a gradient behind lamps that are near: both are beyond the tone curve.
+fn backgrounds() -> Vec<(String, Scene)> {
+    let with = |file: &str, background: Background, tone_mapping: ToneMapping| {
+        let (_, mut scene) = scenes().into_iter().find(|(name, _)| name == file).expect("shipped");
+        let (background_colour, background_bottom) = ([250, 244, 226], [70, 96, 140]);
+        scene.display =
+            Display { background, background_colour, background_bottom, tone_mapping, ..scene.display };
+        scene
+    };
+    vec![
+        ("background_colour".to_owned(), with("under_the_sky", Background::Colour, ToneMapping::Aces)),
+        (
+            "background_gradient".to_owned(),
+            with("softbox_and_lamps", Background::Gradient, ToneMapping::KhronosPbrNeutral),
+        ),
+    ]
+}
+
 const SETTINGS: reference::Settings =
     reference::Settings { width: WIDTH, height: HEIGHT, samples: 4, terms: TermSelection::All };
 
@@ -153,7 +171,8 @@ fn assert_golden(pictures: &[(String, Vec<u8>)], renderer: &str, bound: Bound) {
 
 #[test]
 fn shipped_scenes_look_as_accepted_on_the_cpu() {
-    let pictures: Vec<_> = views().into_iter().map(|(name, scene)| (name, on_cpu(&scene))).collect();
+    let scenes = views().into_iter().chain(backgrounds());
+    let pictures: Vec<_> = scenes.map(|(name, scene)| (name, on_cpu(&scene))).collect();
     if updating() {
         fs::create_dir_all(root().join("tests/golden")).expect("the folder can be made");
         for (name, picture) in &pictures {
@@ -182,6 +201,7 @@ fn shipped_scenes_look_as_accepted_on_the_gpu() {
     renderer.set_light_samples(LIGHT_SAMPLES);
     let pictures: Vec<_> = views()
         .into_iter()
+        .chain(backgrounds())
         .map(|(name, scene)| {
             renderer.set_scene(scene);
             renderer.settle().expect("the GPU draws");

@@ -245,7 +245,7 @@ fn lights_are_seen_in_pictures_for_people_and_go_when_they_are_switched_off() {
         (ToneMapping::None, Encoding::Off, -2.0),
         (ToneMapping::Reinhard, Encoding::Srgb, 0.0),
     ] {
-        scene.display = Display { tone_mapping, exposure, encoding };
+        scene.display = Display { tone_mapping, exposure, encoding, ..Display::default() };
         for on in [true, false, true] {
             scene.lights[0].parameters.set("visible", Value::Choice(on.to_string().into()));
             let g = displayed(&mut renderer, &scene);
@@ -293,7 +293,7 @@ fn exposure_tone_mapping_and_gamma_naive_display_agree_to_the_last_bit_but_one()
             cpu(&scene, TermSelection::All)
         };
         for tone_mapping in ToneMapping::ALL {
-            scene.display = Display { tone_mapping, exposure, encoding };
+            scene.display = Display { tone_mapping, exposure, encoding, ..Display::default() };
             let g = displayed(&mut renderer, &scene);
             // Values off by more than 1, and their fraction of all; the silhouette is about 0.3 %.
             let off = |twin: Display| {

@@ -1,5 +1,6 @@
 //! The pictures of both renderers.
 
+mod background;
 mod batches;
 mod channels;
 mod contact_sheet;

@@ -349,6 +349,22 @@ fn every_constraint_has_its_message() {
             json!("linear"),
             "display.encoding is \"linear\", but the encoding must be \"srgb\" or \"off\"",
         ),
+        (
+            "/display/background",
+            json!("white"),
+            "display.background is \"white\", but the background must be \"environment\", \"colour\" or \"gradient\"",
+        ),
+        (
+            "/display/background",
+            json!([255, 255, 255]),
+            "display.background is [255, 255, 255], but the background must be \"environment\", \"colour\" or \"gradient\"",
+        ),
+        (
+            "/display/background_colour",
+            json!([255, 255]),
+            "but the colour of the background must be three whole numbers from 0 to 255",
+        ),
+        ("/display/background_bottom", json!([0, 0, 256]), "display.background_bottom[2] is 256"),
         ("/name", json!(1), "name is 1, but the name must be text"),
         ("/description", json!(["x"]), "the description must be text"),
     ];

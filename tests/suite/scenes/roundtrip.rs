@@ -8,7 +8,7 @@ use lights_camera_models::{
     parameter::{Parameter, ParameterKind, Value, Values, kind::integer::Integer},
     registry::Registry,
     scene::{
-        Comparison, Display, Light, Object, Observer, Scene, SceneSize, Variant, check,
+        Background, Comparison, Display, Light, Object, Observer, Scene, SceneSize, Variant, check,
         comparison::{Channel, Compared, Edge, Layout, Sign},
         load::{self, Defaults},
         variant::MAX_VARIANTS,
@@ -223,6 +223,8 @@ prop_compose! {
         tone_mapping in prop::sample::select(&ToneMapping::ALL[..]),
         encoding in prop::sample::select(&Encoding::ALL[..]),
         exposure in number(-16.0, 16.0),
+        background in prop::sample::select(Background::ALL),
+        (background_colour, background_bottom) in any::<([u8; 3], [u8; 3])>(),
     ) -> Scene {
         Scene {
             name,
@@ -233,7 +235,14 @@ prop_compose! {
             lights,
             observer: Observer { position: eye + Vec3::Y * 4.0, direction, field_of_view },
             objects,
-            display: Display { tone_mapping, exposure, encoding },
+            display: Display {
+                tone_mapping,
+                exposure,
+                encoding,
+                background,
+                background_colour,
+                background_bottom,
+            },
             variants: Vec::new(),
             comparison: Comparison::default(),
         }

@@ -122,6 +122,9 @@ fn broken_scenes_are_invalid_by_the_schema_and_by_the_reader() {
         ("/display/exposure", json!(17)),
         ("/display/tone_mapping", json!("x")),
         ("/display/encoding", json!("x")),
+        ("/display/background", json!("white")),
+        ("/display/background_colour", json!("#ffffff")),
+        ("/display/background_bottom", json!([1, 2])),
         ("/nonsense", json!(1)),
     ] {
         let mut scene = full_scene();

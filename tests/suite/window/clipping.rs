@@ -77,6 +77,9 @@ fn the_window_has_a_sign_only_where_the_picture_clips() {
     assert!(!sign("dim", 10.0, plain));
     assert!(sign("exposed", 10.0, r#"{ "exposure": 3 }"#));
     assert!(!sign("mapped", 60.0, r#"{ "tone_mapping": "reinhard" }"#));
+    // A white background is no light.
+    assert!(!sign("white", 10.0, r#"{ "background": "colour" }"#));
+    assert!(!sign("white_mapped", 10.0, r#"{ "background": "colour", "tone_mapping": "reinhard" }"#));
     // Of two views, the one that clips has the badge.
     let views = |a: i32, b: i32| {
         let variants =

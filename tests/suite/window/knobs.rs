@@ -4,12 +4,12 @@ use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, a
 use lights_camera_models::{
     document::{Edit, Selection},
     panel::{
-        state::{Action, ThemeChoice, ViewChange},
+        state::{Action, CompareCommand, ThemeChoice, ViewChange},
         theme,
     },
     parameter::Value,
     registry::Registry,
-    scene::{Part, Scene},
+    scene::{Background, Display, Part, Scene},
 };
 
 use crate::window::panels::{Bench, Seen};
@@ -194,6 +194,41 @@ fn knobs_and_authors_are_named_in_full() {
             }
         }
     }
+}
+
+#[test]
+fn the_background_has_a_choice_and_its_colours_and_is_undone() {
+    let mut bench = laptop("phong");
+    bench.size = vec2(1280.0, 900.0);
+    bench.apply(Action::Select(Selection::Room));
+    let choose = |bench: &mut Bench, from: &str, to: &str| {
+        bench.click(&format!("background: {from}"));
+        bench.click(to);
+    };
+    let labels = |bench: &Bench| {
+        ["colour in", "colour at the top in", "colour at the bottom in"].map(|label| has_knob(bench, label))
+    };
+    assert_eq!(labels(&bench), [false; 3]);
+    choose(&mut bench, "environment", "colour");
+    assert_eq!(labels(&bench), [true, false, false]);
+    choose(&mut bench, "colour", "gradient");
+    assert_eq!(labels(&bench), [false, true, true]);
+    let bottom = [10, 20, 30];
+    bench.apply(Action::Edit(Edit::set(Part::Display, Display::background_bottom, bottom)));
+    let backdrop = |bench: &Bench| bench.session.document.display.backdrop();
+    assert_eq!(backdrop(&bench), Some([[255; 3], bottom]));
+    for expected in [Some([[255; 3], [184; 3]]), Some([[255; 3]; 2]), None] {
+        bench.apply(Action::Undo);
+        assert_eq!(backdrop(&bench), expected);
+    }
+    assert_eq!(labels(&bench), [false; 3]);
+    // In a view of a comparison it is that of the scene, since views do not have their own.
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Edit(Edit::from(Display { exposure: 1.0, ..Display::default() })));
+    bench.apply(Action::Edit(Edit::set(Part::Display, Display::background, Background::Colour)));
+    let document = &bench.session.document;
+    assert_eq!((document.display.exposure, document.variants[0].exposure), (0.0, Some(1.0)));
+    assert_eq!(document.display.background, Background::Colour);
 }
 
 #[test]

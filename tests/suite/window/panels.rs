@@ -1342,6 +1342,7 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
                 tone_mapping: ToneMapping::KhronosPbrNeutral,
                 exposure: 1.5,
                 encoding: Encoding::Off,
+                ..Display::default()
             };
             b.apply(Action::Edit(Edit::from(display)));
         }),

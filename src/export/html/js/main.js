@@ -100,6 +100,7 @@ class Page {
       this.waiting = false;
       if (!this.renderer) return;
       this.resize();
+      picture.style.backgroundImage = this.scene.gradient ?? '';
       this.renderer.draw(this.scene, this.canvas.width, this.canvas.height);
       document.body.dataset.drawn = Number(document.body.dataset.drawn ?? 0) + 1;
       if (this.pending === 0) document.body.dataset.state = 'ready';

@@ -76,6 +76,8 @@ class Scene {
       models: data.models,
       encoding: data.encoding,
       background: data.background,
+      // Of CSS; null for one colour.
+      gradient: data.gradient,
       lightSamples: data.lightSamples,
       exposure: data.exposure,
       initialExposure: data.exposure,
@@ -101,6 +103,11 @@ class Scene {
     this.mixed = shadings.size > 1;
     if (!this.mixed) [this.shading] = shadings;
     this.view = new Uniform(new Uint8Array(80));
+  }
+
+  // What clears the picture: nothing where the browser paints a gradient behind it.
+  get clear() {
+    return this.gradient ? [0, 0, 0, 0] : [...this.background, 1];
   }
 
   get centre() {

@@ -6,7 +6,7 @@ class WebGl {
 
   // Null where there is no WebGL 2.
   static async create(canvas, samples) {
-    const options = { antialias: false, depth: false, alpha: false, preserveDrawingBuffer: true };
+    const options = { antialias: false, depth: false, alpha: true, preserveDrawingBuffer: true };
     const gl = canvas.getContext('webgl2', options);
     return gl ? new WebGl(gl, canvas, samples) : null;
   }
@@ -128,7 +128,7 @@ class WebGl {
     this.targetsFor(width, height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.sampled.frame);
     gl.viewport(0, 0, width, height);
-    gl.clearColor(...scene.background, 1);
+    gl.clearColor(...scene.clear);
     gl.clearDepth(0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);

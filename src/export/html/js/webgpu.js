@@ -16,7 +16,7 @@ class WebGpu {
     this.context = context;
     this.samples = samples;
     this.format = navigator.gpu.getPreferredCanvasFormat();
-    context.configure({ device, format: this.format, alphaMode: 'opaque' });
+    context.configure({ device, format: this.format, alphaMode: 'premultiplied' });
     this.lost = device.lost.then((info) => (info.reason === 'destroyed' ? new Promise(() => {}) : info));
     this.buffers = new WeakMap();
     this.meshes = new WeakMap();
@@ -131,8 +131,7 @@ class WebGpu {
     this.targetsFor(width, height);
     const encoder = this.device.createCommandEncoder();
     const picture = this.context.getCurrentTexture().createView();
-    const [r, g, b] = scene.background;
-    const colour = { loadOp: 'clear', storeOp: this.colour ? 'discard' : 'store', clearValue: { r, g, b, a: 1 } };
+    const colour = { loadOp: 'clear', storeOp: this.colour ? 'discard' : 'store', clearValue: scene.clear };
     const pass = encoder.beginRenderPass({
       colorAttachments: [
         this.colour ? { view: this.colour.createView(), resolveTarget: picture, ...colour } : { view: picture, ...colour },
