@@ -7,7 +7,7 @@ use crate::{
     optics::TermSelection,
     parameter::Values,
     registry::Registry,
-    scene::{Display, Object, Scene},
+    scene::{Background, Display, Object, Scene},
 };
 
 /// The differences between a view and the scene. A component of the view's camera.
@@ -81,6 +81,10 @@ impl Overrides {
     pub fn seen_through(&self, scene: &Scene) -> Display {
         match &self.channel {
             Some(setting) if !setting.channel.is_picture() => Display::default(),
+            // Numbers have no background.
+            Some(setting) if setting.numbers => {
+                Display { background: Background::default(), ..self.display_of(scene) }
+            }
             _ => self.display_of(scene),
         }
     }
