@@ -66,6 +66,7 @@ pub const OBJECT_KEYS: &[&str] = &[
     "reflection_model",
     "shading_model",
     "material",
+    "repeat",
 ];
 /// Letters used by the window for anything but choosing a shading model.
 pub const WINDOW_KEYS: &[char] = &['C', 'E', 'H', 'R', 'T', 'V', 'X'];

@@ -107,11 +107,13 @@ pub(in crate::scene) fn checked(
     let Parsed { scene, missing, problems, unread, mut unlisted, end, locate } = parsed;
     // Each with the place in whose order it is listed.
     let mut all: Vec<_> = Vec::with_capacity(problems.len());
-    if let Err(what) = read_all(scene.files()) {
+    let (expanded, of_rows) = scene.clone().expanded_as_far(registry);
+    if let Err(what) = read_all(expanded.files()) {
         let problems = vec![Problem::about(Path::root(), what)];
         return Err(LoadError::Invalid { name: name.to_owned(), problems });
     }
-    let mut found = check::scene(&scene, registry);
+    let mut found = check::scene(&expanded, registry);
+    found.extend(of_rows);
     if !unread.is_empty() {
         found.retain(|problem| !problem.path.ancestors().any(|path| unread.contains(&path)));
     }
@@ -130,7 +132,7 @@ pub(in crate::scene) fn checked(
         all.push((located.place, problem));
     }
     if all.is_empty() {
-        return Ok((scene, missing));
+        return Ok((expanded, missing));
     }
     if defaults == Defaults::Refuse {
         // A missing size may be reported already.
