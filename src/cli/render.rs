@@ -25,7 +25,7 @@ use crate::files::Shown as _;
 use crate::{
     caption::{self, Sampled},
     channel::{DebugChannel, Legend, Setting},
-    compare::{Cell, Shown, compose, with_legends},
+    compare::{Cell, Shown, compose, with_legends, with_row_labels},
     explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
@@ -456,6 +456,8 @@ impl Painter {
             }
             None => rgb8,
         };
+        let views = job.plan.parts.iter().map(|part| (part.cell, &part.scene));
+        let rgb8 = with_row_labels(rgb8, job.size(), views, registry);
         let renderer = if gpu { "GPU" } else { "CPU" };
         let about = About::scene(&pictured(job), registry)
             .with("Source", job.source.name())

@@ -13,10 +13,11 @@ use super::{
     error::{Path, Problem, Segment},
     field::Kind,
     part::{Fields, Key, Structure as _},
+    range::significant,
     repeat::{Along, MAX_VARIED, Scale},
 };
 use crate::{
-    parameter::{Parameter, Value},
+    parameter::{Parameter, Value, limits::Limits},
     registry::Registry,
     text::{did_you_mean, plural, quoted},
 };
@@ -102,6 +103,32 @@ impl Variable {
             Self::Field(_) => None,
             Self::Shape(p) | Self::Material(p) => p.kind.is_number().then(|| p.kind.of_numbers([v; 3])),
         }
+    }
+
+    /// The legal numbers, if it is a number.
+    #[must_use]
+    pub fn limits(self) -> Option<Limits> {
+        self.of_number(0.0)?;
+        match self {
+            Self::Field(field) => Some(field.limits()),
+            Self::Shape(p) | Self::Material(p) => p.kind.limits(),
+        }
+    }
+
+    /// A number that varies from near one end of its range to near the other; `None` if it is not a number, or its range
+    /// has no ends.
+    #[must_use]
+    pub fn over_its_range(self) -> Option<Varied> {
+        let limits = self.limits()?;
+        let (low, high) = (limits.slider_min, limits.slider_max.min(limits.top()));
+        let at = |part: f64| {
+            let wanted = significant(low + part * (high - low), 2);
+            if limits.whole { wanted.round() } else { wanted }
+        };
+        let ends = [at(0.1), at(0.9)];
+        let usable = ends.iter().all(|end| limits.allows(*end) && end.abs() < 1e6);
+        let [from, to] = ends.map(|end| Some(end as f32));
+        usable.then(|| Varied { parameter: self.path().into_owned(), from, to, ..Varied::default() })
     }
 
     /// The value that an object has, given or default, if it has one.
@@ -437,6 +464,29 @@ impl Scene {
             variants: self.variants.clone(),
             ..*self
         })
+    }
+
+    /// The labels of objects in rows that have labels: the values that vary, in words.
+    #[must_use]
+    pub fn row_labels(&self, registry: &Registry) -> Vec<(usize, String)> {
+        let (mut labels, mut i) = (Vec::new(), 0);
+        while i < self.objects.len() {
+            let Some(row) = self.row(i) else {
+                i += 1;
+                continue;
+            };
+            if row.repeat.labels {
+                let variables: Vec<_> = row.variables(registry).collect();
+                labels.extend(row.range().map(|copy| {
+                    let object = &self.objects[copy];
+                    let said = |v: &Variable| Some(v.said(&v.of_object(object)?, registry));
+                    (copy, variables.iter().filter_map(said).collect::<Vec<_>>().join(", "))
+                }));
+            }
+            i += row.count;
+        }
+        labels.retain(|(_, text)| !text.is_empty());
+        labels
     }
 
     /// The index in a file of an object, and the number of its copy if it is in a row.

@@ -11,4 +11,5 @@ mod hot_swap;
 mod memory;
 mod reference;
 pub(crate) mod reload;
+mod rows;
 mod tangents;
