@@ -127,11 +127,13 @@ impl Document {
         let known = self.labels.objects[range.clone()].to_vec();
         let mut labels: Vec<Label> = Vec::with_capacity(count);
         for (k, object) in objects.iter().enumerate() {
-            labels.push(match (known.get(k), self.scene.objects[range.clone()].get(k)) {
-                (Some(label), Some(old)) if old.object_type == object.object_type => *label,
-                (Some(label), _) => Label { number: 0, ..*label },
-                (None, _) => self.next_label(),
-            });
+            let old = self.scene.objects[range.clone()].get(k);
+            let alike = old.is_some_and(|old| old.object_type == object.object_type);
+            let known = known.get(k).copied();
+            labels.push(known.map_or_else(
+                || self.next_label(),
+                |label| if alike { label } else { Label { number: 0, ..label } },
+            ));
         }
         self.labels.objects.splice(range.clone(), labels);
         let gone: Vec<_> = self.scene.objects.splice(range, objects).collect();

@@ -242,7 +242,7 @@ pub(super) fn read_place(transform: &Transform, known: bool, object: &mut Object
 
 /// Lets an object that changed alone leave its row.
 fn leave_row(object: &mut Object, known: Option<&Object>) {
-    if known.is_some_and(|known| object != known) {
+    if known.is_some_and(|known| *object != *known) {
         object.repeat = Repetition::None;
     }
 }

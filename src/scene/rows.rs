@@ -57,9 +57,11 @@ impl Variable {
             return Ok(found);
         }
         let known: Vec<_> = Self::all(object_type, registry).map(|one| (one.path(), one)).collect();
-        let spellings = known
-            .iter()
-            .flat_map(|(path, one)| [&**path, one.key().name(), one.label()].map(|s| (s, &**path)));
+        // A path is nearer than a name, and a name than what it is called.
+        let paths = known.iter().map(|(path, _)| (&**path, &**path));
+        let names = known.iter().map(|(path, one)| (one.key().name(), &**path));
+        let labels = known.iter().map(|(path, one)| (one.label(), &**path));
+        let spellings = paths.chain(names).chain(labels);
         let rule = "it must be the path of a value of the object that can differ, such as \"size\" or \
                     \"material.roughness\"";
         Err(rule.to_owned() + &did_you_mean(&path.replace("color", "colour"), spellings))

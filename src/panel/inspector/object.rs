@@ -24,7 +24,11 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
     let Some(object) = session.scene().objects.get(i) else { return };
     header(ui, Selection::Object(i), object.name.as_deref(), context);
-    row::which(ui, i, context);
+    let in_row = session.document.row(i).is_some();
+    if in_row {
+        row::which(ui, i, context);
+        section(ui, "Row", true, |ui| row::row(ui, i, context));
+    }
     let model = registry.model(session.scene().model_of(object));
     let shown = Shown { session, registry, part: Part::Object(i), object, model };
     shown.files(ui, i, context);
@@ -33,7 +37,9 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     section(ui, "Shape and position", true, |ui| {
         linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, context));
     });
-    section(ui, "Row", session.document.row(i).is_some(), |ui| row::row(ui, i, context));
+    if !in_row {
+        section(ui, "Row", false, |ui| row::row(ui, i, context));
+    }
 }
 
 /// The object that is shown, and its surroundings.

@@ -76,7 +76,11 @@ impl Shown<'_> {
 
     /// The edit that changes a varied value.
     fn varying(&self, what: &'static str, j: usize, change: impl FnOnce(&mut Varied)) -> Edit {
-        self.with(what, |row| row.vary.get_mut(j).into_iter().for_each(change))
+        self.with(what, |row| {
+            if let Some(varied) = row.vary.get_mut(j) {
+                change(varied);
+            }
+        })
     }
 
     /// The numbers of columns and rows.

@@ -264,7 +264,7 @@ fn the_properties_say_which_copy_is_shown_and_edit_the_row() {
     bench.settle();
     assert!(bench.session.document.row(3).is_none());
     assert!(!bench.says("Copy 3 of 5"));
-    bench.click("Make a row…");
+    bench.apply(Action::MakeRow(Selection::Object(3)));
     bench.settle();
     assert_eq!(bench.session.document.objects.len(), 11);
 }
