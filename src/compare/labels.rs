@@ -4,9 +4,10 @@ use glam::Vec3;
 
 use super::{
     Cell,
-    canvas::{Canvas, DARK, Rect},
+    canvas::{BRIGHT, Canvas, DARK, Rect},
 };
 use crate::{
+    caption::{Part, draw_line, line_width, row_labels},
     lettering::Lettering,
     registry::Registry,
     scene::{
@@ -45,17 +46,17 @@ pub fn with_row_labels<'s>(
 }
 
 fn draw(canvas: &mut Canvas, area: Rect, scene: &Scene, registry: &Registry) {
-    let labels = scene.row_labels(registry);
-    let seen = |(i, text): (usize, String)| Some((below(scene, i, area)?, text));
+    let labels = row_labels(scene, registry);
+    let seen = |(i, parts): (usize, Vec<Part>)| Some((below(scene, i, area)?, parts));
     let labels: Vec<_> = labels.into_iter().filter_map(seen).take(MOST).collect();
     let (style, usual) = (Lettering::Regular, TEXT * canvas.scale());
-    let widest = labels.iter().map(|(_, text)| style.width(usual, text)).max().unwrap_or(0);
+    let widest = labels.iter().map(|(_, parts)| line_width(parts, usual)).max().unwrap_or(0);
     let room = apart(&labels, style.height(usual)).unwrap_or(f32::INFINITY);
     // Padding of a third of a line at both sides.
     let px = (usual * room / (widest as f32 + 0.7 * usual)).clamp(SMALLEST.min(usual), usual);
-    for ([x, y], text) in &labels {
+    for ([x, y], parts) in &labels {
         let pad = (0.25 * px).round() as u32;
-        let [width, height] = [style.width(px, text) + 2 * pad, style.height(px)];
+        let [width, height] = [line_width(parts, px) + 2 * pad, style.height(px)];
         let [left, top, across, down] = area;
         let at = |middle: f32, extent: u32, [from, room]: [u32; 2]| {
             (middle - 0.5 * extent as f32).round().max(0.0).min(room.saturating_sub(extent) as f32) as u32
@@ -68,7 +69,8 @@ fn draw(canvas: &mut Canvas, area: Rect, scene: &Scene, registry: &Registry) {
             height,
         ];
         canvas.fill(plate, DARK, PLATE);
-        canvas.text(style, [plate[0] + pad, plate[1]], px, text);
+        let at = [plate[0] + pad, plate[1]].map(|v| i32::try_from(v).unwrap_or(i32::MAX));
+        draw_line(parts, &mut canvas.rgb8, canvas.size, at, px, BRIGHT);
     }
 }
 
@@ -88,7 +90,7 @@ fn below(scene: &Scene, i: usize, [_, _, width, height]: Rect) -> Option<[f32; 2
 }
 
 /// The smallest distance between neighbours in one line of text, pixels.
-fn apart(labels: &[([f32; 2], String)], line: u32) -> Option<f32> {
+fn apart(labels: &[([f32; 2], Vec<Part>)], line: u32) -> Option<f32> {
     let each = labels.iter().enumerate().flat_map(|(i, (a, _))| labels[..i].iter().map(move |(b, _)| (a, b)));
     let beside = each.filter(|(a, b)| (a[1] - b[1]).abs() < line as f32).map(|(a, b)| (a[0] - b[0]).abs());
     beside.min_by(f32::total_cmp)

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::{caption, marks::Lens, prelude::*, state::Labels};
+use crate::caption::{line, row_labels};
 
 /// Maximum number of labels; more would hide the picture.
 const MOST: usize = 16;
@@ -22,7 +23,7 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, regist
     };
     let mut places = if on { of_objects(ui, rect, view, session, registry) } else { Vec::new() };
     let in_view: &Scene = if view == session.active() { session.scene() } else { &session.document };
-    let of_rows = in_view.row_labels(registry);
+    let of_rows = row_labels(in_view, registry);
     if on || of_rows.is_empty() {
         return places;
     }
@@ -30,8 +31,9 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, regist
     let size = TextStyle::Body.resolve(ui.style()).size;
     let said: HashMap<_, _> = of_rows.into_iter().collect();
     for (i, below) in nearest(rect, session, |i| said.contains_key(&i), MOST_OF_ROWS) {
-        let Some(text) = said.get(&i) else { continue };
-        let line = theme::elided(ui, text, FontId::proportional(0.9 * size), palette.text, rect.width());
+        let Some(parts) = said.get(&i) else { continue };
+        let line =
+            theme::elided(ui, &line(parts), FontId::proportional(0.9 * size), palette.text, rect.width());
         places.extend(plate(ui, rect, below, [line], &places));
     }
     places

@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::{
     Field, Repeat,
     field::{Ids, Kind},
-    part::{Fields, Held, Key, part},
+    part::{self, Fields, Key, part},
 };
 use crate::{
     parameter::{ABOVE_ZERO, Value, Values},
@@ -81,7 +81,7 @@ impl PartialEq for Repetition {
     }
 }
 
-impl Held for Repetition {
+impl part::Held for Repetition {
     /// That of an entry; a copy alone is written as a single object.
     fn parts(&self) -> Vec<&dyn Fields> {
         match self {

@@ -142,21 +142,6 @@ impl Variable {
             Self::Material(p) => Some(object.material.get(p)),
         }
     }
-
-    /// The value in words, for labels in pictures: "roughness 0.3".
-    #[must_use]
-    pub fn said(self, value: &Value, registry: &Registry) -> String {
-        match self {
-            Self::Field(field) => match field.kind {
-                Kind::Id(_) => field.shown(value, registry),
-                _ => format!("{} {}", field.label(), field.shown(value, registry)),
-            },
-            Self::Shape(p) | Self::Material(p) => {
-                let shown = p.kind.caption(p.label, value).unwrap_or_else(|| value.to_string());
-                format!("{} {shown} {}", p.label, p.unit).trim_end().to_owned()
-            }
-        }
-    }
 }
 
 /// A number of 32 bits as people write it, so that steps between 0.1 and 0.9 end in 0.3, 0.5 and 0.7.
@@ -466,29 +451,6 @@ impl Scene {
             variants: self.variants.clone(),
             ..*self
         })
-    }
-
-    /// The labels of objects in rows that have labels: the values that vary, in words.
-    #[must_use]
-    pub fn row_labels(&self, registry: &Registry) -> Vec<(usize, String)> {
-        let (mut labels, mut i) = (Vec::new(), 0);
-        while i < self.objects.len() {
-            let Some(row) = self.row(i) else {
-                i += 1;
-                continue;
-            };
-            if row.repeat.labels {
-                let variables: Vec<_> = row.variables(registry).collect();
-                labels.extend(row.range().map(|copy| {
-                    let object = &self.objects[copy];
-                    let said = |v: &Variable| Some(v.said(&v.of_object(object)?, registry));
-                    (copy, variables.iter().filter_map(said).collect::<Vec<_>>().join(", "))
-                }));
-            }
-            i += row.count;
-        }
-        labels.retain(|(_, text)| !text.is_empty());
-        labels
     }
 
     /// The index in a file of an object, and the number of its copy if it is in a row.

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use lights_camera_models::{
+    caption::{line, row_labels},
     parameter::Value,
     registry::Registry,
     scene::{Object, Repetition, Scene, check, rows::copies},
@@ -282,8 +283,9 @@ fn labels_say_the_values_that_vary() {
             { "parameter": "material.roughness", "from": 0.1, "to": 0.9 },
             { "parameter": "reflection_model", "values": ["ward", "phong"] }] }))
     };
-    assert_eq!(read(&text(false)).row_labels(&registry), []);
-    let labels = read(&text(true)).row_labels(&registry);
-    let texts: Vec<_> = labels.iter().map(|(i, text)| (*i, text.as_str())).collect();
-    assert_eq!(texts, [(0, "roughness 0.1, Ward"), (1, "roughness 0.9, Phong")]);
+    assert_eq!(row_labels(&read(&text(false)), &registry), []);
+    let labels = row_labels(&read(&text(true)), &registry);
+    let texts: Vec<_> = labels.iter().map(|(i, parts)| (*i, line(parts))).collect();
+    let expected = [(0, "r 0.1 · Ward".to_owned()), (1, "r 0.9 · Phong".to_owned())];
+    assert_eq!(texts, expected);
 }
