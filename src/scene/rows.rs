@@ -22,6 +22,9 @@ use crate::{
     text::{did_you_mean, plural, quoted},
 };
 
+/// Maximum number of problems of rows in a file; more would take too long, since each names the nearest path.
+const MOST_PROBLEMS: usize = 200;
+
 /// A value of an object that may differ from copy to copy.
 #[derive(Clone, Copy, Debug)]
 pub enum Variable {
@@ -48,12 +51,22 @@ impl Variable {
         fields.chain(shape.iter().map(Self::Shape)).chain(registry.material_parameters().map(Self::Material))
     }
 
+    /// The one with a path within the object, if there is one.
+    #[must_use]
+    pub fn with_path(path: &str, object_type: &str, registry: &Registry) -> Option<Self> {
+        let of_material = path.strip_prefix(Object::material.key).and_then(|rest| rest.strip_prefix('.'));
+        Self::all(object_type, registry).find(|known| match known {
+            Self::Material(p) => of_material == Some(p.name),
+            known => known.key().name() == path,
+        })
+    }
+
     /// The one with a path within the object: `material.roughness`.
     ///
     /// # Errors
     /// Returns the rule, with the nearest path.
     pub fn of(path: &str, object_type: &str, registry: &Registry) -> Result<Self, String> {
-        if let Some(found) = Self::all(object_type, registry).find(|known| known.path() == path) {
+        if let Some(found) = Self::with_path(path, object_type, registry) {
             return Ok(found);
         }
         let known: Vec<_> = Self::all(object_type, registry).map(|one| (one.path(), one)).collect();
@@ -355,7 +368,8 @@ impl Row<'_> {
 
     /// The values that vary.
     pub fn variables(&self, registry: &Registry) -> impl Iterator<Item = Variable> {
-        let known = |varied: &Varied| Variable::of(&varied.parameter, &self.entry.object_type, registry).ok();
+        let known =
+            |varied: &Varied| Variable::with_path(&varied.parameter, &self.entry.object_type, registry);
         self.repeat.vary.iter().filter_map(known)
     }
 }
@@ -399,6 +413,10 @@ impl Scene {
                 objects.push(entry);
                 continue;
             };
+            if problems.len() >= MOST_PROBLEMS {
+                objects.push(Object { repeat: Repetition::None, ..entry });
+                continue;
+            }
             // A hostile file asks for millions.
             let made = room(repeat, objects.len()).map_err(|problem| vec![problem]);
             match made.and_then(|()| copies(&entry, registry)) {

@@ -215,7 +215,9 @@ impl Reader<'_> {
             return varied;
         };
         // An unknown path is reported by the checks.
-        let Ok(variable) = Variable::of(&varied.parameter, object_type, self.registry) else { return varied };
+        let Some(variable) = Variable::with_path(&varied.parameter, object_type, self.registry) else {
+            return varied;
+        };
         let (count, shape) = (list.len(), self.registry.shape(object_type));
         let read = |value| match variable {
             Variable::Field(field) => self.field(value, field, shape),
