@@ -3,7 +3,10 @@
 use glam::Vec3;
 use lights_camera_models::{
     document::{Document, Edit, Selection},
-    panel::state::{Action, Session},
+    panel::{
+        command::all,
+        state::{Action, Session},
+    },
     parameter::Value,
     registry::Registry,
     scene::{Light, Object, Part, Repeat, Repetition, Scene, SceneSize, Varied, check, rows::Row},
@@ -252,19 +255,38 @@ fn every_model_and_object_type_makes_a_legal_row() {
 
 #[test]
 fn the_properties_say_which_copy_is_shown_and_edit_the_row() {
+    let shows = |bench: &mut Bench, words: &str| bench.texts().iter().any(|text| text.contains(words));
     let mut bench = Bench::new(Session::new(scene()));
     bench.apply(Action::Select(Selection::Object(3)));
     bench.settle();
-    assert!(bench.says("Copy 3 of 5 of ball"), "{:?}", bench.words());
+    assert!(shows(&mut bench, "Copy 3 of 5 of ball"), "{:?}", bench.texts());
     bench.type_into("columns", "4");
     assert_eq!(bench.session.document.objects.len(), 6, "{:?}", bench.session.messages);
     bench.apply(Action::Undo);
-    bench.settle();
-    bench.click("Make single objects");
+    bench.apply(Action::Edit(Edit::Row { object: 3, entry: None, what: "Single objects" }));
     bench.settle();
     assert!(bench.session.document.row(3).is_none());
-    assert!(!bench.says("Copy 3 of 5"));
+    assert!(!shows(&mut bench, "Copy 3 of"), "{:?}", bench.texts());
     bench.apply(Action::MakeRow(Selection::Object(3)));
     bench.settle();
-    assert_eq!(bench.session.document.objects.len(), 11);
+    assert_eq!(bench.session.document.objects.len(), 11, "{:?}", bench.session.messages);
+}
+
+#[test]
+fn the_commands_are_there_when_they_can_be_used() {
+    let registry = Registry::builtin();
+    let why_not = |session: &Session, id: &str| {
+        let all = all(session, &registry, false);
+        let found = all.commands().into_iter().find(|(_, command)| command.id == id);
+        found.expect("it is declared").1.why_not.clone().map(std::borrow::Cow::into_owned)
+    };
+    let mut session = Session::new(scene());
+    session.apply(Action::Select(Selection::Room), &registry);
+    assert_eq!(why_not(&session, "row").as_deref(), Some("No object is selected"));
+    session.apply(Action::Select(Selection::Object(0)), &registry);
+    assert_eq!(why_not(&session, "row"), None);
+    assert_eq!(why_not(&session, "single_objects").as_deref(), Some("The object is in no row"));
+    session.apply(Action::Select(Selection::Object(2)), &registry);
+    assert_eq!(why_not(&session, "row").as_deref(), Some("The object is in a row already"));
+    assert_eq!(why_not(&session, "single_objects"), None);
 }
