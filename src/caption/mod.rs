@@ -2,6 +2,7 @@
 
 mod heading;
 mod part;
+mod rows;
 mod said;
 mod sampled;
 mod strip;
@@ -9,6 +10,7 @@ mod words;
 
 pub use heading::{header, header_parts, view_parts};
 pub use part::{Part, line};
+pub use rows::row_labels;
 pub use sampled::{Sampled, sampled};
 pub use strip::{draw, draw_line, line_width, type_size};
 pub(crate) use words::{display, single, terms_alone, value};

@@ -26,7 +26,7 @@ use crate::files::Shown as _;
 use crate::{
     caption::{self, Sampled},
     channel::{DebugChannel, Layer, LayerKind, Legend, Setting, layers, too_large},
-    compare::{Cell, Shown, compose, with_legends},
+    compare::{Cell, Shown, compose, with_legends, with_row_labels},
     explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
@@ -545,6 +545,8 @@ impl Painter {
             }
             None => rgb8,
         };
+        let views = job.plan.parts.iter().map(|part| (part.cell, &part.scene));
+        let rgb8 = with_row_labels(rgb8, job.size(), views, registry);
         let about = job.about(renderer_name(gpu), &light, registry);
         let (rgb8, size) = captioned(job, registry, rgb8, &rests_on);
         outputs::write_picture(job.file, size, &rgb8, &about)?;

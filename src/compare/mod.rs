@@ -21,6 +21,7 @@
 mod canvas;
 mod channel;
 mod colours;
+mod labels;
 mod layout;
 mod legend;
 mod map;
@@ -29,6 +30,7 @@ mod pair;
 mod shown;
 
 pub use channel::with_legends;
+pub use labels::with_row_labels;
 pub use layout::{Cell, cells, compose, edge, size_around};
 pub use legend::{fitting_amplification, short};
 pub use metric::{Measured, Metric, Metrics, PIXELS_PER_DEGREE};

@@ -33,6 +33,15 @@ pub enum Edit {
         /// What was changed, for the name of the step, if not one field: "Measured material".
         what: Option<&'static str>,
     },
+    /// An object, or the row to which it belongs, becomes a row, or single objects.
+    Row {
+        /// The index of the object, or of any copy.
+        object: usize,
+        /// The object with its row as in a file; `None` for single objects like the present copies.
+        entry: Option<Box<Object>>,
+        /// What was changed, for the name of the step: "Number".
+        what: &'static str,
+    },
     /// All variants, if some are added, removed or reordered, together with the resulting comparison of the
     /// views.
     Views {
@@ -88,6 +97,7 @@ impl Edit {
     pub fn values(&self) -> (Part, &[(Key, Option<Value>)]) {
         match self {
             Self::Set { part, values, .. } => (*part, values),
+            Self::Row { object, .. } => (Part::Object(*object), &[]),
             Self::Views { .. } => (Part::Comparison, &[]),
         }
     }
@@ -103,7 +113,7 @@ impl Edit {
 }
 
 /// Replaces a light or an object. True if its name changes.
-fn replace<T: Fields>(part: &mut T, new: T) -> bool {
+pub(super) fn replace<T: Fields>(part: &mut T, new: T) -> bool {
     let (name, old) = (Key::from(Light::name), mem::replace(part, new));
     old.value(name) != part.value(name)
 }
@@ -145,6 +155,7 @@ impl Document {
         let (part, extent) = match &change {
             Change::Light(i, _) => (Selection::Light(*i), Extent::Light(*i)),
             Change::Object(i, _) => (Selection::Object(*i), Extent::Object(*i)),
+            Change::Row(..) => return self.make_row(change, name, selection, registry),
             Change::Rest(rest) => {
                 return self.change(name, Extent::Rest, selection, |scene| Extent::Rest.copy(rest, scene));
             }
@@ -153,7 +164,7 @@ impl Document {
             let renamed = match change {
                 Change::Light(i, light) => replace(&mut document.scene.lights[i], light),
                 Change::Object(i, object) => replace(&mut document.scene.objects[i], object),
-                Change::Rest(_) => false,
+                Change::Rest(_) | Change::Row(..) => false,
             };
             if renamed {
                 document.number_again(part, registry);
@@ -163,7 +174,15 @@ impl Document {
 
     /// The change that an edit makes.
     pub(super) fn changed(&self, edit: &Edit, registry: &Registry) -> Result<Change, String> {
+        if let Edit::Row { object, entry, .. } = edit {
+            return self.row_from(*object, entry.as_deref(), registry);
+        }
         let (part, values) = edit.values();
+        if let Part::Object(i) = part
+            && let Some(row) = self.scene.row(i)
+        {
+            return self.row_with(row, i, values, registry);
+        }
         let values = values.iter().cloned();
         let none = |what: &str| format!("There is no such {what}.");
         let mut good = true;
@@ -217,6 +236,9 @@ impl Document {
         let (what, (part, values)) = match edit {
             Edit::Set { what, .. } => (*what, edit.values()),
             Edit::Views { step, .. } => return (*step).to_owned(),
+            Edit::Row { object, what, .. } => {
+                return format!("{what} of {}", self.name_to_edit(*object, registry));
+            }
         };
         let Some(fields) = self.scene.part(part) else { return String::new() };
         let differs = |(key, value): &&(Key, Option<Value>)| fields.value(*key) != *value;
@@ -228,7 +250,10 @@ impl Document {
         };
         let label = what.or(field.map(Field::label)).or_else(|| parameter().map(|p| p.label));
         let label = capitalised(label.unwrap_or(key.name()));
-        let name = self.name_of_part(part, registry);
+        let name = match part {
+            Part::Object(i) => self.name_to_edit(i, registry),
+            part => self.name_of_part(part, registry),
+        };
         match (part, field.map(|field| field.kind), value) {
             (_, Some(Kind::Flag(words)), Some(on)) => {
                 format!("{} {name}", words[usize::from(*on == Value::flag(true))])
@@ -320,17 +345,22 @@ impl Document {
         self.came_or_went(patch, name, selection);
     }
 
-    /// Removes a light or an object.
+    /// Removes a light, an object, or the row to which it belongs.
     pub fn remove(&mut self, part: Selection, registry: &Registry) {
-        let name = self.name_of(part, registry);
+        let name = match part {
+            Selection::Object(i) => self.name_to_edit(i, registry),
+            part => self.name_of(part, registry),
+        };
         let patch = match part {
             Selection::Light(i) if i < self.scene.lights.len() => {
                 let gone = (self.labels.lights.remove(i), self.scene.lights.remove(i));
                 Patch::of_lights(i, vec![gone], Vec::new())
             }
             Selection::Object(i) if i < self.scene.objects.len() => {
-                let gone = (self.labels.objects.remove(i), self.scene.objects.remove(i));
-                Patch::of_objects(i, vec![gone], Vec::new())
+                let range = self.scene.row(i).map_or(i..i + 1, |row| row.range());
+                let labels = self.labels.objects.drain(range.clone());
+                let gone = labels.zip(self.scene.objects.drain(range.clone())).collect();
+                Patch::of_objects(range.start, gone, Vec::new())
             }
             _ => return,
         };

@@ -20,6 +20,7 @@ mod history;
 mod index;
 mod matching;
 pub mod names;
+mod rows;
 mod rules;
 mod submit;
 

@@ -118,7 +118,9 @@ impl Document {
             }
             Extent::Rest | Extent::All => return None,
         };
-        (own.is_none() && number != read).then(|| self.name_of(part, registry))
+        // Copies have that of their entry.
+        let is_copy = || matches!(part, Selection::Object(i) if self.row(i).is_some());
+        (own.is_none() && number != read && !is_copy()).then(|| self.name_of(part, registry))
     }
 
     /// All names that exist only in the file.

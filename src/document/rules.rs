@@ -31,6 +31,12 @@ impl Document {
     pub(super) fn check(&self, edit: &Edit, registry: &Registry) -> Result<Change, String> {
         let change = self.changed(edit, registry)?;
         let (part, values) = edit.values();
+        if let Change::Row(places, _) = &change {
+            let problem = check::change(&self.scene, part, &change, registry).into_iter().next();
+            return problem
+                .map_or(Ok(()), |problem| Err(self.refused_copy(places, &problem, registry)))
+                .map(|()| change);
+        }
         for problem in check::change(&self.scene, part, &change, registry) {
             let key = values.iter().map(|(key, _)| *key).find(|key| key.within(part) == problem.path);
             // Other values of a part follow when a type or a model is chosen.
@@ -55,6 +61,7 @@ impl Document {
             Change::Light(_, light) => light,
             Change::Object(_, object) => object,
             Change::Rest(rest) => rest.part(part)?,
+            Change::Row(..) => return None,
         };
         match (part, key) {
             (Part::Size, _) => {

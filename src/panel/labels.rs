@@ -1,25 +1,47 @@
 //! Labels in the picture: beside each object its name, reflection model and most telling values.
 
+use std::collections::HashMap;
+
 use super::{caption, marks::Lens, prelude::*, state::Labels};
+use crate::caption::{line, row_labels};
 
 /// Maximum number of labels; more would hide the picture.
 const MOST: usize = 16;
+/// Maximum number of labels of rows, which have one short line.
+const MOST_OF_ROWS: usize = 100;
 /// Minimum size of a labelled object, in points.
 const SMALLEST: f32 = 24.0;
 /// Number of values in a label.
 const VALUES: usize = 3;
 
-/// Paints the labels of the objects in a view. Returns their rectangles.
+/// Paints the labels of the objects in a view, and those of rows that have labels. Returns their rectangles.
 pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Registry) -> Vec<Rect> {
     let on = match session.view.labels {
         Labels::Off => false,
         Labels::On => true,
         Labels::Presentation => session.view.presenting,
     };
-    if !on {
-        return Vec::new();
+    let mut places = if on { of_objects(ui, rect, view, session, registry) } else { Vec::new() };
+    let in_view: &Scene = if view == session.active() { session.scene() } else { &session.document };
+    let of_rows = row_labels(in_view, registry);
+    if on || of_rows.is_empty() {
+        return places;
     }
-    let found = nearest(rect, session);
+    let palette = Palette::here(ui);
+    let size = TextStyle::Body.resolve(ui.style()).size;
+    let said: HashMap<_, _> = of_rows.into_iter().collect();
+    for (i, below) in nearest(rect, session, |i| said.contains_key(&i), MOST_OF_ROWS) {
+        let Some(parts) = said.get(&i) else { continue };
+        let line =
+            theme::elided(ui, &line(parts), FontId::proportional(0.9 * size), palette.text, rect.width());
+        places.extend(plate(ui, rect, below, [line], &places));
+    }
+    places
+}
+
+/// Paints the labels that the view has for all objects.
+fn of_objects(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Registry) -> Vec<Rect> {
+    let found = nearest(rect, session, |_| true, MOST);
     let scene = &session.document;
     let chosen = found.iter().map(|(i, _)| scene.objects[*i].clone()).collect();
     // Resolves the view for these few objects only.
@@ -44,13 +66,14 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, regist
     places
 }
 
-/// The visible objects that are near enough for a label, the nearest first, since those take precedence; each with the
-/// point below it in the picture.
-fn nearest(rect: Rect, session: &Session) -> Vec<(usize, Pos2)> {
+/// The visible objects among these that are near enough for a label, the nearest first, since those take precedence; each
+/// with the point below it in the picture.
+fn nearest(rect: Rect, session: &Session, wanted: impl Fn(usize) -> bool, most: usize) -> Vec<(usize, Pos2)> {
     let lens = Lens::of(session, rect);
     let down = session.facts.camera * Vec3::NEG_Y;
-    let objects = session.document.objects.iter().enumerate().filter(|(_, object)| object.visible);
+    let objects = session.document.objects.iter().enumerate();
     let mut found: Vec<_> = objects
+        .filter(|(i, object)| object.visible && wanted(*i))
         .filter_map(|(i, object)| {
             let middle = lens.project(object.position)?;
             let below = lens.project(object.position + down * (0.5 * object.size))?;
@@ -60,11 +83,17 @@ fn nearest(rect: Rect, session: &Session) -> Vec<(usize, Pos2)> {
         })
         .collect();
     found.sort_by(|a, b| a.2.total_cmp(&b.2));
-    found.into_iter().take(MOST).map(|(i, below, _)| (i, below)).collect()
+    found.into_iter().take(most).map(|(i, below, _)| (i, below)).collect()
 }
 
 /// Paints the lines of a label below a point, unless it would cover others. Returns its rectangle.
-fn plate(ui: &Ui, rect: Rect, below: Pos2, lines: [Arc<Galley>; 3], others: &[Rect]) -> Option<Rect> {
+fn plate<const N: usize>(
+    ui: &Ui,
+    rect: Rect,
+    below: Pos2,
+    lines: [Arc<Galley>; N],
+    others: &[Rect],
+) -> Option<Rect> {
     let lines = || lines.iter().filter(|line| line.size().x > 0.0);
     let width = lines().map(|line| line.size().x).fold(0.0, f32::max);
     let height: f32 = lines().map(|line| line.size().y).sum();

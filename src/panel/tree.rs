@@ -177,7 +177,7 @@ impl<'a> PartRow<'a> {
             painter.rect_filled(ground, 4.0, palette.chosen);
             let bar = Rect::from_min_size(ground.min, vec2(3.0, ground.height()));
             painter.rect_filled(bar, 1.5, palette.accent);
-        } else if hovered {
+        } else if hovered || self.is_in_chosen_row() {
             painter.rect_filled(ground, 4.0, palette.hovered);
         }
         let narrow = rect.width() < NARROW;
@@ -207,6 +207,14 @@ impl<'a> PartRow<'a> {
         if cut {
             response.on_hover_text(name);
         }
+    }
+
+    /// True for the copies of the row that is edited.
+    fn is_in_chosen_row(&self) -> bool {
+        let (Selection::Object(i), Selection::Object(chosen)) = (self.part, self.session.selection) else {
+            return false;
+        };
+        self.session.document.row(chosen).is_some_and(|row| row.range().contains(&i))
     }
 
     /// Paints the icon or the glyph of a part. Returns the colour of a light or an object.

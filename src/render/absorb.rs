@@ -26,7 +26,7 @@ use crate::{
     document::Extent,
     registry::Registry,
     scene::{
-        self, Light, Object, Observer, Scene,
+        self, Light, Object, Observer, Repetition, Scene,
         check::{self, light_count, object_count},
         error::{Path, Problem},
     },
@@ -180,6 +180,10 @@ impl Change<'_> {
 
     /// Tries a change of an object's transform alone.
     fn try_place(&mut self, entity: Entity, i: usize) {
+        // A copy leaves its row, too.
+        if self.scene.objects.get(i).is_some_and(|object| object.repeat != Repetition::None) {
+            return self.try_part(entity);
+        }
         self.entities.visits += 1;
         let Some((transform, object)) =
             self.world.get::<Transform>(entity).copied().zip(self.scene.objects.get_mut(i))

@@ -20,7 +20,7 @@ use super::{
 use crate::{
     registry::Registry,
     scene::{
-        Light, Object, Observer, SceneSize, observer,
+        Light, Object, Observer, Repetition, SceneSize, observer,
         rotation::{euler_degrees, rotation},
     },
 };
@@ -240,6 +240,13 @@ pub(super) fn read_place(transform: &Transform, known: bool, object: &mut Object
     Ok(())
 }
 
+/// Lets an object that changed alone leave its row.
+fn leave_row(object: &mut Object, known: Option<&Object>) {
+    if known.is_some_and(|known| *object != *known) {
+        object.repeat = Repetition::None;
+    }
+}
+
 /// The object that an entity represents; values equal to those of the `known` object stay as they were.
 ///
 /// # Errors
@@ -280,6 +287,7 @@ pub(super) fn read_object(
     }
     object.visible = *needed::<Visibility>(&entity)? != Visibility::Hidden;
     object.name = name_of(&entity, known.map(|known| (&known.name, &*known.object_type)));
+    leave_row(&mut object, known);
     Ok(object)
 }
 

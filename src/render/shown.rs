@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     registry::{LightSet, Registry},
-    scene::{Light, Object, Observer},
+    scene::{Light, Object, Observer, Repetition},
 };
 
 /// The displayed values of an object, except for its transform.
@@ -36,7 +36,7 @@ impl Shown {
 /// The displayed values of an object.
 fn look(object: &Object) -> ShownObject {
     let Object { position, size, rotation, .. } = Object::default();
-    ShownObject(Object { position, size, rotation, name: None, ..object.clone() })
+    ShownObject(Object { position, size, rotation, name: None, repeat: Repetition::None, ..object.clone() })
 }
 
 /// Displays objects whose components changed. An animated object that temporarily has no type or two types

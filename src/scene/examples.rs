@@ -29,10 +29,11 @@ macro_rules! texts {
 }
 
 /// The scenes, from the simplest to those that measure something.
-const TEXTS: [(&str, &str); 26] = texts![
+const TEXTS: [(&str, &str); 27] = texts![
     "default.json",
     "shapes_and_lights.json",
     "superellipsoids.json",
+    "five_spheres.json",
     "models_from_files.json",
     "gouraud_misses_highlight.json",
     "half_lambert.json",

@@ -62,6 +62,8 @@ pub enum Kind {
     Position,
     /// A direction of any length.
     Direction,
+    /// A way of any length but 0, in metres.
+    Step,
     /// Euler angles in degrees.
     Rotation,
     /// Three sRGB-encoded integers, 0–255.
@@ -74,6 +76,8 @@ pub enum Kind {
     Material,
     /// The parameters that the type of the part declares, each with a key of its own.
     Parameters,
+    /// Values of another field or parameter.
+    List,
     /// Another part.
     Part,
     /// A list of parts.
@@ -242,6 +246,9 @@ impl Field {
             (Kind::Rotation, Value::Triple(v)) if v.iter().any(|v| !v.is_finite()) => {
                 Err("a rotation must be three finite numbers of degrees".to_owned())
             }
+            (Kind::Step, Value::Triple(v)) if *v == [0.0; 3] || v.iter().any(|v| !v.is_finite()) => {
+                Err(format!("{} must be three finite numbers of metres, not all of them 0", self.subject))
+            }
             (Kind::Id(ids), Value::Choice(id)) => ids.check(registry, id),
             _ => Ok(()),
         }
@@ -302,9 +309,10 @@ impl Field {
             Kind::Count(min) => format!("{subject} must be a whole number of at least {min}"),
             Kind::Flag(_) => format!("{} must be true or false", self.key),
             Kind::Text(rule) => rule.map_or_else(|| format!("{subject} must be text"), str::to_owned),
-            Kind::Position | Kind::Direction | Kind::Rotation => {
+            Kind::Position | Kind::Direction | Kind::Step | Kind::Rotation => {
                 format!("{subject} must be three numbers: [x, y, z]")
             }
+            Kind::List => format!("{subject} must be a list"),
             Kind::Colour => format!("{subject} must be {}", colour::RULE),
             Kind::Id(ids) => ids.check(registry, "").err().unwrap_or_default(),
             Kind::Choice(_) => self.check_text("").err().unwrap_or_default(),

@@ -74,6 +74,12 @@ impl Held for Values {
     }
 }
 
+impl Held for Vec<Value> {
+    fn list(&self) -> &[Value] {
+        self
+    }
+}
+
 /// A choice that has a word in scene files.
 pub trait Word: Copy + 'static {
     /// Every choice.

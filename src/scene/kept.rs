@@ -18,7 +18,7 @@ impl Scene {
             let declared = Declared::of(registry, self, object, name);
             let Err(Some(rule)) = declared.refusing(value) else { continue };
             let Some(nearest) = declared.nearest(value) else { continue };
-            let place = Part::Object(i).path().key("material").key(name.clone());
+            let place = Part::Object(self.place_in_file(i).0).path().key("material").key(name.clone());
             let (model, rule) = (self.model_of(object), rule.rule());
             said.push(format!("{place} is {value}, but for {model} it must be {rule}: {nearest} is used"));
             changes.push((name.clone(), nearest));

@@ -120,7 +120,7 @@ pub fn models_named(bytes: &[u8], name: &str, registry: &Registry) -> BTreeSet<S
     let source = Source::new(bytes, (name, FilePath::new("")), Outside::NONE);
     let parsed = formats::of_source(&source, registry).ok().map(|format| format.read(&source, registry));
     let Some(Ok(parsed)) = parsed else { return BTreeSet::new() };
-    parsed.scene.models().into_iter().map(str::to_owned).collect()
+    parsed.scene.expanded_as_far(registry).0.models().into_iter().map(str::to_owned).collect()
 }
 
 /// Reads the content of a stream, which can be read only once.

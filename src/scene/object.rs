@@ -1,11 +1,13 @@
 //! The objects of a scene.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use super::{
-    Field,
+    Field, Repeat,
     field::{Ids, Kind},
-    part::{Fields as _, Key, part},
+    part::{self, Fields, Key, part},
 };
 use crate::{
     parameter::{ABOVE_ZERO, Value, Values},
@@ -14,6 +16,48 @@ use crate::{
 };
 
 shape::fields!(part);
+
+/// The part of an object in a row or a grid. Files have entries, scenes in memory their copies: see
+/// [`Scene::expanded`](super::Scene::expanded).
+#[derive(Clone, Debug, Default)]
+pub enum Repetition {
+    /// It is a single object.
+    #[default]
+    None,
+    /// It stands for all copies, as in a file.
+    Entry(Box<Repeat>),
+    /// It is one of the copies.
+    Copy {
+        /// The object as in a file.
+        entry: Arc<Object>,
+        /// The number of the copy, from 0.
+        number: u32,
+    },
+}
+
+impl PartialEq for Repetition {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::None, Self::None) => true,
+            (Self::Entry(a), Self::Entry(b)) => a == b,
+            // Copies of one row share their entry.
+            (Self::Copy { entry: a, number: i }, Self::Copy { entry: b, number: j }) => {
+                i == j && (Arc::ptr_eq(a, b) || a == b)
+            }
+            _ => false,
+        }
+    }
+}
+
+impl part::Held for Repetition {
+    /// That of an entry; a copy alone is written as a single object.
+    fn parts(&self) -> Vec<&dyn Fields> {
+        match self {
+            Self::Entry(repeat) => vec![&**repeat],
+            Self::None | Self::Copy { .. } => Vec::new(),
+        }
+    }
+}
 
 impl Object {
     /// Changes the type. Parameters of both types are kept, but not the tessellation, which has a different

@@ -133,6 +133,11 @@ pub trait Held {
     fn parts(&self) -> Vec<&dyn Fields> {
         Vec::new()
     }
+
+    /// The values, if the field holds a list of them.
+    fn list(&self) -> &[Value] {
+        &[]
+    }
 }
 
 /// Visits a field, with what a part and the default part hold.

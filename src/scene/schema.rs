@@ -1,10 +1,11 @@
 //! The JSON Schema of scene files, for editors: the declared fields plus the contents of the registry.
 
 use super::{
-    Comparison, Display, Field, Light, MAX_DIMENSION, MAX_OBJECTS, Object, Observer, Scene, SceneSize,
-    Variant,
+    Comparison, Display, Field, Light, MAX_DIMENSION, MAX_OBJECTS, Object, Observer, Repeat, Scene,
+    SceneSize, Variant, Varied,
     field::{Absent, Kind},
     part::Structure,
+    repeat::MAX_VARIED,
     variant::MAX_VARIANTS,
 };
 use crate::{
@@ -45,6 +46,7 @@ pub fn schema(registry: &Registry) -> Json {
     scene["comparison"] = part::<Comparison>(Scene::comparison.help, registry);
     scene["lights"]["items"] = part::<Light>(Light::ABOUT, registry);
     scene["objects"]["items"] = part::<Object>(Object::ABOUT, registry);
+    scene["objects"]["items"]["properties"][Object::repeat.key] = repeat(registry);
     scene["variants"]["items"] = part::<Variant>(Variant::ABOUT, registry);
     scene["variants"]["maxItems"] = MAX_VARIANTS.into();
     lights(&mut scene["lights"], registry);
@@ -75,6 +77,18 @@ fn part<P: Structure>(help: &str, registry: &Registry) -> Json {
     part
 }
 
+/// A row or a grid.
+fn repeat(registry: &Registry) -> Json {
+    let mut row = part::<Repeat>(Object::repeat.help, registry);
+    let fields = &mut row["properties"];
+    for count in [Repeat::columns, Repeat::rows] {
+        fields[count.key]["maximum"] = MAX_OBJECTS.into();
+    }
+    fields[Repeat::vary.key]["items"] = part::<Varied>(Varied::ABOUT, registry);
+    fields[Repeat::vary.key]["maxItems"] = MAX_VARIED.into();
+    row
+}
+
 /// A field, with its default if it is the same for all types.
 fn field(field: &Field, default: Option<Value>, registry: &Registry) -> Json {
     let vector = |one: Json| json!({ "type": "array", "items": one, "minItems": 3, "maxItems": 3 });
@@ -86,13 +100,13 @@ fn field(field: &Field, default: Option<Value>, registry: &Registry) -> Json {
         Kind::Position => {
             vector(json!({ "type": "number", "exclusiveMinimum": 0, "maximum": number(MAX_DIMENSION) }))
         }
-        Kind::Direction | Kind::Rotation => vector(json!({ "type": "number" })),
+        Kind::Direction | Kind::Step | Kind::Rotation => vector(json!({ "type": "number" })),
         Kind::Colour => Colour { default: [0; 3] }.schema(),
         Kind::Id(ids) => {
             choice::one_of(ids.all(registry).map(|listed| [listed.id, listed.name, listed.summary]))
         }
         Kind::Choice(words) => choice::one_of(words().into_iter()),
-        Kind::Parts => json!({ "type": "array" }),
+        Kind::Parts | Kind::List => json!({ "type": "array" }),
         Kind::Material | Kind::Parameters | Kind::Part => json!({ "type": "object" }),
     };
     schema["description"] = field.help.trim().into();

@@ -51,7 +51,7 @@ pub struct SceneOf<'a>(pub &'a Registry);
 
 impl Serialize for SceneIn<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        written(self.0, self.1, serializer)
+        written(&*self.0.gathered(self.1), self.1, serializer)
     }
 }
 

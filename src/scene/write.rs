@@ -23,7 +23,8 @@ pub fn to_json(scene: &Scene, schema: Option<&str>, registry: &Registry) -> Stri
     let mut serializer = serde_json::Serializer::with_formatter(&mut compact, ShortNumbers);
     // Writing to memory, with text as keys, cannot fail.
     let materials: Vec<_> = registry.material_parameters().collect();
-    let _ = Written { part: scene, schema, materials: &materials, registry }.serialize(&mut serializer);
+    let scene = scene.gathered(registry);
+    let _ = Written { part: &*scene, schema, materials: &materials, registry }.serialize(&mut serializer);
     let compact = String::from_utf8_lossy(&compact);
     pretty(&compact).unwrap_or_else(|| compact.into_owned())
 }
@@ -73,6 +74,7 @@ impl<'a> Written<'a> {
             (Kind::Parts, _) if field.always || parts().next().is_some() => {
                 map.serialize_entry(field.key, &parts().collect::<Vec<_>>())
             }
+            (Kind::List, _) if !held.list().is_empty() => map.serialize_entry(field.key, held.list()),
             (Kind::Parameters, Some(values)) => ordered(values, self.part.parameters(self.registry).iter())
                 .into_iter()
                 .try_for_each(|(name, value)| map.serialize_entry(name, value)),

@@ -33,6 +33,8 @@ macro_rules! fields {
                 /// used by the current
                 /// model are kept for the others.
                 material: Values = Field::of("the material", Kind::Material), Values::default();
+                /// Row or grid: the object stands for so many copies, which may differ in some values.
+                repeat: Repetition = Field::of("the row", Kind::Part).always(), Repetition::None;
             }
         }
     };

@@ -27,6 +27,24 @@ impl Path {
         Self::default()
     }
 
+    /// The path with these steps.
+    #[must_use]
+    pub fn of(steps: Vec<Segment>) -> Self {
+        Self(steps)
+    }
+
+    /// The path to the same place from farther outside: `size` within `objects[0]` is `objects[0].size`.
+    #[must_use]
+    pub fn within(&self, outer: &Self) -> Self {
+        Self(outer.0.iter().chain(&self.0).cloned().collect())
+    }
+
+    /// True if it leads into the value of another path, or is that.
+    #[must_use]
+    pub fn starts_with(&self, outer: &Self) -> bool {
+        self.0.starts_with(&outer.0)
+    }
+
     /// The path extended by a step.
     #[must_use]
     pub fn then(mut self, step: Segment) -> Self {

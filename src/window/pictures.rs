@@ -21,7 +21,7 @@ use crate::{
     caption,
     caught::lock,
     channel::{LayerKind, layers, too_large},
-    compare::{compose, size_around},
+    compare::{cells, compose, size_around, with_row_labels},
     export::write::inputs,
     files::{self, Shown as _, words},
     linear::Format,
@@ -251,11 +251,14 @@ impl Job {
             _ => size_around(&comparison, scene.variants.len(), size.to_array()),
         };
         let rgb8 = compose(&comparison, size, &pictures).map_err(|e| e.to_string())?;
+        let seen = |(view, terms): &(usize, TermSelection)| Some((*view, self.views.seen(*view)?, *terms));
+        let seen: Vec<_> = shown.iter().filter_map(seen).collect();
+        let cells = cells(&comparison, scene.variants.len(), size).unwrap_or_default();
+        let places = cells.into_iter().zip(seen.iter().map(|(_, seen, _)| seen));
+        let rgb8 = with_row_labels(rgb8, size, places, registry);
         if !self.caption {
             return Ok((rgb8, size));
         }
-        let seen = |(view, terms): &(usize, TermSelection)| Some((*view, self.views.seen(*view)?, *terms));
-        let seen: Vec<_> = shown.iter().filter_map(seen).collect();
         let shown: Vec<_> = seen.iter().map(|(view, seen, terms)| (*view, seen, *terms)).collect();
         Ok(caption::draw(&caption::of_picture(scene, &shown, registry), rgb8, size))
     }

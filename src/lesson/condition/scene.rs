@@ -117,7 +117,7 @@ fn map_of(part: &dyn Fields) -> Map<String, Json> {
         let written = match (field.kind, held.value()) {
             // Their entries are asked for by themselves.
             (Kind::Parts, _) => json!([]),
-            (Kind::Part | Kind::Material | Kind::Parameters, _) => return,
+            (Kind::Part | Kind::Material | Kind::Parameters | Kind::List, _) => return,
             (_, None) if field.by_type => return,
             (_, value) => value.map_or(Json::Null, |value| of(&value)),
         };

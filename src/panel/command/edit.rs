@@ -2,7 +2,7 @@
 
 use super::{Group, List, Menu, command};
 use crate::{
-    document::Selection,
+    document::{Edit, Selection},
     panel::{
         history::HISTORY_TAB,
         state::{Action, Effect, ModelCommand, Pick, ViewChange},
@@ -74,6 +74,22 @@ fn parts(to: &mut List) {
     ] {
         to.add(command.unless(none, why));
     }
+    to.line();
+    rows(to);
+}
+
+fn rows(to: &mut List) {
+    let part = to.session.selection;
+    let object = if let Selection::Object(i) = part { Some(i) } else { None };
+    let row = object.and_then(|i| to.session.document.row(i));
+    let make = command("row", "Row…", Action::MakeRow(part)).says("Row or grid of the object");
+    let make = make
+        .tip("Copies of the object beside each other, edited as one; values may differ from copy to copy.");
+    let make = make.unless(object.is_none(), "No object is selected");
+    to.add(if row.is_some() { make.unless(true, "The object is in a row already") } else { make });
+    let single = Edit::Row { object: object.unwrap_or_default(), entry: None, what: "Single objects" };
+    let single = command("single_objects", "Make single objects", Action::Edit(single));
+    to.add(single.unless(row.is_none(), "The object is in no row"));
 }
 
 fn models(to: &mut List) {

@@ -11,6 +11,7 @@ mod object;
 mod observer;
 mod part;
 mod room;
+mod row;
 mod variant;
 
 /// See the module.

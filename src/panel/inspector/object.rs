@@ -3,6 +3,7 @@
 use super::{
     model::{equation, missing_model, model_author, model_name, stage, terms},
     part::{header, knob_of, number, section, type_knob, vector},
+    row,
     variant::marked,
 };
 use crate::{
@@ -23,6 +24,11 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
     let Some(object) = session.scene().objects.get(i) else { return };
     header(ui, Selection::Object(i), object.name.as_deref(), context);
+    let in_row = session.document.row(i).is_some();
+    if in_row {
+        row::which(ui, i, context);
+        section(ui, "Row", true, |ui| row::row(ui, i, context));
+    }
     let model = registry.model(session.scene().model_of(object));
     let shown = Shown { session, registry, part: Part::Object(i), object, model };
     shown.files(ui, i, context);
@@ -31,6 +37,9 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     section(ui, "Shape and position", true, |ui| {
         linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, context));
     });
+    if !in_row {
+        section(ui, "Row", false, |ui| row::row(ui, i, context));
+    }
 }
 
 /// The object that is shown, and its surroundings.

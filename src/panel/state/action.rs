@@ -47,7 +47,9 @@ pub enum Action {
     AddObject(String),
     /// Duplicate a light or an object.
     Duplicate(Selection),
-    /// Remove a light or an object.
+    /// Make a row of an object.
+    MakeRow(Selection),
+    /// Remove a light, an object, or its row.
     Remove(Selection),
     /// Hide or show an object; switch a light on or off.
     Toggle(Selection),
@@ -207,6 +209,7 @@ impl Session {
             Action::AddLight(id) => self.add_light(&id, |_| (), registry),
             Action::AddObject(id) => self.add_object(&id, None, |_| (), registry),
             Action::Duplicate(part) => self.duplicate(part, registry),
+            Action::MakeRow(part) => self.make_row(part, registry),
             Action::Remove(part) => self.remove(part, registry),
             Action::Toggle(part) => self.toggle(part, registry),
             Action::Drop(paths) => self.dropped(paths, registry),

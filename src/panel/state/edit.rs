@@ -38,6 +38,11 @@ impl Session {
             _ => None,
         }));
         let before = self.document.revision();
+        let row = match edit {
+            Edit::Row { object, .. } => Some(self.document.row(object).map_or(object, |row| row.first)),
+            _ => None,
+        };
+        let selected = row.and_then(|_| self.selected_id());
         let done = match edit.one() {
             Some((Part::Light(i), key, Some(Value::Choice(id)))) if key == Light::light_type.into() => {
                 self.change_light_type(i, id, registry)
@@ -47,6 +52,7 @@ impl Session {
         if let Err(why) = done {
             return self.say(Severity::Warning, why);
         }
+        row.into_iter().for_each(|first| self.stay_in_row(selected, first));
         if let Some(id) = model {
             self.model_slots.take(&id);
         }

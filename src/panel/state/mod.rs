@@ -77,6 +77,7 @@ mod plots;
 mod probe;
 mod progress;
 mod question;
+mod rows;
 mod seen;
 mod selection;
 mod settings;

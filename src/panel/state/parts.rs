@@ -5,7 +5,7 @@ use crate::{
     document::{Selection, names::free_name},
     light::MAX_LIGHTS,
     registry::Registry,
-    scene::{Light, MAX_OBJECTS, Object},
+    scene::{Light, MAX_OBJECTS, Object, Repetition},
 };
 
 /// Parts of which a scene has at most so many.
@@ -88,36 +88,49 @@ impl Session {
                 let mut copy = self.document.objects[i].clone();
                 copy.position = self.stand(registry).copy(i);
                 copy.name = copy.name.map(|n| free_name(&self.document, &n));
+                copy.repeat = Repetition::None;
                 let from = self.document.object_id(i);
-                self.document.insert_object(i + 1, copy, "Duplicate", self.selection, registry);
-                if let Some((from, to)) = from.zip(self.document.object_id(i + 1)) {
+                let at = self.document.row(i).map_or(i, |row| row.first + row.count - 1) + 1;
+                self.document.insert_object(at, copy, "Duplicate", self.selection, registry);
+                if let Some((from, to)) = from.zip(self.document.object_id(at)) {
                     self.stashed.copied(from, to);
                 }
-                self.select_new(Selection::Object(i + 1));
+                self.select_new(Selection::Object(at));
             }
             _ => self.say(Severity::Info, "Select a light or an object to duplicate it."),
         }
     }
 
     pub(super) fn remove(&mut self, part: Selection, registry: &Registry) {
+        // Of a row, all copies go.
+        let objects = match part {
+            Selection::Object(i) => self.document.row(i).map_or(i..i + 1, |row| row.range()),
+            _ => 0..0,
+        };
         match part {
             Selection::Light(_) if self.document.lights.len() <= 1 => {
                 self.say(Severity::Info, "Can’t delete the last light: a scene needs at least one.");
             }
-            Selection::Object(_) if self.document.objects.len() <= 1 => {
+            Selection::Object(_) if self.document.objects.len() <= objects.len() => {
                 self.say(Severity::Info, "Can’t delete the last object: a scene needs at least one.");
             }
             Selection::Light(_) | Selection::Object(_) if self.exists(part) => {
-                let text = format!("Deleted “{}”.", self.name_of(part, registry));
+                let name = match part {
+                    Selection::Object(i) => self.document.name_to_edit(i, registry),
+                    part => self.name_of(part, registry),
+                };
+                let text = format!("Deleted “{name}”.");
                 self.document.remove(part, registry);
                 // Keeps the selection; if the part was deleted, selects its neighbour.
-                let (lights, objects) = (self.document.lights.len(), self.document.objects.len());
+                let (lights, left) = (self.document.lights.len(), self.document.objects.len());
                 self.select_new(match (self.selection, part) {
                     (Selection::Light(at), Selection::Light(gone)) => {
                         Selection::Light((at - usize::from(at > gone)).min(lights - 1))
                     }
-                    (Selection::Object(at), Selection::Object(gone)) => {
-                        Selection::Object((at - usize::from(at > gone)).min(objects - 1))
+                    (Selection::Object(at), Selection::Object(_)) => {
+                        let after =
+                            if at >= objects.end { objects.len() } else { at.saturating_sub(objects.start) };
+                        Selection::Object((at - after).min(left - 1))
                     }
                     (other, _) => other,
                 });

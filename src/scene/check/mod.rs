@@ -4,7 +4,7 @@
 //! 1**". That of a value by itself follows from its [declaration](super::Field::check). [`scene`] applies all rules to a
 //! whole scene; [`Parts`] and [`change`] to one part and what it can meet.
 
-use std::{collections::HashMap, fmt, mem};
+use std::{collections::HashMap, fmt, mem, ops::Range};
 
 use glam::Vec3;
 
@@ -25,7 +25,7 @@ mod rule;
 pub use super::clause::{Rule, direction};
 pub use rule::*;
 
-/// All problems of a scene, in order; empty if it is valid.
+/// All problems of a scene, in order, with their paths in a file; empty if it is valid.
 #[must_use]
 pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     let count = |n: usize, what: &str| match n {
@@ -43,7 +43,7 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
     scene.objects.iter().enumerate().for_each(|(i, object)| check.object(i, object));
     check.fields(&scene.display, Part::Display);
     check.variants();
-    check.problems
+    scene.as_in_file(check.problems, registry)
 }
 
 /// Checks one part after another, without going through all lights each time. Each part's check reports its conflicts
@@ -90,6 +90,8 @@ pub enum Change {
     Light(usize, Light),
     /// An object, with its index.
     Object(usize, Object),
+    /// Objects in the places of a row, or of the object that becomes one.
+    Row(Range<usize>, Vec<Object>),
     /// A scene whose own lights and objects do not count.
     Rest(Box<Scene>),
 }
@@ -106,6 +108,10 @@ pub fn change(scene: &Scene, part: Part, change: &Change, registry: &Registry) -
         }
         Change::Object(i, object) => {
             after.0.object(*i, object);
+            after.0.problems
+        }
+        Change::Row(places, objects) => {
+            (places.start..).zip(objects).for_each(|(i, object)| after.0.object(i, object));
             after.0.problems
         }
         Change::Rest(rest) => {

@@ -6,7 +6,7 @@ use crate::{
     parameter::read_all,
     registry::Registry,
     scene::{
-        Scene, beyond_room, check,
+        Repetition, Scene, beyond_room, check,
         error::{LoadError, Path, Problem},
         problem::MAX_PROBLEMS,
         reading::{Defaults, Missing},
@@ -107,15 +107,19 @@ pub(in crate::scene) fn checked(
     let Parsed { scene, missing, problems, unread, mut unlisted, end, locate } = parsed;
     // Each with the place in whose order it is listed.
     let mut all: Vec<_> = Vec::with_capacity(problems.len());
+    let has_rows = scene.objects.iter().any(|object| object.repeat != Repetition::None);
+    let written = has_rows.then(|| scene.clone());
+    let (scene, of_rows) = scene.expanded_as_far(registry);
     if let Err(what) = read_all(scene.files()) {
         let problems = vec![Problem::about(Path::root(), what)];
         return Err(LoadError::Invalid { name: name.to_owned(), problems });
     }
     let mut found = check::scene(&scene, registry);
+    found.extend(of_rows);
     if !unread.is_empty() {
         found.retain(|problem| !problem.path.ancestors().any(|path| unread.contains(&path)));
     }
-    let found = beyond_room::explain(found, &scene, &missing);
+    let found = beyond_room::explain(found, written.as_ref().unwrap_or(&scene), &missing);
     all.extend(problems.into_iter().map(|problem| (problem.place, problem)));
     for mut problem in found {
         if all.len() >= MAX_PROBLEMS {

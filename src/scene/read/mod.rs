@@ -113,6 +113,11 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Excludes a value from the checks.
+    fn unread(&mut self, path: Path) {
+        self.reported.insert(path);
+    }
+
     /// Records a missing part with a default.
     fn missing(&mut self, path: Path, at: usize, default: String) {
         self.missing.push(Missing { path, default, place: Some(self.lines.place(at)) });

@@ -8,9 +8,10 @@ use crate::{
     light::LightEntry,
     parameter::{Parameter, Value, Values, kind::colour},
     scene::{
-        Field, Light, Object, Scene, Variant, check,
+        Field, Light, Object, Repeat, Repetition, Scene, Variant, Varied, check,
         field::{Absent, Ids, Kind},
         part::Structure,
+        rows::Variable,
     },
     shape::ShapeEntry,
     text::json::{Ast, Cursor, Fields, Reader as _},
@@ -77,7 +78,7 @@ impl Reader<'_> {
                     self.lacking(fields, field.key, why);
                 }
             }
-            (Kind::Part | Kind::Parts | Kind::Parameters, _) => {}
+            (Kind::Part | Kind::Parts | Kind::Parameters | Kind::List, _) => {}
             (Kind::Material, Some(value)) => {
                 held.values_mut().into_iter().for_each(|values| *values = self.material(value));
             }
@@ -139,9 +140,11 @@ impl Reader<'_> {
                 field.check_text(text).map_err(|rule| self.wrong(value, &rule)).ok()?;
                 Some(text.into())
             }
-            Kind::Position | Kind::Direction | Kind::Rotation => Some(self.vector(value, rule).into()),
+            Kind::Position | Kind::Direction | Kind::Step | Kind::Rotation => {
+                Some(self.vector(value, rule).into())
+            }
             Kind::Colour => colour::read(self, value, &rule()).map(Value::Colour),
-            Kind::Material | Kind::Parameters | Kind::Part | Kind::Parts => None,
+            Kind::Material | Kind::Parameters | Kind::List | Kind::Part | Kind::Parts => None,
         }
     }
 
@@ -182,7 +185,49 @@ impl Reader<'_> {
         let own = self.registry.shape(&object.object_type).map_or(&[][..], |shape| shape.parameters);
         let of_any = self.registry.shapes().iter().flat_map(|shape| shape.parameters);
         object.shape = self.parameters(&fields, own.iter().chain(of_any));
+        if let Some(value) = fields.get(Object::repeat.key) {
+            object.repeat = self.repeat(value, &object.object_type);
+        }
         object
+    }
+
+    /// The row of an object of a type.
+    fn repeat(&mut self, value: Cursor, object_type: &str) -> Repetition {
+        let mut repeat = Repeat::default();
+        let Some(fields) = self.fields(value, &Repeat::keys(), Repeat::WHAT) else { return Repetition::None };
+        self.fill(&mut repeat, &fields);
+        if let Some(value) = fields.get(Repeat::vary.key) {
+            match value.list() {
+                Some(list) => repeat.vary = list.map(|value| self.varied(value, object_type)).collect(),
+                None => self.wrong(value, "a row must have a list of varied values"),
+            }
+        }
+        Repetition::Entry(Box::new(repeat))
+    }
+
+    fn varied(&mut self, value: Cursor, object_type: &str) -> Varied {
+        let mut varied = Varied::default();
+        let Some(fields) = self.fields(value, &Varied::keys(), Varied::WHAT) else { return varied };
+        self.fill(&mut varied, &fields);
+        let Some(value) = fields.get(Varied::values.key) else { return varied };
+        let Some(list) = value.list() else {
+            self.wrong(value, &Varied::values.rule(self.registry));
+            return varied;
+        };
+        // An unknown path is reported by the checks.
+        let Some(variable) = Variable::with_path(&varied.parameter, object_type, self.registry) else {
+            return varied;
+        };
+        let (count, shape) = (list.len(), self.registry.shape(object_type));
+        let read = |value| match variable {
+            Variable::Field(field) => self.field(value, field, shape),
+            Variable::Shape(p) | Variable::Material(p) => self.parameter(value, p),
+        };
+        varied.values = list.filter_map(read).collect();
+        if varied.values.len() < count {
+            self.unread(value.path());
+        }
+        varied
     }
 
     /// The given parameters of a type; the first declaration of a name counts.
@@ -222,7 +267,7 @@ impl Reader<'_> {
 fn unreadable(field: &Field) -> Option<Value> {
     match field.kind {
         Kind::Number { .. } => Some(f32::NAN.into()),
-        Kind::Position | Kind::Direction => Some(Vec3::NAN.into()),
+        Kind::Position | Kind::Direction | Kind::Step => Some(Vec3::NAN.into()),
         _ => None,
     }
 }

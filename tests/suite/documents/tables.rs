@@ -419,12 +419,16 @@ fn gallery(registry: &Registry) -> String {
 /// The fields of scene files, from the schema.
 fn fields(schema: &Json) -> String {
     let mut rows = Vec::new();
+    let object = &schema["properties"]["objects"]["items"];
+    let row = &object["properties"]["repeat"];
     for (prefix, part) in [
         ("", schema),
         ("scene_size.", &schema["properties"]["scene_size"]),
         ("lights[].", &schema["properties"]["lights"]["items"]),
         ("observer.", &schema["properties"]["observer"]),
-        ("objects[].", &schema["properties"]["objects"]["items"]),
+        ("objects[].", object),
+        ("objects[].repeat.", row),
+        ("objects[].repeat.vary[].", &row["properties"]["vary"]["items"]),
         ("display.", &schema["properties"]["display"]),
     ] {
         let required: Vec<_> = part["required"].as_array().into_iter().flatten().collect();

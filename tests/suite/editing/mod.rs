@@ -4,3 +4,4 @@ mod cost;
 mod history;
 mod placing;
 mod random;
+mod rows;

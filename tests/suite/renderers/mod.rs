@@ -13,4 +13,5 @@ pub(crate) mod linear;
 mod memory;
 mod reference;
 pub(crate) mod reload;
+mod rows;
 mod tangents;

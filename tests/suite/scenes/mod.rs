@@ -9,6 +9,7 @@ mod overrides;
 mod photometric;
 mod reload;
 pub(crate) mod roundtrip;
+mod rows;
 mod saving;
 mod schema;
 mod tables;

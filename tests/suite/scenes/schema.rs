@@ -119,6 +119,16 @@ fn broken_scenes_are_invalid_by_the_schema_and_by_the_reader() {
         ("/objects/0/material/wrap_exponent", json!(0.5)),
         ("/objects/0/material/shininess", json!(3)),
         ("/objects/0/material/base_colour", json!([1, 2])),
+        ("/objects/0/repeat", json!({})),
+        ("/objects/0/repeat", json!({ "columns": 0 })),
+        ("/objects/0/repeat", json!({ "columns": 20_000 })),
+        ("/objects/0/repeat", json!({ "columns": 2, "gap": 1 })),
+        ("/objects/0/repeat", json!({ "columns": 2, "spacing": 1 })),
+        ("/objects/0/repeat", json!({ "columns": 2, "vary": [{ "from": 1, "to": 2 }] })),
+        (
+            "/objects/0/repeat",
+            json!({ "columns": 2, "vary": [{ "parameter": "size", "from": "1", "to": 2 }] }),
+        ),
         ("/display/exposure", json!(17)),
         ("/display/tone_mapping", json!("x")),
         ("/display/encoding", json!("x")),
@@ -157,9 +167,16 @@ fn the_schema_and_the_reader_know_the_same_keys() {
         ("/properties/observer/properties", "/observer"),
         ("/properties/objects/items/properties", "/objects/0"),
         ("/properties/objects/items/properties/material/properties", "/objects/0/material"),
+        ("/properties/objects/items/properties/repeat/properties", "/objects/3/repeat"),
+        (
+            "/properties/objects/items/properties/repeat/properties/vary/items/properties",
+            "/objects/3/repeat/vary/0",
+        ),
         ("/properties/display/properties", "/display"),
     ] {
         let mut scene = full_scene();
+        let varied = json!({ "parameter": "size", "from": 1, "to": 1 });
+        scene["objects"][3]["repeat"] = json!({ "columns": 1, "vary": [varied] });
         // The reader's message about an unknown key: the known keys.
         scene.pointer_mut(parent).expect("there")["qqqqqqqqqqqqqqqq"] = json!(1);
         let said = said(&scene.to_string());

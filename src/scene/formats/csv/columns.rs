@@ -99,7 +99,7 @@ pub(super) fn all(registry: &Registry) -> Vec<Column> {
         }
     }
     for part in [Part::Observer, Part::Light, Part::Object] {
-        let own = |field: &&&Field| !matches!(field.kind, Kind::Material | Kind::Parameters);
+        let own = |field: &&&Field| !matches!(field.kind, Kind::Material | Kind::Parameters | Kind::Part);
         part.fields().iter().filter(own).for_each(|field| all.field(part, None, field));
         match part {
             Part::Light => registry.lights().iter().for_each(|l| all.parameters(part, &[], l.parameters)),

@@ -1,0 +1,140 @@
+//! Labels of rows in pictures: below each copy the values in which it differs from the others.
+
+use glam::Vec3;
+
+use super::{
+    Cell,
+    canvas::{BRIGHT, Canvas, DARK, Rect},
+};
+use crate::{
+    caption::{Part, draw_line, line_width, row_labels},
+    lettering::Lettering,
+    registry::Registry,
+    scene::{
+        Scene,
+        observer::{NEAR, aspect, clip_from_room, orientation},
+    },
+};
+
+/// Maximum number of labels in a view; more would be the picture.
+const MOST: usize = 400;
+/// Text size in a picture of 720 lines, and the smallest legible one, pixels.
+const TEXT: f32 = 18.0;
+const SMALLEST: f32 = 8.0;
+/// The opacity of the plate behind a text.
+const PLATE: f32 = 0.6;
+
+/// A picture with the labels of its rows. `views` are the places of its views, each with the scene it shows.
+#[must_use]
+pub fn with_row_labels<'s>(
+    rgb8: Vec<u8>,
+    size: [u32; 2],
+    views: impl IntoIterator<Item = (Cell, &'s Scene)>,
+    registry: &Registry,
+) -> Vec<u8> {
+    let mut canvas = Canvas { size, rgb8 };
+    let mut done = Vec::new();
+    for (Cell { left, top, width, height, .. }, scene) in views {
+        let area = [left, top, width, height];
+        // Where views lie over each other, one has the labels.
+        if !done.contains(&area) {
+            draw(&mut canvas, area, scene, registry);
+            done.push(area);
+        }
+    }
+    canvas.rgb8
+}
+
+fn draw(canvas: &mut Canvas, area: Rect, scene: &Scene, registry: &Registry) {
+    let labels = row_labels(scene, registry);
+    let seen = |(i, parts): (usize, Vec<Part>)| Some((below(scene, i, area)?, parts));
+    let labels: Vec<_> = labels.into_iter().filter_map(seen).take(MOST).collect();
+    let (style, usual) = (Lettering::Regular, TEXT * canvas.scale());
+    let widest = labels.iter().map(|(_, parts)| line_width(parts, usual)).max().unwrap_or(0);
+    let room = apart(&labels, style.height(usual)).unwrap_or(f32::INFINITY);
+    // Padding of a third of a line at both sides.
+    let px = (usual * room / (widest as f32 + 0.7 * usual)).clamp(SMALLEST.min(usual), usual);
+    for ([x, y], parts) in &labels {
+        let pad = (0.25 * px).round() as u32;
+        let [width, height] = [line_width(parts, px) + 2 * pad, style.height(px)];
+        let [left, top, across, down] = area;
+        let at = |middle: f32, extent: u32, [from, room]: [u32; 2]| {
+            (middle - 0.5 * extent as f32).round().max(0.0).min(room.saturating_sub(extent) as f32) as u32
+                + from
+        };
+        let plate = [
+            at(*x, width, [left, across]),
+            at(y + 0.5 * height as f32 + 0.3 * px, height, [top, down]),
+            width,
+            height,
+        ];
+        canvas.fill(plate, DARK, PLATE);
+        let at = [plate[0] + pad, plate[1]].map(|v| i32::try_from(v).unwrap_or(i32::MAX));
+        draw_line(parts, &mut canvas.rgb8, canvas.size, at, px, BRIGHT);
+    }
+}
+
+/// The point below a visible object, pixels from the corner of an area; `None` if its middle is not in it.
+fn below(scene: &Scene, i: usize, [_, _, width, height]: Rect) -> Option<[f32; 2]> {
+    let object = scene.objects.get(i).filter(|object| object.visible)?;
+    let size = [width, height].map(|side| side as f32);
+    let clip = clip_from_room(&scene.observer, aspect([width, height]) as f32);
+    let project = |p: Vec3| {
+        let p = clip * p.extend(1.0);
+        (p.w > NEAR).then(|| [0.5 * (1.0 + p.x / p.w) * size[0], 0.5 * (1.0 - p.y / p.w) * size[1]])
+    };
+    let [x, y] = project(object.position)?;
+    let inside = (0.0..size[0]).contains(&x) && (0.0..size[1]).contains(&y);
+    let down = orientation(scene.observer.direction) * Vec3::NEG_Y;
+    project(object.position + down * (0.5 * object.size)).filter(|_| inside)
+}
+
+/// The smallest distance between neighbours in one line of text, pixels.
+fn apart(labels: &[([f32; 2], Vec<Part>)], line: u32) -> Option<f32> {
+    let each = labels.iter().enumerate().flat_map(|(i, (a, _))| labels[..i].iter().map(move |(b, _)| (a, b)));
+    let beside = each.filter(|(a, b)| (a[1] - b[1]).abs() < line as f32).map(|(a, b)| (a[0] - b[0]).abs());
+    beside.min_by(f32::total_cmp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Object, Repeat, Repetition, Varied};
+
+    fn row(labels: bool) -> Scene {
+        let varied = Varied {
+            parameter: "material.k_d".to_owned(),
+            from: Some(0.6),
+            to: Some(0.8),
+            ..Varied::default()
+        };
+        let repeat = Repeat { columns: 3, spacing: Vec3::X, labels, vary: vec![varied], ..Repeat::default() };
+        let entry = Object {
+            position: Vec3::new(4.0, 5.0, 5.0),
+            size: 0.8,
+            repeat: Repetition::Entry(Box::new(repeat)),
+            ..Object::default()
+        };
+        let scene = Scene { objects: vec![entry], ..Scene::default() };
+        scene.expanded(&Registry::builtin()).expect("a row")
+    }
+
+    #[test]
+    fn each_copy_has_a_label_below_it_if_the_row_wants_labels() {
+        let size = [320, 180];
+        let cell = Cell { view: 0, left: 0, top: 0, width: 320, height: 180 };
+        let black = vec![0; 320 * 180 * 3];
+        let drawn = |scene: &Scene| {
+            with_row_labels(black.clone(), size, [(cell, scene), (cell, scene)], &Registry::builtin())
+        };
+        assert_eq!(drawn(&row(false)), black);
+        let picture = drawn(&row(true));
+        let lit = |x: usize, y: usize| picture[3 * (y * 320 + x)] > 0;
+        let middle = below(&row(true), 1, [0, 0, 320, 180]).expect("in sight");
+        assert!((middle[0] - 160.0).abs() < 0.01 && middle[1] > 90.0, "{middle:?}");
+        let line = (middle[1] as usize..180).find(|y| lit(160, *y)).expect("a label");
+        let starts = (1..320).filter(|x| lit(*x, line) && !lit(x - 1, line)).count();
+        assert_eq!(starts, 3, "three plates beside each other");
+        assert!((0..80).all(|y| (0..320).all(|x| !lit(x, y))), "nothing above the objects");
+    }
+}

@@ -1,0 +1,239 @@
+//! The row of an object: how many copies, how far apart, and what differs between them.
+
+use crate::{
+    panel::{
+        knob::{self, Caption},
+        prelude::*,
+    },
+    parameter::Value,
+    scene::{
+        Field, MAX_OBJECTS, Object, Repeat, Repetition, Varied,
+        held::Word,
+        limits::Limits,
+        repeat::{Along, MAX_VARIED, Scale},
+        rows::{Row, Variable},
+    },
+};
+
+/// The end of the slider for a number of copies.
+const SLIDER: f64 = 20.0;
+
+/// Says which copy of which row is shown. Nothing for single objects.
+pub(super) fn which(ui: &mut Ui, i: usize, context: &PanelContext<'_>) {
+    let Some(row) = context.document().row(i) else { return };
+    let name = context.document().name_to_edit(i, context.registry());
+    let text = format!("Copy {} of {} of {name}. All are edited as one.", i - row.first + 1, row.count);
+    ui.add(Label::new(theme::small(ui, text)).wrap());
+    ui.add_space(4.0);
+}
+
+/// The knobs of a row, or the button that makes one.
+pub(super) fn row(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
+    let Some(row) = context.document().row(i) else {
+        let button = ui.button("Make a row…").on_hover_text("Copies beside each other, edited as one");
+        return context.on_click(&button, || Action::MakeRow(Selection::Object(i)));
+    };
+    let document = context.document();
+    let models = (document.model_of(row.entry), document.shading_model_of(row.entry));
+    let shown = Shown { i, row, registry: context.registry(), models };
+    context.edits(shown.counts(ui));
+    context.edits(shown.steps(ui));
+    for j in 0..row.repeat.vary.len() {
+        context.edits(ui.push_id(j, |ui| shown.varied(ui, j)).inner);
+    }
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        let full = row.repeat.vary.len() >= MAX_VARIED;
+        if let Some(varied) = shown.free().filter(|_| !full)
+            && ui.button("Vary a value").clicked()
+        {
+            context.edit(shown.with("Varied value", |row| row.vary.push(varied)));
+        }
+        if ui.button("Make single objects").clicked() {
+            context.edit(Edit::Row { object: i, entry: None, what: "Single objects" });
+        }
+    });
+    ui.add_space(4.0);
+}
+
+/// A row, and the copy that is shown.
+struct Shown<'a> {
+    i: usize,
+    row: Row<'a>,
+    registry: &'a Registry,
+    /// Its reflection model and its shading model.
+    models: (&'a str, &'a str),
+}
+
+impl Shown<'_> {
+    /// The edit that changes the row.
+    fn with(&self, what: &'static str, change: impl FnOnce(&mut Repeat)) -> Edit {
+        let mut repeat = self.row.repeat.clone();
+        change(&mut repeat);
+        let repeat = Repetition::Entry(Box::new(repeat));
+        Edit::Row { object: self.i, entry: Some(Box::new(Object { repeat, ..self.row.entry.clone() })), what }
+    }
+
+    /// The edit that changes a varied value.
+    fn varying(&self, what: &'static str, j: usize, change: impl FnOnce(&mut Varied)) -> Edit {
+        self.with(what, |row| {
+            if let Some(varied) = row.vary.get_mut(j) {
+                change(varied);
+            }
+        })
+    }
+
+    /// The numbers of columns and rows.
+    fn counts(&self, ui: &mut Ui) -> Option<Edit> {
+        let repeat = self.row.repeat;
+        let count = |ui: &mut Ui, field: Field, value: u32, other: u32| {
+            let limits = Limits::between(1.0, (MAX_OBJECTS / other.max(1) as usize) as f64).whole();
+            let limits = limits.slider(1.0, SLIDER);
+            let caption = Caption::of(&field, field.help.trim());
+            knob::number_knob(ui, field.key, &caption, value.into(), None, &limits).map(|v| v as u32)
+        };
+        let columns = count(ui, Repeat::columns, repeat.columns, repeat.rows);
+        let rows = count(ui, Repeat::rows, repeat.rows, repeat.columns);
+        (columns.or(rows)).map(|_| {
+            let [columns, rows] = [columns.unwrap_or(repeat.columns), rows.unwrap_or(repeat.rows)];
+            self.with("Number", |row| *row = row.clone().resized(columns, rows))
+        })
+    }
+
+    /// The steps between columns and rows, and the labels.
+    fn steps(&self, ui: &mut Ui) -> Option<Edit> {
+        let repeat = self.row.repeat;
+        let step = |ui: &mut Ui, field: Field, value: Vec3| {
+            let limits = [0, 1, 2].map(|_| field.limits());
+            let caption = Caption::of(&field, field.help.trim());
+            knob::vector_knob(ui, field.key, &caption, value, &limits)
+        };
+        let mut edit = step(ui, Repeat::spacing, repeat.spacing)
+            .map(|way| self.with("Spacing", |row| row.spacing = way));
+        if repeat.rows > 1 {
+            let changed = step(ui, Repeat::row_spacing, repeat.row_spacing);
+            edit = edit.or(changed.map(|way| self.with("Spacing of rows", |row| row.row_spacing = way)));
+        }
+        let caption = Caption::new("labels", "", Repeat::labels.help.trim());
+        let labels = knob::flag_knob(ui, "labels", &caption, repeat.labels);
+        edit.or(labels.map(|on| self.with("Labels", |row| row.labels = on)))
+    }
+
+    /// The numbers that may vary: those of the object, and of its model.
+    fn numbers(&self) -> Vec<Variable> {
+        let entry = self.row.entry;
+        let model = self.registry.model(self.models.0);
+        let shading = self.registry.shading_model(self.models.1);
+        let used = |variable: &Variable| match variable {
+            Variable::Material(p) => {
+                let of_model = model.and_then(|model| model.parameter(p.name));
+                of_model.or(shading.and_then(|shading| shading.parameter(p.name))).is_some()
+            }
+            _ => true,
+        };
+        let all = Variable::all(&entry.object_type, self.registry);
+        let mut numbers: Vec<_> = all.filter(|one| one.limits().is_some()).filter(used).collect();
+        // Those of the material are asked for most.
+        numbers.sort_by_key(|one| !matches!(one, Variable::Material(_)));
+        numbers
+    }
+
+    /// A value that could vary, too.
+    fn free(&self) -> Option<Varied> {
+        let varies = |one: &Variable| self.row.repeat.vary.iter().any(|v| v.parameter == one.path());
+        self.numbers().into_iter().filter(|one| !varies(one)).find_map(Variable::over_its_range)
+    }
+
+    /// The knobs of a varied value.
+    fn varied(&self, ui: &mut Ui, j: usize) -> Option<Edit> {
+        let varied = &self.row.repeat.vary[j];
+        ui.add_space(2.0);
+        let chosen = self.which_value(ui, j, varied);
+        let range =
+            if varied.values.is_empty() { self.range(ui, j, varied) } else { self.list(ui, j, varied) };
+        let is_grid = self.row.repeat.rows > 1;
+        let along = is_grid.then(|| choice(ui, Varied::along, varied.along, Along::ALL)).flatten();
+        let along = along.map(|along| {
+            self.with("Direction", |row| {
+                row.vary[j].along = along;
+                // A list gets as many values as there are steps.
+                *row = row.clone().resized(row.columns, row.rows);
+            })
+        });
+        chosen.or(range).or(along)
+    }
+
+    /// The value that varies, and a button that lets it be the same everywhere.
+    fn which_value(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
+        let numbers = self.numbers();
+        let now = numbers.iter().position(|one| one.path() == varied.parameter);
+        let mut names: Vec<_> = numbers.iter().map(|one| one.label()).collect();
+        // What only a file can choose is shown as it stands there.
+        names.extend(now.is_none().then_some(varied.parameter.as_str()));
+        let mut edit = None;
+        ui.horizontal(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if icon::button(ui, Icon::Bin, "The same for all copies").clicked() {
+                    edit = Some(self.with("Varied value", |row| drop(row.vary.remove(j))));
+                }
+                ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                    let caption = Caption::new("varies", "", Varied::parameter.help.trim());
+                    let new =
+                        knob::choice_knob(ui, "parameter", &caption, now.unwrap_or(numbers.len()), &names);
+                    let new = new.and_then(|k| numbers.get(k)).and_then(|one| one.over_its_range());
+                    if let Some(new) = new {
+                        let along = varied.along;
+                        edit =
+                            Some(self.varying("Varied value", j, |known| *known = Varied { along, ..new }));
+                    }
+                });
+            });
+        });
+        edit
+    }
+
+    /// The ends of a range, and its scale.
+    fn range(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
+        let known = self.numbers().into_iter().find(|one| one.path() == varied.parameter);
+        let limits = known.and_then(Variable::limits).unwrap_or_else(|| Varied::from.limits());
+        let end = |ui: &mut Ui, field: Field, value: Option<f32>| {
+            let caption = Caption::of(&field, field.help.trim());
+            let value = f64::from(value.unwrap_or_default());
+            knob::number_knob(ui, field.key, &caption, value, None, &limits).map(|v| v as f32)
+        };
+        let from = end(ui, Varied::from, varied.from)
+            .map(|v| self.varying("First value", j, |varied| varied.from = Some(v)));
+        let to = end(ui, Varied::to, varied.to)
+            .map(|v| self.varying("Last value", j, |varied| varied.to = Some(v)));
+        let scale = choice(ui, Varied::scale, varied.scale, Scale::ALL)
+            .map(|scale| self.varying("Scale", j, |varied| varied.scale = scale));
+        from.or(to).or(scale)
+    }
+
+    /// The listed values, and a button that makes a range of them.
+    fn list(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
+        let all: Vec<_> = varied.values.iter().map(Value::to_string).collect();
+        ui.add(Label::new(theme::small(ui, format!("Values: {}", all.join(", ")))).wrap());
+        let ends = [varied.values.first(), varied.values.last()].map(|end| match end {
+            Some(Value::Number(v)) => Some(*v),
+            Some(Value::Integer(n)) => Some(*n as f32),
+            _ => None,
+        });
+        let [Some(from), Some(to)] = ends else { return None };
+        let help = "From the first of these values to the last, in equal steps";
+        let range = ui.button("Range instead").on_hover_text(help).clicked();
+        range.then(|| {
+            self.varying("Varied value", j, |varied| {
+                (varied.values, varied.from, varied.to) = (Vec::new(), Some(from), Some(to));
+            })
+        })
+    }
+}
+
+/// The knob of a choice. Returns another one.
+fn choice<T: Word + PartialEq>(ui: &mut Ui, field: Field, now: T, all: &[T]) -> Option<T> {
+    let options: Vec<_> = all.iter().map(|one| one.about()).map(|[_, name, help]| [name, "", help]).collect();
+    let chosen = all.iter().position(|one| *one == now).unwrap_or(0);
+    let caption = Caption::of(&field, field.help.trim());
+    knob::choice_with_help(ui, field.key, &caption, chosen, &options).and_then(|k| all.get(k)).copied()
+}

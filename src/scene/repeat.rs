@@ -1,0 +1,124 @@
+//! The declaration of rows and grids: what an object of a scene file says about its copies.
+
+use glam::Vec3;
+
+use super::{
+    Field,
+    field::Kind,
+    held::{Word, word},
+    part::part,
+};
+use crate::{declared::choice, parameter::Value};
+
+/// Maximum number of values that vary in one row.
+pub const MAX_VARIED: usize = 4;
+
+choice! {
+    /// The way from the first value to the last.
+    Scale {
+        #[default]
+        Linear "linear" "linear" "Equal steps.",
+        Logarithmic "logarithmic" "logarithmic" "Equal factors.",
+    }
+}
+
+choice! {
+    /// The copies from one of which to the next a value varies.
+    Along {
+        #[default]
+        Columns "columns" "columns" "From column to column.",
+        Rows "rows" "rows" "From row to row.",
+        All "all" "all copies" "From copy to copy, one row after the other.",
+    }
+}
+
+word! {
+    Scale: |scale| scale.name(), scale.summary();
+    Along: |along| along.name(), along.summary();
+}
+
+/// The largest end of a range, so that steps between two ends stay finite.
+const FAR: f32 = 1e9;
+
+part! {
+    /// A value that differs from copy to copy: from one number to another, or as listed.
+    pub struct Varied("a varied value") {
+        /// Path of the value within the object: `material.roughness`, `size`, `tube_radius`, `reflection_model`.
+        parameter: String = Field::of("the parameter", Kind::Text(None))
+            .required("a varied value needs the path of a parameter, such as \"material.roughness\""), String::new();
+        /// Number of the first copy.
+        from: Option<f32> = Field::number("the first value", -FAR..=FAR).called("from"), None;
+        /// Number of the last copy.
+        to: Option<f32> = Field::number("the last value", -FAR..=FAR).called("to"), None;
+        /// `linear`: equal steps from copy to copy. `logarithmic`: equal factors.
+        scale: Scale = Field::of("the scale", Kind::Choice(Scale::words)), Scale::Linear;
+        /// Values of the copies one by one, instead of `from` and `to`.
+        values: Vec<Value> = Field::of("the values", Kind::List), Vec::new();
+        /// Copies of a grid from one of which to the next it varies.
+        along: Along = Field::of("the direction", Kind::Choice(Along::words)), Along::Columns;
+    }
+}
+
+part! {
+    /// Copies of an object in a row or a grid. The position of the object is that of the first copy.
+    pub struct Repeat("a row") {
+        /// Copies from column to column; in a row, all.
+        columns: u32 = Field::of("the number of columns", Kind::Count(1)).called("columns")
+            .required("a row needs the number of its copies"), 5;
+        /// Step from one column to the next.
+        spacing: Vec3 = Field::of("the spacing", Kind::Step).unit("m").always(), Vec3::X;
+        /// Copies from row to row: more than one make a grid.
+        rows: u32 = Field::of("the number of rows", Kind::Count(1)).called("rows"), 1;
+        /// Step from one row to the next.
+        row_spacing: Vec3 = Field::of("the spacing of rows", Kind::Step).unit("m"), Vec3::NEG_Y;
+        /// Labels below the copies with the values that vary.
+        labels: bool = Field::of("labels", Kind::Flag(["Hide the labels of", "Label"])), false;
+        /// Values that differ from copy to copy.
+        vary: Vec<Varied> = Field::of("", Kind::Parts), Vec::new();
+    }
+}
+
+impl Repeat {
+    /// The number of copies.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        u64::from(self.columns) * u64::from(self.rows)
+    }
+
+    /// The number of values from the first to the last in a direction.
+    #[must_use]
+    pub fn steps(&self, along: Along) -> u64 {
+        match along {
+            Along::Columns => self.columns.into(),
+            Along::Rows => self.rows.into(),
+            Along::All => self.total(),
+        }
+    }
+
+    /// The place of a copy in a direction, from 0.
+    #[must_use]
+    pub fn place(&self, copy: u32, along: Along) -> usize {
+        let columns = self.columns.max(1);
+        let place = match along {
+            Along::Columns => copy % columns,
+            Along::Rows => copy / columns,
+            Along::All => copy,
+        };
+        place as usize
+    }
+
+    /// The same with other numbers of columns and rows; lists of values are cut, or their last value is repeated.
+    #[must_use]
+    pub fn resized(mut self, columns: u32, rows: u32) -> Self {
+        (self.columns, self.rows) = (columns, rows);
+        let steps = [Along::Columns, Along::Rows, Along::All].map(|along| (along, self.steps(along)));
+        for varied in self.vary.iter_mut().filter(|varied| !varied.values.is_empty()) {
+            let count = steps.iter().find(|(along, _)| *along == varied.along).map_or(0, |(_, count)| *count);
+            let last = varied.values.last().cloned();
+            // More than a scene can hold is refused anyway.
+            let count = usize::try_from(count).unwrap_or(usize::MAX).min(super::MAX_OBJECTS);
+            last.into_iter().for_each(|last| varied.values.resize(count, last));
+        }
+        self
+    }
+}

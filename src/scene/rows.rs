@@ -1,0 +1,546 @@
+//! Rows and grids: one entry of a scene file that stands for several objects.
+//!
+//! In a file an object with [`repeat`](Object::repeat) is one entry. A scene in memory has the copies, each a complete
+//! object that knows its entry and its number: renderers, picking, explanations and exports treat them as any others.
+//! [`Scene::expanded`] leads from entries to copies, [`Scene::gathered`] back.
+
+use std::{borrow::Cow, ops::Range, sync::Arc};
+
+use glam::Vec3;
+
+use super::{
+    Field, MAX_OBJECTS, Object, Repeat, Repetition, Scene, Varied,
+    error::{Path, Problem, Segment},
+    field::Kind,
+    part::{Fields, Key, Structure as _},
+    range::significant,
+    repeat::{Along, MAX_VARIED, Scale},
+};
+use crate::{
+    parameter::{Parameter, Value, limits::Limits},
+    registry::Registry,
+    text::{did_you_mean, plural, quoted},
+};
+
+/// Maximum number of problems of rows in a file; more would take too long, since each names the nearest path.
+const MOST_PROBLEMS: usize = 200;
+
+/// A value of an object that may differ from copy to copy.
+#[derive(Clone, Copy, Debug)]
+pub enum Variable {
+    /// A field.
+    Field(&'static Field),
+    /// A parameter of the object's type.
+    Shape(&'static Parameter),
+    /// A parameter of the material.
+    Material(&'static Parameter),
+}
+
+impl Variable {
+    /// All of an object of a type.
+    pub fn all(object_type: &str, registry: &Registry) -> impl Iterator<Item = Self> {
+        // The copies have places by their spacing, and names by their numbers.
+        let may_vary = |field: &&&Field| {
+            matches!(
+                field.kind,
+                Kind::Number { .. } | Kind::Count(_) | Kind::Flag(_) | Kind::Rotation | Kind::Id(_)
+            )
+        };
+        let shape = registry.shape(object_type).map_or(&[][..], |shape| shape.parameters);
+        let fields = Object::FIELDS.iter().filter(may_vary).map(|field| Self::Field(field));
+        fields.chain(shape.iter().map(Self::Shape)).chain(registry.material_parameters().map(Self::Material))
+    }
+
+    /// The one with a path within the object, if there is one.
+    #[must_use]
+    pub fn with_path(path: &str, object_type: &str, registry: &Registry) -> Option<Self> {
+        let of_material = path.strip_prefix(Object::material.key).and_then(|rest| rest.strip_prefix('.'));
+        Self::all(object_type, registry).find(|known| match known {
+            Self::Material(p) => of_material == Some(p.name),
+            known => known.key().name() == path,
+        })
+    }
+
+    /// The one with a path within the object: `material.roughness`.
+    ///
+    /// # Errors
+    /// Returns the rule, with the nearest path.
+    pub fn of(path: &str, object_type: &str, registry: &Registry) -> Result<Self, String> {
+        if let Some(found) = Self::with_path(path, object_type, registry) {
+            return Ok(found);
+        }
+        let known: Vec<_> = Self::all(object_type, registry).map(|one| (one.path(), one)).collect();
+        // A path is nearer than a name, and a name than what it is called.
+        let paths = known.iter().map(|(path, _)| (&**path, &**path));
+        let names = known.iter().map(|(path, one)| (one.key().name(), &**path));
+        let labels = known.iter().map(|(path, one)| (one.label(), &**path));
+        let spellings = paths.chain(names).chain(labels);
+        let rule = "it must be the path of a value of the object that can differ, such as \"size\" or \
+                    \"material.roughness\"";
+        Err(rule.to_owned() + &did_you_mean(&path.replace("color", "colour"), spellings))
+    }
+
+    /// Its path within the object.
+    #[must_use]
+    pub fn path(self) -> Cow<'static, str> {
+        match self {
+            Self::Field(field) => field.key.into(),
+            Self::Shape(p) => p.name.into(),
+            Self::Material(p) => format!("{}.{}", Object::material.key, p.name).into(),
+        }
+    }
+
+    /// Its key within the object.
+    #[must_use]
+    pub fn key(self) -> Key {
+        match self {
+            Self::Field(field) => Key::Own(field.key),
+            Self::Shape(p) => Key::Own(p.name),
+            Self::Material(p) => Key::Material(p.name),
+        }
+    }
+
+    /// Its name for people.
+    #[must_use]
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Field(field) => field.label(),
+            Self::Shape(p) | Self::Material(p) => p.label,
+        }
+    }
+
+    /// The value with a number; `None` if it is not a number.
+    #[must_use]
+    pub fn of_number(self, v: f64) -> Option<Value> {
+        match self {
+            Self::Field(Field { kind: Kind::Number { .. }, .. }) => Some(Value::Number(v as f32)),
+            Self::Field(Field { kind: Kind::Count(_), .. }) => Some(Value::Integer(v.round() as i64)),
+            Self::Field(_) => None,
+            Self::Shape(p) | Self::Material(p) => p.kind.is_number().then(|| p.kind.of_numbers([v; 3])),
+        }
+    }
+
+    /// The legal numbers, if it is a number.
+    #[must_use]
+    pub fn limits(self) -> Option<Limits> {
+        self.of_number(0.0)?;
+        match self {
+            Self::Field(field) => Some(field.limits()),
+            Self::Shape(p) | Self::Material(p) => p.kind.limits(),
+        }
+    }
+
+    /// A number that varies from near one end of its range to near the other; `None` if it is not a number, or its range
+    /// has no ends.
+    #[must_use]
+    pub fn over_its_range(self) -> Option<Varied> {
+        let limits = self.limits()?;
+        let (low, high) = (limits.slider_min, limits.slider_max.min(limits.top()));
+        let at = |part: f64| {
+            let wanted = significant(low + part * (high - low), 2);
+            if limits.whole { wanted.round() } else { wanted }
+        };
+        let ends = [at(0.1), at(0.9)];
+        let usable = ends.iter().all(|end| limits.allows(*end) && end.abs() < 1e6);
+        let [from, to] = ends.map(|end| Some(end as f32));
+        usable.then(|| Varied { parameter: self.path().into_owned(), from, to, ..Varied::default() })
+    }
+
+    /// The value that an object has, given or default, if it has one.
+    #[must_use]
+    pub fn of_object(self, object: &Object) -> Option<Value> {
+        match self {
+            Self::Field(_) => object.value(self.key()),
+            Self::Shape(p) => Some(object.shape.get(p)),
+            Self::Material(p) => Some(object.material.get(p)),
+        }
+    }
+}
+
+/// A number of 32 bits as people write it, so that steps between 0.1 and 0.9 end in 0.3, 0.5 and 0.7.
+fn decimal(v: f32) -> f64 {
+    v.to_string().parse().unwrap_or_else(|_| v.into())
+}
+
+/// So many numbers from one to another; both ends are exact.
+fn between(from: f32, to: f32, scale: Scale, count: usize) -> impl Iterator<Item = f64> {
+    let [a, b] = [from, to].map(decimal);
+    (0..count).map(move |i| match i {
+        0 => a,
+        i if i + 1 == count => b,
+        i => {
+            let t = i as f64 / (count - 1) as f64;
+            match scale {
+                Scale::Linear => a + (b - a) * t,
+                Scale::Logarithmic => a * (b / a).powf(t),
+            }
+        }
+    })
+}
+
+/// The value of each step of a varied value, and which it is. Problems have paths from `at`.
+fn series(
+    varied: &Varied,
+    (object_type, steps): (&str, u64),
+    at: &Path,
+    registry: &Registry,
+) -> Result<(Variable, Vec<Value>), Problem> {
+    let path = |field: Field| at.key(field.key);
+    let variable = Variable::of(&varied.parameter, object_type, registry)
+        .map_err(|rule| Problem::value(path(Varied::parameter), quoted(&varied.parameter), rule))?;
+    let steps = usize::try_from(steps).unwrap_or(usize::MAX);
+    if !varied.values.is_empty() {
+        if varied.from.or(varied.to).is_some() {
+            let why = "conflicts with from and to; a varied value has a range or a list of values";
+            return Err(Problem::about(path(Varied::values), why));
+        }
+        let count = varied.values.len();
+        if count != steps {
+            let what = match varied.along {
+                Along::Columns => "column",
+                Along::Rows => "row",
+                Along::All => "copy",
+            };
+            let rule = format!("there must be one for each {what}: {steps}");
+            return Err(Problem::value(path(Varied::values), format!("a list of {count}"), rule));
+        }
+        return Ok((variable, varied.values.clone()));
+    }
+    let (Some(from), Some(to)) = (varied.from, varied.to) else {
+        let missing = if varied.from.is_none() { Varied::from } else { Varied::to };
+        let why = "is missing; a varied value needs from and to, or values";
+        return Err(Problem::about(path(missing), why));
+    };
+    if varied.scale == Scale::Logarithmic && from * to <= 0.0 {
+        let rule =
+            format!("factors lead from {from} to {to} only if both have the same sign and neither is 0");
+        return Err(Problem::value(path(Varied::scale), quoted(varied.scale.id()), rule));
+    }
+    let values: Option<Vec<_>> =
+        between(from, to, varied.scale, steps).map(|v| variable.of_number(v)).collect();
+    let values = values.ok_or_else(|| {
+        let rule = format!("the {} is not a number; give its values one by one", variable.label());
+        Problem::value(path(Varied::from), from, rule)
+    })?;
+    Ok((variable, values))
+}
+
+/// The problems of the fields of a part by themselves.
+fn of_fields(part: &dyn Fields, at: &Path, registry: &Registry, problems: &mut Vec<Problem>) {
+    part.each(&mut |field, held, _| {
+        if let Some(value) = held.value()
+            && let Err(rule) = field.check(&value, registry)
+        {
+            problems.push(Problem::value(at.key(field.key), value.written(), rule));
+        }
+    });
+}
+
+/// The copies for which an entry stands. An object without a row is its only one.
+///
+/// # Errors
+/// Returns the problems of the row, with their paths from the object on. What the copies have is not checked.
+pub fn copies(entry: &Object, registry: &Registry) -> Result<Vec<Object>, Vec<Problem>> {
+    let Repetition::Entry(repeat) = &entry.repeat else { return Ok(vec![entry.clone()]) };
+    let at = Path::root().key(Object::repeat.key);
+    let mut problems = Vec::new();
+    of_fields(&**repeat, &at, registry, &mut problems);
+    if let Err(problem) = room(repeat, 0) {
+        problems.push(problem);
+    }
+    let vary = at.key(Repeat::vary.key);
+    if repeat.vary.len() > MAX_VARIED {
+        let rule = format!("a row has at most {MAX_VARIED} varied values");
+        problems.push(Problem::value(vary.clone(), format!("a list of {}", repeat.vary.len()), rule));
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let mut all = Vec::with_capacity(repeat.vary.len());
+    for (j, varied) in repeat.vary.iter().enumerate() {
+        let at = vary.index(j);
+        let before = problems.len();
+        of_fields(varied, &at, registry, &mut problems);
+        let of_type = (&*entry.object_type, repeat.steps(varied.along));
+        if problems.len() == before {
+            match series(varied, of_type, &at, registry) {
+                Ok((variable, values)) => all.push((j, varied.along, variable, values)),
+                Err(problem) => problems.push(problem),
+            }
+        }
+        if repeat.vary[..j].iter().any(|other| other.parameter == varied.parameter) {
+            let rule = "it varies already; each value varies once";
+            problems.push(Problem::value(at.key(Varied::parameter.key), quoted(&varied.parameter), rule));
+        }
+    }
+    // A type brings the values that it allows.
+    all.sort_by_key(|(_, _, variable, _)| variable.key() != Object::object_type.into());
+    let (shared, total) = (Arc::new(entry.clone()), repeat.total() as u32);
+    let mut objects = Vec::with_capacity(total as usize);
+    for number in 0..total {
+        let mut copy = Object {
+            name: entry.name.as_ref().map(|name| name_of(name, number)),
+            position: position(entry.position, repeat, number),
+            repeat: Repetition::Copy { entry: shared.clone(), number },
+            ..entry.clone()
+        };
+        for (j, along, variable, values) in &all {
+            let place = repeat.place(number, *along);
+            let Some(value) = values.get(place) else { continue };
+            if !copy.set(variable.key(), Some(value.clone()), registry) {
+                let path = vary.index(*j).key(Varied::values.key).index(place);
+                problems.push(Problem::value(
+                    path,
+                    value.written(),
+                    format!("it is no {}", variable.label()),
+                ));
+            }
+        }
+        objects.push(copy);
+        if !problems.is_empty() {
+            break;
+        }
+    }
+    if problems.is_empty() { Ok(objects) } else { Err(problems) }
+}
+
+/// The name of a copy: "ball 3".
+fn name_of(name: &str, number: u32) -> String {
+    format!("{name} {}", u64::from(number) + 1)
+}
+
+/// The name of the entry from a new name of one of its copies.
+#[must_use]
+pub fn entry_name(copy: &str, number: u32) -> &str {
+    copy.strip_suffix(&format!(" {}", u64::from(number) + 1)).unwrap_or(copy)
+}
+
+/// The position of a copy. Its coordinates are the numbers that a person would calculate.
+fn position(first: Vec3, repeat: &Repeat, number: u32) -> Vec3 {
+    let [column, row] = [Along::Columns, Along::Rows].map(|along| repeat.place(number, along) as f64);
+    let along = |axis: usize| {
+        let [at, across, down] = [first, repeat.spacing, repeat.row_spacing].map(|v| decimal(v[axis]));
+        (at + column * across + row * down) as f32
+    };
+    Vec3::new(along(0), along(1), along(2))
+}
+
+/// Checks that a row has room beside so many other objects.
+fn room(repeat: &Repeat, others: usize) -> Result<(), Problem> {
+    let total = repeat.total();
+    if total + others as u64 <= MAX_OBJECTS as u64 {
+        return Ok(());
+    }
+    let path = Path::root().key(Object::repeat.key);
+    let all = match repeat.rows {
+        0 | 1 => format!("{total} copies"),
+        rows => format!("{} × {rows} copies", repeat.columns),
+    };
+    let beside = match others {
+        0 => String::new(),
+        n => format!(" beside {} before it", plural(n, "object")),
+    };
+    Err(Problem::about(
+        path,
+        format!("has {all}{beside}, but a scene must have at most {MAX_OBJECTS} objects"),
+    ))
+}
+
+/// A row of a scene: objects that follow each other, and the entry from which they come.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a> {
+    /// The index of the first copy.
+    pub first: usize,
+    /// The number of copies.
+    pub count: usize,
+    /// The object as in a file.
+    pub entry: &'a Object,
+    /// The row of the entry.
+    pub repeat: &'a Repeat,
+}
+
+impl Row<'_> {
+    /// The indices of the copies.
+    #[must_use]
+    pub fn range(&self) -> Range<usize> {
+        self.first..self.first + self.count
+    }
+
+    /// The values that vary.
+    pub fn variables(&self, registry: &Registry) -> impl Iterator<Item = Variable> {
+        let known =
+            |varied: &Varied| Variable::with_path(&varied.parameter, &self.entry.object_type, registry);
+        self.repeat.vary.iter().filter_map(known)
+    }
+}
+
+impl Scene {
+    /// The row to which an object belongs. A copy that was changed alone, or one of which a neighbour is missing, belongs
+    /// to none.
+    #[must_use]
+    pub fn row(&self, object: usize) -> Option<Row<'_>> {
+        let Repetition::Copy { entry, number } = &self.objects.get(object)?.repeat else { return None };
+        let Repetition::Entry(repeat) = &entry.repeat else { return None };
+        let first = object.checked_sub(*number as usize)?;
+        let count = usize::try_from(repeat.total()).ok()?;
+        let copies = self.objects.get(first..first.checked_add(count)?)?;
+        let is_next = |(i, copy): (usize, &Object)| match &copy.repeat {
+            Repetition::Copy { entry: of, number } => {
+                *number as usize == i && (Arc::ptr_eq(of, entry) || of == entry)
+            }
+            _ => false,
+        };
+        copies.iter().enumerate().all(is_next).then_some(Row { first, count, entry, repeat })
+    }
+
+    /// The scene with the copies of its rows in the places of their entries.
+    ///
+    /// # Errors
+    /// Returns the problems of rows.
+    pub fn expanded(self, registry: &Registry) -> Result<Self, Vec<Problem>> {
+        let (scene, problems) = self.expanded_as_far(registry);
+        if problems.is_empty() { Ok(scene) } else { Err(problems) }
+    }
+
+    /// The same, where an entry whose row has problems stays a single object.
+    pub(super) fn expanded_as_far(mut self, registry: &Registry) -> (Self, Vec<Problem>) {
+        if !self.objects.iter().any(|object| matches!(object.repeat, Repetition::Entry(_))) {
+            return (self, Vec::new());
+        }
+        let (mut objects, mut problems) = (Vec::new(), Vec::new());
+        for (i, entry) in std::mem::take(&mut self.objects).into_iter().enumerate() {
+            let Repetition::Entry(repeat) = &entry.repeat else {
+                objects.push(entry);
+                continue;
+            };
+            if problems.len() >= MOST_PROBLEMS {
+                objects.push(Object { repeat: Repetition::None, ..entry });
+                continue;
+            }
+            // A hostile file asks for millions.
+            let made = room(repeat, objects.len()).map_err(|problem| vec![problem]);
+            match made.and_then(|()| copies(&entry, registry)) {
+                Ok(all) => objects.extend(all),
+                Err(found) => {
+                    let at = Path::root().key(Self::objects.key).index(i);
+                    problems.extend(found.into_iter().map(|p| Problem { path: p.path.within(&at), ..p }));
+                    objects.push(Object { repeat: Repetition::None, ..entry });
+                }
+            }
+        }
+        self.objects = objects;
+        (self, problems)
+    }
+
+    /// The scene as in a file: with entries in the places of their copies. Copies that are no longer those of their entry
+    /// are single objects.
+    #[must_use]
+    pub fn gathered(&self, registry: &Registry) -> Cow<'_, Self> {
+        if !self.objects.iter().any(|object| matches!(object.repeat, Repetition::Copy { .. })) {
+            return Cow::Borrowed(self);
+        }
+        let mut objects = Vec::new();
+        let mut i = 0;
+        while let Some(object) = self.objects.get(i) {
+            let is_whole = |row: &Row| {
+                row.first == i
+                    && copies(row.entry, registry).is_ok_and(|all| all == self.objects[row.range()])
+            };
+            match self.row(i).filter(is_whole) {
+                Some(row) => {
+                    objects.push(row.entry.clone());
+                    i += row.count;
+                }
+                None => {
+                    let single = !matches!(object.repeat, Repetition::Entry(_));
+                    let repeat = if single { Repetition::None } else { object.repeat.clone() };
+                    objects.push(Object { repeat, ..object.clone() });
+                    i += 1;
+                }
+            }
+        }
+        Cow::Owned(Self {
+            objects,
+            name: self.name.clone(),
+            description: self.description.clone(),
+            reflection_model: self.reflection_model.clone(),
+            shading_model: self.shading_model.clone(),
+            lights: self.lights.clone(),
+            variants: self.variants.clone(),
+            ..*self
+        })
+    }
+
+    /// The index in a file of an object, and the number of its copy if it is in a row.
+    #[must_use]
+    pub fn place_in_file(&self, object: usize) -> (usize, Option<usize>) {
+        let (mut i, mut entries) = (0, 0);
+        loop {
+            match self.row(i) {
+                Some(row) if row.range().contains(&object) => return (entries, Some(object - row.first)),
+                Some(row) => i += row.count,
+                None if i >= object => return (entries, None),
+                None => i += 1,
+            }
+            entries += 1;
+        }
+    }
+
+    /// Problems of objects, with the paths that they have in a file. Those that all copies of a row have are listed once.
+    pub(super) fn as_in_file(&self, problems: Vec<Problem>, registry: &Registry) -> Vec<Problem> {
+        if problems.is_empty() || !self.objects.iter().any(|o| matches!(o.repeat, Repetition::Copy { .. })) {
+            return problems;
+        }
+        // The place of each object.
+        let mut places = Vec::with_capacity(self.objects.len());
+        let mut entries = 0;
+        while places.len() < self.objects.len() {
+            let row = self.row(places.len());
+            let count = row.map_or(1, |row| row.count);
+            places.extend((0..count).map(|copy| (entries, row.map(|row| (row, copy)))));
+            entries += 1;
+        }
+        let mut found: Vec<Problem> = Vec::with_capacity(problems.len());
+        for problem in problems {
+            let place = problem.path.index_in(Self::objects.key).and_then(|i| places.get(i));
+            let Some((entry, copy)) = place else {
+                found.push(problem);
+                continue;
+            };
+            let at = Path::root().key(Self::objects.key).index(*entry);
+            let rest = Path::of(problem.path.segments()[2..].to_vec());
+            let problem = match copy {
+                Some((row, copy)) => of_copy(problem, &rest, row, *copy, &at, registry),
+                None => Problem { path: rest.within(&at), ..problem },
+            };
+            // Another copy with the same problem says nothing new.
+            let same = |known: &Problem| {
+                let alike = known.rule == problem.rule || known.found.is_none() && problem.found.is_none();
+                alike && known.path == problem.path
+            };
+            if copy.is_none() || !found.iter().rev().take_while(|known| known.path.starts_with(&at)).any(same)
+            {
+                found.push(problem);
+            }
+        }
+        found
+    }
+}
+
+/// A problem of a copy, at the place of the file that caused it.
+fn of_copy(problem: Problem, rest: &Path, row: &Row, copy: usize, at: &Path, registry: &Registry) -> Problem {
+    let repeat = at.key(Object::repeat.key);
+    let found = problem.found.clone().unwrap_or_default();
+    let is_position = matches!(rest.segments(), [Segment::Key(key)] if key == Object::position.key);
+    if is_position && copy > 0 {
+        return Problem::about(repeat, format!("puts copy {} at {found}, but {}", copy + 1, problem.rule));
+    }
+    let name = rest.to_string();
+    match row.variables(registry).position(|variable| variable.path() == name) {
+        Some(j) => Problem::about(
+            repeat.key(Repeat::vary.key).index(j),
+            format!("gives copy {} the value {found}, but {}", copy + 1, problem.rule),
+        ),
+        None => Problem { path: rest.within(at), ..problem },
+    }
+}

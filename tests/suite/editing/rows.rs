@@ -1,0 +1,292 @@
+//! Rows in the window: made, edited as one, undone in one step, and broken up.
+
+use glam::Vec3;
+use lights_camera_models::{
+    document::{Document, Edit, Selection},
+    panel::{
+        command::all,
+        state::{Action, Session},
+    },
+    parameter::Value,
+    registry::Registry,
+    scene::{Light, Object, Part, Repeat, Repetition, Scene, SceneSize, Varied, check, rows::Row},
+};
+
+use crate::{
+    helpers::support::{read, written},
+    window::panels::Bench,
+};
+
+fn varied() -> Varied {
+    Varied { parameter: "material.roughness".to_owned(), from: Some(0.1), to: Some(0.9), ..Varied::default() }
+}
+
+fn entry(repeat: Repeat) -> Object {
+    Object {
+        name: Some("ball".to_owned()),
+        position: Vec3::new(2.0, 5.0, 5.0),
+        size: 1.0,
+        repeat: Repetition::Entry(Box::new(repeat)),
+        ..Object::default()
+    }
+}
+
+/// A cube, a row of five, and another cube.
+fn scene() -> Scene {
+    let cube = |x: f32| Object {
+        object_type: "cube".to_owned(),
+        position: Vec3::new(x, 2.0, 5.0),
+        size: 1.0,
+        ..Object::default()
+    };
+    let row =
+        Repeat { columns: 5, spacing: Vec3::new(1.5, 0.0, 0.0), vary: vec![varied()], ..Repeat::default() };
+    let scene = Scene {
+        reflection_model: "metallic_roughness".to_owned(),
+        objects: vec![cube(3.0), entry(row), cube(7.0)],
+        ..Scene::default()
+    };
+    scene.expanded(&Registry::builtin()).expect("the row is legal")
+}
+
+fn document() -> Document {
+    Document::new(scene())
+}
+
+fn row(document: &Document) -> Row<'_> {
+    document.row(1).expect("the row is there")
+}
+
+/// The edit of the row through one of its copies.
+fn changed(document: &Document, object: usize, change: impl FnOnce(&mut Repeat)) -> Edit {
+    let row = document.row(object).expect("a copy");
+    let mut repeat = row.repeat.clone();
+    change(&mut repeat);
+    let repeat = Repetition::Entry(Box::new(repeat));
+    Edit::Row { object, entry: Some(Box::new(Object { repeat, ..row.entry.clone() })), what: "Number" }
+}
+
+fn roughness(document: &Document) -> Vec<Option<Value>> {
+    document.objects.iter().map(|o| o.material.0.get("roughness").cloned()).collect()
+}
+
+#[test]
+fn a_value_set_for_one_copy_is_set_for_all_in_one_step() {
+    let registry = Registry::builtin();
+    let mut document = document();
+    let before = document.scene().clone();
+    let edit = Edit::material(Part::Object(3), "metallic", Value::Number(0.5));
+    document.edit(edit, Selection::Object(3), &registry).expect("it may be set");
+    assert!((1..6).all(|i| document.objects[i].material.0["metallic"] == Value::Number(0.5)));
+    assert!(document.objects[0].material.0.is_empty() && document.objects[6].material.0.is_empty());
+    assert_eq!(row(&document).entry.material.0["metallic"], Value::Number(0.5));
+    assert_eq!(document.steps().collect::<Vec<_>>(), ["Metallic of ball"]);
+    assert_eq!(read(&written(&document)), *document.scene());
+    document.undo();
+    assert!(*document.scene() == before);
+    document.redo();
+    assert_eq!(document.objects[5].material.0["metallic"], Value::Number(0.5));
+}
+
+#[test]
+fn a_row_moves_as_one_of_its_copies_does_and_is_renamed_as_one() {
+    let registry = Registry::builtin();
+    let mut document = document();
+    let part = Part::Object(2);
+    let to = document.objects[2].position + Vec3::new(0.0, 1.0, 0.0);
+    document.edit(Edit::set(part, Object::position, to), Selection::Room, &registry).expect("there is room");
+    assert!((1..6).all(|i| document.objects[i].position.y == 6.0));
+    assert_eq!(document.objects[2].position, to);
+    document.edit(Edit::set(part, Object::name, "kugel 2"), Selection::Room, &registry).expect("a name");
+    let names: Vec<_> = document.objects[1..6].iter().map(|o| o.name.clone().unwrap_or_default()).collect();
+    assert_eq!(names, ["kugel 1", "kugel 2", "kugel 3", "kugel 4", "kugel 5"]);
+    // Out of the room, for the last copy alone.
+    let far = document.objects[2].position + Vec3::new(2.5, 0.0, 0.0);
+    let said = document.edit(Edit::set(part, Object::position, far), Selection::Room, &registry);
+    let said = said.expect_err("copy 5 would be outside");
+    assert!(said.starts_with("Copy 5 of kugel: position is [10.5, 6, 5], but a position must be"), "{said}");
+    assert!(!document.allows(&Edit::set(part, Object::position, far), &registry));
+}
+
+#[test]
+fn a_value_that_varies_is_changed_by_its_range() {
+    let registry = Registry::builtin();
+    let mut document = document();
+    let edit = Edit::material(Part::Object(3), "roughness", Value::Number(0.5));
+    let said = document.edit(edit, Selection::Room, &registry).expect_err("it varies");
+    assert_eq!(said, "Roughness differs from copy to copy: change it under “Row”.");
+    let edit = changed(&document, 3, |row| row.vary[0].to = Some(0.5));
+    document.edit(edit, Selection::Room, &registry).expect("a range");
+    let expected = [0.1, 0.2, 0.3, 0.4, 0.5].map(|v| Some(Value::Number(v)));
+    assert_eq!(roughness(&document)[1..6], expected);
+    let edit = changed(&document, 3, |row| row.vary[0].to = Some(1.5));
+    let said = document.edit(edit, Selection::Room, &registry).expect_err("beyond its range");
+    assert!(said.starts_with("Copy 4 of ball: material.roughness is 1.15, but "), "{said}");
+}
+
+#[test]
+fn more_and_fewer_copies_are_one_step_and_the_others_keep_their_identity() {
+    let registry = Registry::builtin();
+    let mut document = document();
+    let before = document.scene().clone();
+    let ids = |document: &Document| -> Vec<_> {
+        (0..document.objects.len()).map(|i| document.object_id(i).expect("there")).collect()
+    };
+    let known = ids(&document);
+    for columns in [6, 3, 4] {
+        let edit = changed(&document, 2, |row| row.columns = columns);
+        document.edit(edit, Selection::Object(2), &registry).expect("there is room");
+        assert_eq!(document.objects.len(), 2 + columns as usize);
+        assert_eq!(document.object_id(1 + columns as usize), Some(known[6]), "the last cube");
+        assert_eq!(ids(&document)[..4], known[..4]);
+        assert_eq!(check::scene(&document, &registry), []);
+    }
+    assert_eq!(document.steps().len(), 1, "a drag of the knob is one step");
+    assert_eq!(roughness(&document)[4], Some(Value::Number(0.9)));
+    document.undo();
+    assert!(*document.scene() == before);
+    assert_eq!(ids(&document), known);
+    document.redo();
+    assert_eq!(document.objects.len(), 6);
+    let edit = changed(&document, 2, |row| row.columns = 20_000);
+    let said = document.edit(edit, Selection::Object(2), &registry).expect_err("too many");
+    assert!(said.contains("20000 copies") && said.contains("at most 10000"), "{said}");
+}
+
+#[test]
+fn single_objects_are_what_the_row_showed() {
+    let registry = Registry::builtin();
+    let mut document = document();
+    let before = document.scene().clone();
+    let edit = Edit::Row { object: 4, entry: None, what: "Single objects" };
+    document.edit(edit.clone(), Selection::Object(4), &registry).expect("a row");
+    assert!((0..7).all(|i| document.row(i).is_none()));
+    for (old, new) in before.objects.iter().zip(&document.objects) {
+        assert_eq!(Object { repeat: Repetition::None, ..old.clone() }, *new);
+    }
+    assert_eq!(read(&written(&document)).objects.len(), 7);
+    assert!(document.edit(edit, Selection::Object(4), &registry).is_err(), "it is none any more");
+    document.undo();
+    assert!(*document.scene() == before);
+    assert!(document.row(4).is_some());
+}
+
+#[test]
+fn copies_are_deleted_and_hidden_as_one_and_duplicated_alone() {
+    let registry = Registry::builtin();
+    let mut session = Session::new(scene());
+    session.apply(Action::Select(Selection::Object(3)), &registry);
+    session.apply(Action::Toggle(Selection::Object(3)), &registry);
+    assert_eq!(session.document.shown().count(), 2);
+    session.apply(Action::Toggle(Selection::Object(3)), &registry);
+    session.apply(Action::Duplicate(Selection::Object(3)), &registry);
+    assert_eq!((session.document.objects.len(), session.selection), (8, Selection::Object(6)));
+    assert_eq!(session.document.objects[6].repeat, Repetition::None);
+    assert_eq!(session.document.row(1).map(|row| row.count), Some(5), "the row stays whole");
+    session.apply(Action::Undo, &registry);
+    session.apply(Action::Select(Selection::Object(6)), &registry);
+    session.apply(Action::Remove(Selection::Object(2)), &registry);
+    assert_eq!((session.document.objects.len(), session.selection), (2, Selection::Object(1)));
+    session.apply(Action::Undo, &registry);
+    assert_eq!(session.document.objects.len(), 7);
+    // The last object cannot go, and neither can the last row.
+    let mut session = Session::new(Scene { objects: scene().objects[1..6].to_vec(), ..scene() });
+    session.apply(Action::Remove(Selection::Object(0)), &registry);
+    assert_eq!(session.document.objects.len(), 5);
+}
+
+#[test]
+fn the_selection_stays_at_its_copy_or_moves_to_the_first() {
+    let registry = Registry::builtin();
+    let mut session = Session::new(scene());
+    session.apply(Action::Select(Selection::Object(5)), &registry);
+    let edit = changed(&session.document, 5, |row| row.columns = 6);
+    session.apply(Action::Edit(edit), &registry);
+    assert_eq!(session.selection, Selection::Object(5));
+    let edit = changed(&session.document, 5, |row| row.columns = 2);
+    session.apply(Action::Edit(edit), &registry);
+    assert_eq!(session.selection, Selection::Object(1), "not at the cube behind the row");
+}
+
+#[test]
+fn a_new_row_fits_room_and_picture_and_varies_what_says_most() {
+    let registry = Registry::builtin();
+    let mut session =
+        Session::new(Scene { reflection_model: "metallic_roughness".to_owned(), ..Scene::default() });
+    let before = session.document.scene().clone();
+    session.apply(Action::MakeRow(Selection::Object(0)), &registry);
+    assert_eq!(session.document.objects.len(), 5, "{:?}", session.messages);
+    let row = session.document.row(0).expect("a row");
+    assert_eq!((row.repeat.columns, row.repeat.labels), (5, true));
+    assert_eq!(row.repeat.vary, [varied()]);
+    assert_eq!(check::scene(&session.document, &registry), []);
+    let [first, last] = [0, 4].map(|i| session.document.objects[i].position.x);
+    assert!((first + last - 10.0).abs() < 1e-3 && first < last, "around its place: {first}, {last}");
+    // Seen from x = 5, 4.5 m away, at 45° and 16:9.
+    let half = 4.5 * 22.5f32.to_radians().tan() * 16.0 / 9.0;
+    assert!(last + 0.5 * session.document.objects[4].size <= 5.0 + half);
+    assert!(session.messages.iter().any(|note| note.text.contains("smaller")));
+    session.apply(Action::Undo, &registry);
+    assert!(*session.document.scene() == before, "one undo");
+    // In a small room.
+    let size = SceneSize { width: 1.0, height: 1.0, depth: 1.0 };
+    let mut small = Scene { scene_size: size, ..Scene::default() };
+    small.observer.position = Vec3::new(0.5, 0.5, 0.95);
+    small.lights[0] = Light { position: Some(Vec3::new(0.9, 0.9, 0.9)), ..Light::default() };
+    small.objects[0] = Object { position: Vec3::new(0.2, 0.5, 0.3), size: 0.2, ..Object::default() };
+    let mut session = Session::new(small);
+    session.apply(Action::MakeRow(Selection::Object(0)), &registry);
+    assert_eq!(session.document.objects.len(), 5, "{:?}", session.messages);
+    session.apply(Action::MakeRow(Selection::Room), &registry);
+    session.apply(Action::MakeRow(Selection::Object(2)), &registry);
+    assert_eq!(session.document.objects.len(), 5);
+}
+
+#[test]
+fn every_model_and_object_type_makes_a_legal_row() {
+    let registry = Registry::builtin();
+    for model in registry.models() {
+        let scene = Scene { reflection_model: model.declaration.id.to_owned(), ..Scene::default() };
+        let mut session = Session::new(scene);
+        session.apply(Action::MakeRow(Selection::Object(0)), &registry);
+        assert_eq!(session.document.objects.len(), 5, "{}: {:?}", model.declaration.id, session.messages);
+    }
+}
+
+#[test]
+fn the_properties_say_which_copy_is_shown_and_edit_the_row() {
+    let shows = |bench: &mut Bench, words: &str| bench.texts().iter().any(|text| text.contains(words));
+    let mut bench = Bench::new(Session::new(scene()));
+    bench.apply(Action::Select(Selection::Object(3)));
+    bench.settle();
+    assert!(shows(&mut bench, "Copy 3 of 5 of ball"), "{:?}", bench.texts());
+    bench.type_into("columns", "4");
+    assert_eq!(bench.session.document.objects.len(), 6, "{:?}", bench.session.messages);
+    bench.apply(Action::Undo);
+    bench.apply(Action::Edit(Edit::Row { object: 3, entry: None, what: "Single objects" }));
+    bench.settle();
+    assert!(bench.session.document.row(3).is_none());
+    assert!(!shows(&mut bench, "Copy 3 of"), "{:?}", bench.texts());
+    bench.apply(Action::MakeRow(Selection::Object(3)));
+    bench.settle();
+    assert_eq!(bench.session.document.objects.len(), 11, "{:?}", bench.session.messages);
+}
+
+#[test]
+fn the_commands_are_there_when_they_can_be_used() {
+    let registry = Registry::builtin();
+    let why_not = |session: &Session, id: &str| {
+        let all = all(session, &registry, false);
+        let found = all.commands().into_iter().find(|(_, command)| command.id == id);
+        found.expect("it is declared").1.why_not.clone().map(std::borrow::Cow::into_owned)
+    };
+    let mut session = Session::new(scene());
+    session.apply(Action::Select(Selection::Room), &registry);
+    assert_eq!(why_not(&session, "row").as_deref(), Some("No object is selected"));
+    session.apply(Action::Select(Selection::Object(0)), &registry);
+    assert_eq!(why_not(&session, "row"), None);
+    assert_eq!(why_not(&session, "single_objects").as_deref(), Some("The object is in no row"));
+    session.apply(Action::Select(Selection::Object(2)), &registry);
+    assert_eq!(why_not(&session, "row").as_deref(), Some("The object is in a row already"));
+    assert_eq!(why_not(&session, "single_objects"), None);
+}
