@@ -25,24 +25,48 @@ pub(super) struct Choice {
     /// Compare view A with this one: its letter, or the name of its variant
     #[arg(long, value_name = "VIEW")]
     pub(super) with: Option<String>,
-    /// Show the size of differences, or with their sign: absolute or signed
-    #[arg(long, value_parser = |text: &str| word::<Sign>(text, Comparison::sign))]
-    sign: Option<Sign>,
-    /// Compare this number of pixels: largest, luminance, red, green or blue
-    #[arg(long, value_parser = |text: &str| word::<Channel>(text, Comparison::channel))]
-    channel: Option<Channel>,
+    #[command(flatten)]
+    maps: Maps,
     /// Compare display codes, or linear light: codes or light
     #[arg(long, value_parser = |text: &str| word::<Compared>(text, Comparison::values))]
     values: Option<Compared>,
-    /// Multiply differences by this, 1 to 100, before they become colours; else by what fits the largest one
-    #[arg(long, value_name = "FACTOR", value_parser = |text: &str| number(text, Comparison::amplification))]
-    amplification: Option<f32>,
     /// Place the edge of a wipe here: 0 at the left or top, 1 at the right or bottom
     #[arg(long, value_name = "PLACE", value_parser = |text: &str| number(text, Comparison::split))]
     split: Option<f32>,
     /// Direction of the edge of a wipe: vertical or horizontal
     #[arg(long, value_parser = |text: &str| word::<Edge>(text, Comparison::edge))]
     edge: Option<Edge>,
+}
+
+/// Options that change how maps of differences look.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(super) struct Maps {
+    /// Show the size of differences, or with their sign: absolute or signed
+    #[arg(long, value_parser = |text: &str| word::<Sign>(text, Comparison::sign))]
+    sign: Option<Sign>,
+    /// Compare this number of pixels: largest, luminance, red, green or blue
+    #[arg(long, value_parser = |text: &str| word::<Channel>(text, Comparison::channel))]
+    channel: Option<Channel>,
+    /// Multiply differences by this, 1 to 100, before they become colours; else by what fits the largest one
+    #[arg(long, value_name = "FACTOR", value_parser = |text: &str| number(text, Comparison::amplification))]
+    amplification: Option<f32>,
+}
+
+impl Maps {
+    /// True if one of them is given.
+    pub(super) fn is_given(self) -> bool {
+        self.sign.is_some() || self.channel.is_some() || self.amplification.is_some()
+    }
+
+    /// The comparison with these changes.
+    pub(super) fn applied(self, comparison: Comparison) -> Comparison {
+        Comparison {
+            sign: self.sign.unwrap_or(comparison.sign),
+            channel: self.channel.unwrap_or(comparison.channel),
+            amplification: self.amplification.or(comparison.amplification),
+            ..comparison
+        }
+    }
 }
 
 /// Reads the word of a field.
@@ -66,13 +90,10 @@ impl Choice {
         };
         Comparison {
             layout: self.layout.unwrap_or(usual),
-            sign: self.sign.unwrap_or(comparison.sign),
-            channel: self.channel.unwrap_or(comparison.channel),
             values: self.values.unwrap_or(comparison.values),
-            amplification: self.amplification.or(comparison.amplification),
             split: self.split.unwrap_or(comparison.split),
             edge: self.edge.unwrap_or(comparison.edge),
-            with: comparison.with,
+            ..self.maps.applied(comparison)
         }
     }
 }
