@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::{
     Options, Outcome, gauged,
-    light_samples::{self, Sampling},
+    light_samples::Sampling,
     outputs,
     render::{Size, cpu_can_draw, samples},
     scenes::Source,
@@ -16,31 +16,22 @@ use super::{
 };
 use crate::files::Shown as _;
 use crate::{
-    caption::{self, Sampled},
     export::write::inputs,
     failure::Failure,
-    files::{self, Output},
+    files,
     registry::Registry,
-    render::capture::png::{self, About},
     scene::{Comparison, Scene},
-    sweep::{self, Against, Axis, GIF, Grid, MAX_PIXELS, MAX_RATE, MAX_SIDE, Page, Parts, Settings, Sweep},
+    sweep::{self, Axis, Format, Look, MAX_RATE, Parts, Plan, Settings, Sweep},
     text::{items, plural},
 };
-
-/// The usual size of a picture among others on a sheet.
-const SMALL: Size = Size { width: 320, height: 180 };
-/// The usual size of the pictures of a film.
-const MIDDLE: Size = Size { width: 640, height: 360 };
-/// The usual size of a picture in a folder.
-const LARGE: Size = Size { width: 1280, height: 720 };
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
     /// Scene file; `-` is standard input; without one, the default scene
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
-    /// Vary a value of the scene: objects[0].material.roughness=0.1..0.9:5, lights[0].intensity=1..100:5:log,
-    /// reflection_model=lambert,phong; can be repeated: the first makes the columns of a sheet, the second its rows
+    /// Vary a value of the scene, or its view: objects[0].material.roughness=0.1..0.9:5, lights[0].intensity=1..100:5:log,
+    /// reflection_model=lambert,phong, view=A,B; can be repeated: the first makes the columns of a sheet, the second its rows
     #[arg(long, value_name = "PATH=VALUES")]
     vary: Vec<String>,
     /// Turn the observer about the middle of the objects, 360:24, or something else: lights[0]=360:24, objects[0]=360:24,
@@ -60,7 +51,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     film: bool,
     /// Pictures of a film per second, 1 to 50
-    #[arg(long, value_name = "RATE", default_value = "12", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_RATE)))]
+    #[arg(long, value_name = "RATE", default_value = "12", value_parser = rate)]
     fps: u32,
     /// Size of each picture in pixels; by default 1280x720 in a folder, 640x360 in a film, and 320x180 among others
     #[arg(long, value_name = "WxH")]
@@ -92,13 +83,16 @@ fn point(text: &str) -> Result<Vec3, String> {
     point.filter(|point| point.is_finite()).ok_or_else(|| "it must be three numbers, e.g. 5,5,5".to_owned())
 }
 
+fn rate(text: &str) -> Result<u32, String> {
+    let rate = text.trim().parse().ok().filter(|rate| (1..=MAX_RATE).contains(rate));
+    rate.ok_or_else(|| format!("it must be a whole number from 1 to {MAX_RATE}"))
+}
+
 /// What is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     Folder,
-    Sheet,
-    Gif,
-    Apng,
+    File(Format),
 }
 
 impl Form {
@@ -108,10 +102,10 @@ impl Form {
         let extension = output.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         let form = match extension.as_str() {
             _ if output.is_dir() => Self::Folder,
-            "png" if film => Self::Apng,
-            "png" => Self::Sheet,
-            "apng" => Self::Apng,
-            "gif" => Self::Gif,
+            "png" if film => Self::File(Format::Apng),
+            "png" => Self::File(Format::Sheet),
+            "apng" => Self::File(Format::Apng),
+            "gif" => Self::File(Format::Gif),
             "webm" | "mp4" | "mkv" | "avi" | "mov" => {
                 return usage(
                     "videos cannot be written; name a folder, and let a video encoder join its pictures",
@@ -127,10 +121,6 @@ impl Form {
             Self::Folder if film => usage("a film is one file: name a .png, .apng or .gif file"),
             form => Ok(form),
         }
-    }
-
-    fn is_film(self) -> bool {
-        matches!(self, Self::Gif | Self::Apng)
     }
 }
 
@@ -153,10 +143,10 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let read = inputs(source.path(), [&scene], registry);
     let idle = arguments.sampling.idle(&scene, registry);
     idle.iter().for_each(|idle| options.tell(format_args!("{}: {idle}", source.name())));
-    let job = Job { arguments, form, sweep: &sweep, source: &source, options };
+    let job = Job { arguments, sweep: &sweep, source: &source, options };
     match form {
         Form::Folder => job.folder(&read),
-        _ => job.file(&read),
+        Form::File(format) => job.file(format, &read),
     }
 }
 
@@ -200,20 +190,16 @@ fn axes(arguments: &Arguments, scene: &Scene, registry: &Registry) -> Result<Vec
 /// A sweep to write.
 struct Job<'a> {
     arguments: &'a Arguments,
-    form: Form,
     sweep: &'a Sweep<'a>,
     source: &'a Source,
     options: Options,
 }
 
 impl Job<'_> {
-    fn settings(&self, usual: Size) -> Settings {
-        let Size { width, height } = self.arguments.size.unwrap_or(usual);
-        Settings {
-            size: [width, height],
-            samples: self.arguments.samples,
-            until: self.arguments.sampling.until(),
-        }
+    fn settings(&self) -> Settings {
+        let Arguments { size, samples, sampling, .. } = self.arguments;
+        let usual = Settings::default();
+        Settings { size: size.map_or(usual.size, sides), samples: *samples, until: sampling.until() }
     }
 
     /// Fails if a scene cannot be drawn by the CPU renderer.
@@ -230,7 +216,7 @@ impl Job<'_> {
         let folder = &self.arguments.output;
         (0..self.sweep.count()).try_for_each(|i| outputs::picture(&folder.join(self.sweep.file(i)), read))?;
         files::tidy(folder).iter().for_each(super::complain);
-        let (settings, check) = (self.settings(LARGE), self.check());
+        let (settings, check) = (self.settings(), self.check());
         let written = gauged(&self.what(), self.options, |progress| {
             sweep::files(self.sweep, &settings, folder, &check, progress)
         })?;
@@ -244,145 +230,40 @@ impl Job<'_> {
     }
 
     /// Writes a sheet, or a film of sheets.
-    fn file(&self, read: &[PathBuf]) -> Outcome {
-        let Self { arguments, sweep, form, .. } = self;
+    fn file(&self, format: Format, read: &[PathBuf]) -> Outcome {
+        let Self { arguments, sweep, options, .. } = self;
         let output = &arguments.output;
-        let format = if *form == Form::Gif { GIF } else { files::PNG };
-        outputs::of_format(output, format, read)?;
-        // Of a film, the last one is time.
-        let beside = sweep.axes.len() - usize::from(form.is_film());
-        let axes: Vec<&Axis> = sweep.axes[..beside].iter().collect();
-        let counts: Vec<_> = axes.iter().map(|axis| axis.count()).collect();
-        let columns = arguments.columns.map(|columns| columns as usize);
-        let grid = Grid::of(&counts, columns).map_err(Failure::Usage)?;
-        let each: usize = counts.iter().product();
-        let settings = self.settings(if each > 1 { SMALL } else { MIDDLE });
-        let against = self.against(&counts)?;
-        let page = Page::new(&axes, grid, settings.size, against.is_some());
-        let page = if arguments.no_labels { page.silent() } else { page };
-        let time = sweep.axes.get(beside).filter(|time| !time.moves && !arguments.no_labels);
-        let page = if time.is_some() { page.dated() } else { page };
-        room(&page, settings.size, sweep.count())?;
-
-        let parts = Parts::beside(output);
-        let check = self.check();
-        outputs::tidy_beside(output);
-        let drawn = gauged(&self.what(), self.options, |progress| {
-            sweep::pictures(sweep, &settings, Some(&parts), &check, progress)
-        })
-        .inspect_err(|_| self.tell_of_parts(&parts))?;
-        let maps = match &against {
-            Some(comparison) => {
-                let column = arguments.against.unwrap_or(1) as usize - 1;
-                let against = Against { column, comparison };
-                sweep::maps(sweep, &drawn.pictures, settings.size, against)
-                    .map_err(|error| Failure::Invalid(error.to_string()))?
-            }
-            None => Vec::new(),
+        outputs::of_format(output, format.signature(), read)?;
+        let compared = arguments.maps.applied(Comparison::default());
+        let look = Look {
+            format,
+            size: arguments.size.map(sides),
+            columns: arguments.columns.map(|columns| columns as usize),
+            against: arguments.against.map(|column| (column as usize - 1, compared)),
+            words: !arguments.no_labels,
+            rate: arguments.fps,
         };
-        let sheets: Vec<_> = drawn
-            .pictures
-            .chunks(each)
-            .enumerate()
-            .map(|(i, pictures)| {
-                let maps = maps.get(i * each..(i + 1) * each).unwrap_or_default();
-                page.compose(pictures, maps, time.map(|time| &time.labels[i]))
-            })
-            .collect();
-        self.write(sheets, page.size(), &drawn.sampled).inspect_err(|_| self.tell_of_parts(&parts))?;
-        parts.remove();
-        let kept = kept(drawn.kept);
-        self.options.tell(format_args!(
-            "wrote {}: {}{kept}",
-            output.shown(),
-            plural(sweep.count(), "picture")
-        ));
-        Ok(())
-    }
-
-    /// Says where finished pictures are, if some are kept.
-    fn tell_of_parts(&self, parts: &Parts) {
-        if parts.folder().is_dir() {
+        let plan = Plan::new(sweep, look, self.settings()).map_err(Failure::Usage)?;
+        outputs::tidy_beside(output);
+        let check = self.check();
+        let written = gauged(&self.what(), *options, |progress| {
+            plan.write(output, &self.source.name(), &check, progress)
+        });
+        let parts = Parts::beside(output);
+        if written.is_err() && parts.folder().is_dir() {
             let folder = parts.folder().shown();
-            self.options.tell(format_args!(
+            options.tell(format_args!(
                 "finished pictures are kept in {folder}; the same command goes on from them"
             ));
         }
-    }
-
-    /// How pictures are compared, if they are.
-    fn against(&self, counts: &[usize]) -> Result<Option<Comparison>, Failure> {
-        let Some(column) = self.arguments.against else { return Ok(None) };
-        let columns = counts.first().copied().unwrap_or(1);
-        if columns < 2 {
-            let why =
-                "there is only one column; vary one more value, before the one that a film shows in time";
-            return Err(Failure::Usage(format!("--against: {why}")));
-        }
-        if column as usize > columns {
-            return Err(Failure::Usage(format!(
-                "--against is {column}, but it must be a column from 1 to {columns}"
-            )));
-        }
-        Ok(Some(self.arguments.maps.applied(Comparison::default())))
-    }
-
-    /// Writes the pictures of a film, or the one of a sheet, with their caption.
-    fn write(&self, sheets: Vec<Vec<u8>>, size: [u32; 2], sampled: &[Sampled]) -> Outcome {
-        let Self { arguments, sweep, .. } = self;
-        let output = &arguments.output;
-        let caption = sweep.caption().resting_on(sampled);
-        let (mut whole, mut all) = (size, Vec::with_capacity(sheets.len()));
-        for sheet in sheets {
-            if arguments.no_labels {
-                all.push(sheet);
-                continue;
-            }
-            let (sheet, size) = caption::draw(&caption, sheet, size);
-            whole = size;
-            all.push(sheet);
-        }
-        let about = About::scene(&sweep.scene.clone().alone(), sweep.registry)
-            .with("Description", caption::line(&caption.facts))
-            .with("Source", self.source.name())
-            .with("Renderer", "CPU");
-        let about = light_samples::noted(about, &caption::line(&caption::sampled(sampled)));
-        let failed = |error: std::io::Error| {
-            Failure::Write(format!("{} could not be written: {}", output.shown(), files::words(&error)))
-        };
-        match (self.form, all.as_slice()) {
-            (Form::Gif, all) => {
-                let bytes = sweep::gif(all, whole, arguments.fps).map_err(failed)?;
-                files::in_folder(files::folder_of(output), || {
-                    let mut to = Output::open(output)?;
-                    std::io::Write::write_all(&mut to, &bytes)?;
-                    Ok(to.finish()?)
-                })
-                .map_err(failed)
-            }
-            (Form::Apng, all) => png::write_film(output, whole, all, arguments.fps, &about).map_err(failed),
-            (_, [sheet, ..]) => outputs::write_picture(output, whole, sheet, &about),
-            (_, []) => Ok(()),
-        }
+        let kept = kept(written?);
+        options.tell(format_args!("wrote {}: {}{kept}", output.shown(), plural(sweep.count(), "picture")));
+        Ok(())
     }
 }
 
-/// Fails if a sheet is too large for programs that show pictures, or all of them for memory.
-fn room(page: &Page, [width, height]: [u32; 2], count: usize) -> Outcome {
-    let [across, down] = page.size();
-    if across.max(down) > MAX_SIDE {
-        let said = format!(
-            "the sheet would have {across}×{down} pixels, but each side must have at most {MAX_SIDE}"
-        );
-        return Err(Failure::Usage(format!("{said}; choose a smaller --size, or other --columns")));
-    }
-    let pixels = u64::from(width) * u64::from(height) * count as u64;
-    if pixels > MAX_PIXELS {
-        let said = format!("{count} pictures of {width}×{height} have {pixels} pixels");
-        let rule = format!("those of a sheet or a film must have at most {MAX_PIXELS} together");
-        return Err(Failure::Usage(format!("{said}, but {rule}; choose a smaller --size, or a folder")));
-    }
-    Ok(())
+fn sides(size: Size) -> [u32; 2] {
+    [size.width, size.height]
 }
 
 /// The end of a message about pictures that were there already.
@@ -405,10 +286,10 @@ mod tests {
             Err(Failure::Usage(why)) => Err(why),
             Err(other) => panic!("{other}"),
         };
-        assert_eq!(of("a/sheet.PNG", false), Ok(Form::Sheet));
+        assert_eq!(of("a/sheet.PNG", false), Ok(Form::File(Format::Sheet)));
         assert_eq!(
             (of("x.png", true), of("x.apng", false), of("x.gif", false)),
-            (Ok(Form::Apng), Ok(Form::Apng), Ok(Form::Gif))
+            (Ok(Form::File(Format::Apng)), Ok(Form::File(Format::Apng)), Ok(Form::File(Format::Gif)))
         );
         assert_eq!((of("pictures", false), of("v1.2", false)), (Ok(Form::Folder), Ok(Form::Folder)));
         assert!(of("x.webm", false).is_err_and(|why| why.contains("name a folder, and let a video encoder")));

@@ -11,9 +11,7 @@ use crate::{
         Comparison, Field, Scene,
         comparison::{Channel, Compared, Edge, Layout, Sign},
         held::Word,
-        variant::LETTERS,
     },
-    text::{did_you_mean, listed, quoted},
 };
 
 /// Options that change how views are compared.
@@ -100,22 +98,7 @@ impl Choice {
 
 /// The view with a letter, or with the name of its variant.
 pub(super) fn find(scene: &Scene, name: &str) -> Result<usize, String> {
-    let letters = &LETTERS[..=scene.variants.len().min(LETTERS.len() - 1)];
-    let letter = letters.iter().position(|letter| letter.eq_ignore_ascii_case(name));
-    let named = || scene.variants.iter().position(|v| v.name.as_deref() == Some(name)).map(|i| i + 1);
-    letter.or_else(named).ok_or_else(|| {
-        let names = scene.variants.iter().filter_map(|variant| variant.name.as_deref());
-        let hint = did_you_mean(name, names.map(|n| (n, n)));
-        let known = |(i, letter): (usize, &&str)| match i.checked_sub(1).and_then(|i| scene.variants.get(i)) {
-            Some(variant) => match &variant.name {
-                Some(name) => format!("{letter} ({name})"),
-                None => (*letter).to_owned(),
-            },
-            None => (*letter).to_owned(),
-        };
-        let known: Vec<_> = letters.iter().enumerate().map(known).collect();
-        format!("there is no view {}; it must be {}{hint}", quoted(name), listed(&known, "or"))
-    })
+    scene.view_named(name)
 }
 
 /// A part of a picture: a view, and its area.

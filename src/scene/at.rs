@@ -368,6 +368,9 @@ impl Scene {
         let mut scene = self.clone();
         let (first, others): (Vec<_>, Vec<_>) =
             values.into_iter().partition(|(place, _)| place.comes_first());
+        if first.is_empty() && others.is_empty() {
+            return Ok(scene);
+        }
         let mut problems = Vec::new();
         let mut put = |scene: &mut Self, (place, value): &(&Place, &Value)| {
             if !place.put(scene, value, registry) {

@@ -4,16 +4,20 @@ use glam::{Quat, Vec3};
 
 use super::values;
 use crate::{
-    caption::Part as Words,
+    caption::{Part as Words, header},
     parameter::Value,
     registry::Registry,
     scene::{
         Part, Scene,
         at::Place,
         rotation::{rotation, turned},
+        variant::LETTERS,
     },
     text::quoted,
 };
+
+/// The word for views in place of a path.
+const VIEW: &str = "view";
 
 /// One direction of a sweep: values that are set together, step by step.
 #[derive(Clone, Debug)]
@@ -28,6 +32,8 @@ pub struct Axis {
     pub(super) word: String,
     pub(super) written: Vec<String>,
     pub(super) sets: Vec<(Place, Vec<Value>)>,
+    /// The view of each step, if views vary.
+    pub(super) views: Vec<usize>,
 }
 
 impl Axis {
@@ -63,7 +69,27 @@ impl Axis {
         let labels = labels.into_iter().map(prefix).collect();
         let word = path.trim().rsplit('.').next().unwrap_or_default().to_owned();
         let written = values.iter().map(ToString::to_string).collect();
-        Ok(Self { name, labels, moves: false, word, written, sets: vec![(place, values)] })
+        Ok(Self { name, labels, moves: false, word, written, sets: vec![(place, values)], views: Vec::new() })
+    }
+
+    /// Views of the scene, side by side: `view=A,B`, with their headings as labels.
+    ///
+    /// # Errors
+    /// Returns an error if a view is there twice.
+    pub fn views(views: &[usize], scene: &Scene, registry: &Registry) -> Result<Self, String> {
+        let letter = |view: &usize| LETTERS.get(*view).copied().unwrap_or_default().to_owned();
+        if let Some(i) = (1..views.len()).find(|i| views[..*i].contains(&views[*i])) {
+            return Err(format!("view {} is there twice; each makes one picture", letter(&views[i])));
+        }
+        Ok(Self {
+            name: VIEW.to_owned(),
+            labels: views.iter().map(|view| Words::new(0, header(scene, *view, registry))).collect(),
+            moves: false,
+            word: VIEW.to_owned(),
+            written: views.iter().map(letter).collect(),
+            sets: Vec::new(),
+            views: views.to_vec(),
+        })
     }
 
     /// A turn about the vertical through the middle of the visible objects: `360:24`, or with the thing that turns,
@@ -122,6 +148,7 @@ impl Axis {
             word: "turn".to_owned(),
             written,
             sets,
+            views: Vec::new(),
         })
     }
 
@@ -161,6 +188,7 @@ impl Axis {
             word: "path".to_owned(),
             written,
             sets,
+            views: Vec::new(),
         })
     }
 
@@ -223,6 +251,7 @@ fn turn(key: &str, from: Vec3, degrees: f32, centre: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Variant;
 
     fn turned_to(text: &str, i: usize) -> Scene {
         let (scene, registry) = (Scene::default(), Registry::builtin());
@@ -261,6 +290,28 @@ mod tests {
         scene.lights[0].direction = None;
         let said = Axis::path("lights[0]=[1, 8, 9]..[9, 8, 9]:2", Some(Vec3::ONE), &scene, &registry);
         assert!(said.is_err_and(|e| e.contains("lights[0] has no direction")));
+    }
+
+    #[test]
+    fn views_stand_beside_each_other() {
+        let registry = Registry::builtin();
+        let phong = Variant {
+            reflection_model: Some("phong".to_owned()),
+            name: Some("shiny".to_owned()),
+            ..Variant::default()
+        };
+        let scene = Scene { variants: vec![phong], ..Scene::default() };
+        let axis = Axis::vary("view=A,shiny", &scene, &registry).expect("two views");
+        assert_eq!((axis.views.as_slice(), axis.written.join(" ")), (&[0, 1][..], "A B".to_owned()));
+        assert!(axis.labels[1].text.starts_with("B · shiny"), "{:?}", axis.labels);
+        let sweep = crate::sweep::Sweep::new(&scene, 0, vec![axis], &registry).expect("valid");
+        assert_eq!(sweep.seen(1).expect("valid").0.reflection_model, "phong");
+        for (text, expected) in
+            [("view=A,C", "there is no view \"C\""), ("view=B,b", "view B is there twice")]
+        {
+            let said = Axis::vary(text, &scene, &registry).expect_err(text);
+            assert!(said.contains(expected), "{said}");
+        }
     }
 
     #[test]

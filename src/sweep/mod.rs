@@ -25,14 +25,16 @@ mod film;
 mod parts;
 mod sheet;
 mod values;
+mod write;
 
 use rayon::prelude::*;
 
 pub use axis::Axis;
-pub use draw::{Drawn, Settings, Written, files, pictures};
+pub use draw::{Check, Drawn, Settings, Written, files, pictures};
 pub use film::{GIF, MAX_RATE, gif};
 pub use parts::Parts;
 pub use sheet::{Against, Grid, Page, maps};
+pub use write::{Format, Look, Plan};
 
 use crate::{
     caption::{self, Caption, Part as Words},
@@ -84,6 +86,7 @@ impl<'a> Sweep<'a> {
         }
         let mut paths: Vec<_> =
             axes.iter().flat_map(|axis| &axis.sets).map(|(place, _)| place.path.to_string()).collect();
+        paths.extend(axes.iter().filter(|axis| !axis.views.is_empty()).map(|axis| axis.name.clone()));
         paths.sort();
         if let Some(pair) = paths.windows(2).find(|pair| pair[0] == pair[1]) {
             return Err(format!("{} is varied twice; vary it once, with all its values", pair[0]));
@@ -138,7 +141,8 @@ impl<'a> Sweep<'a> {
             let named: Vec<_> = problems.iter().take(MAX_NAMED).map(ToString::to_string).collect();
             named.join("\n")
         })?;
-        scene.seen(self.view, self.registry).ok_or_else(|| "there is no such view".to_owned())
+        let view = sets_view(&self.axes, &steps).unwrap_or(self.view);
+        scene.seen(view, self.registry).ok_or_else(|| "there is no such view".to_owned())
     }
 
     /// The name of the file of a picture: its number, which keeps names apart, and its values.
@@ -180,6 +184,11 @@ impl<'a> Sweep<'a> {
     pub fn summary(&self) -> String {
         listed(&self.axes.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>(), "and")
     }
+}
+
+/// The view in a picture, if views vary.
+fn sets_view(axes: &[Axis], steps: &[usize]) -> Option<usize> {
+    axes.iter().zip(steps).find_map(|(axis, step)| axis.views.get(*step).copied())
 }
 
 /// A text with only letters, digits, dots and signs that no shell and no file system minds.
