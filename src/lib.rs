@@ -53,6 +53,7 @@
 //! - [`library`]: the shader library: the files of all shader texts, and their errors.
 //! - [`recovery`]: crash recovery of unsaved work.
 //! - [`render`]: drawing with Bevy.
+//! - [`sweep`]: pictures of a scene with some of its values varied, for a folder, a sheet or a film.
 //! - [`export`]: a scene as code: projects, shader files, pages, programs.
 //! - [`curves`]: curves of models: BRDF, albedo, factors alone, image slices; measured data; figures.
 //! - [`lesson`]: lessons: text, scene states, and tasks with conditions on the scene, a pixel or a curve.
@@ -125,6 +126,7 @@ pub mod matching;
 pub mod library;
 pub mod recovery;
 pub mod render;
+pub mod sweep;
 
 pub mod export;
 

@@ -58,6 +58,7 @@ mod render;
 mod runtime_folder;
 mod scenes;
 mod study;
+mod sweep;
 mod trial;
 mod view;
 mod views;
@@ -164,12 +165,13 @@ impl SceneOptions {
 impl Cli {
     /// The options of scenes before or after the command.
     fn scene_options(&self) -> Result<SceneOptions, Failure> {
-        use Command::{Check, Compare, Explain, Export, Lesson, Match, Render, View};
+        use Command::{Check, Compare, Explain, Export, Lesson, Match, Render, Sweep, View};
         let before = self.scenes;
         let own = match &self.command {
             None => Some(SceneOptions::default()),
             Some(View(OfScenes { scenes, .. })) => Some(*scenes),
             Some(Render(OfScenes { scenes, .. })) => Some(*scenes),
+            Some(Sweep(OfScenes { scenes, .. })) => Some(*scenes),
             Some(Compare(OfScenes { scenes, .. })) => Some(*scenes),
             Some(Check(OfScenes { scenes, .. })) => Some(*scenes),
             Some(Export(OfScenes { scenes, .. })) => Some(*scenes),
@@ -240,6 +242,10 @@ enum Command {
     View(OfScenes<view::Arguments>),
     /// Render scenes to PNG files, or to OpenEXR and Radiance files with linear light
     Render(OfScenes<render::Arguments>),
+    /// Draw a scene with some of its values varied: a sheet with labels, a film, or a folder of pictures
+    ///
+    /// The CPU renderer draws the pictures, several at once. A sweep that was interrupted goes on with the same command.
+    Sweep(OfScenes<sweep::Arguments>),
     /// Compare two views of a scene, two scenes or two pictures: numbers as JSON, and a picture
     ///
     /// Without B, the scene is compared with its own variant. Prints RMSE, PSNR, SSIM, FLIP and the largest difference.
@@ -508,6 +514,7 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
         None => view::run(cli.view, options, places, known, window),
         Some(View(given)) => view::run(given.own, options, places, known, window),
         Some(Render(given)) => render::run(&given.own, options, &mut places.open(options, known)?),
+        Some(Sweep(given)) => sweep::run(&given.own, options, &mut places.open(options, known)?),
         Some(Compare(given)) => compare::run(&given.own, options, &mut places.open(options, known)?),
         Some(Check(given)) => check::run(&given.own, options, &mut places.open(options, known)?),
         Some(New { file }) => new::run(&file, options, &known),
@@ -683,7 +690,7 @@ mod tests {
                 _ => panic!("{help}"),
             }
         }
-        assert_eq!(shown, ["view", "render", "compare", "check", "export", "explain", "match"]);
+        assert_eq!(shown, ["view", "render", "sweep", "compare", "check", "export", "explain", "match"]);
         let said = |arguments: &[&str]| {
             let cli = Cli::try_parse_from([&["lcm"], arguments].concat());
             cli.map_err(|e| e.to_string()).and_then(|cli| cli.scene_options().map_err(|e| e.to_string()))

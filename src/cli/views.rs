@@ -11,9 +11,7 @@ use crate::{
         Comparison, Field, Scene,
         comparison::{Channel, Compared, Edge, Layout, Sign},
         held::Word,
-        variant::LETTERS,
     },
-    text::{did_you_mean, listed, quoted},
 };
 
 /// Options that change how views are compared.
@@ -25,24 +23,48 @@ pub(super) struct Choice {
     /// Compare view A with this one: its letter, or the name of its variant
     #[arg(long, value_name = "VIEW")]
     pub(super) with: Option<String>,
-    /// Show the size of differences, or with their sign: absolute or signed
-    #[arg(long, value_parser = |text: &str| word::<Sign>(text, Comparison::sign))]
-    sign: Option<Sign>,
-    /// Compare this number of pixels: largest, luminance, red, green or blue
-    #[arg(long, value_parser = |text: &str| word::<Channel>(text, Comparison::channel))]
-    channel: Option<Channel>,
+    #[command(flatten)]
+    maps: Maps,
     /// Compare display codes, or linear light: codes or light
     #[arg(long, value_parser = |text: &str| word::<Compared>(text, Comparison::values))]
     pub(super) values: Option<Compared>,
-    /// Multiply differences by this, 1 to 100, before they become colours; else by what fits the largest one
-    #[arg(long, value_name = "FACTOR", value_parser = |text: &str| number(text, Comparison::amplification))]
-    amplification: Option<f32>,
     /// Place the edge of a wipe here: 0 at the left or top, 1 at the right or bottom
     #[arg(long, value_name = "PLACE", value_parser = |text: &str| number(text, Comparison::split))]
     split: Option<f32>,
     /// Direction of the edge of a wipe: vertical or horizontal
     #[arg(long, value_parser = |text: &str| word::<Edge>(text, Comparison::edge))]
     edge: Option<Edge>,
+}
+
+/// Options that change how maps of differences look.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(super) struct Maps {
+    /// Show the size of differences, or with their sign: absolute or signed
+    #[arg(long, value_parser = |text: &str| word::<Sign>(text, Comparison::sign))]
+    sign: Option<Sign>,
+    /// Compare this number of pixels: largest, luminance, red, green or blue
+    #[arg(long, value_parser = |text: &str| word::<Channel>(text, Comparison::channel))]
+    channel: Option<Channel>,
+    /// Multiply differences by this, 1 to 100, before they become colours; else by what fits the largest one
+    #[arg(long, value_name = "FACTOR", value_parser = |text: &str| number(text, Comparison::amplification))]
+    amplification: Option<f32>,
+}
+
+impl Maps {
+    /// True if one of them is given.
+    pub(super) fn is_given(self) -> bool {
+        self.sign.is_some() || self.channel.is_some() || self.amplification.is_some()
+    }
+
+    /// The comparison with these changes.
+    pub(super) fn applied(self, comparison: Comparison) -> Comparison {
+        Comparison {
+            sign: self.sign.unwrap_or(comparison.sign),
+            channel: self.channel.unwrap_or(comparison.channel),
+            amplification: self.amplification.or(comparison.amplification),
+            ..comparison
+        }
+    }
 }
 
 /// Reads the word of a field.
@@ -66,35 +88,17 @@ impl Choice {
         };
         Comparison {
             layout: self.layout.unwrap_or(usual),
-            sign: self.sign.unwrap_or(comparison.sign),
-            channel: self.channel.unwrap_or(comparison.channel),
             values: self.values.unwrap_or(comparison.values),
-            amplification: self.amplification.or(comparison.amplification),
             split: self.split.unwrap_or(comparison.split),
             edge: self.edge.unwrap_or(comparison.edge),
-            ..comparison
+            ..self.maps.applied(comparison)
         }
     }
 }
 
 /// The view with a letter, or with the name of its variant.
 pub(super) fn find(scene: &Scene, name: &str) -> Result<usize, String> {
-    let letters = &LETTERS[..=scene.variants.len().min(LETTERS.len() - 1)];
-    let letter = letters.iter().position(|letter| letter.eq_ignore_ascii_case(name));
-    let named = || scene.variants.iter().position(|v| v.name.as_deref() == Some(name)).map(|i| i + 1);
-    letter.or_else(named).ok_or_else(|| {
-        let names = scene.variants.iter().filter_map(|variant| variant.name.as_deref());
-        let hint = did_you_mean(name, names.map(|n| (n, n)));
-        let known = |(i, letter): (usize, &&str)| match i.checked_sub(1).and_then(|i| scene.variants.get(i)) {
-            Some(variant) => match &variant.name {
-                Some(name) => format!("{letter} ({name})"),
-                None => (*letter).to_owned(),
-            },
-            None => (*letter).to_owned(),
-        };
-        let known: Vec<_> = letters.iter().enumerate().map(known).collect();
-        format!("there is no view {}; it must be {}{hint}", quoted(name), listed(&known, "or"))
-    })
+    scene.view_named(name)
 }
 
 /// A part of a picture: a view, and its area.

@@ -22,14 +22,19 @@ pub(super) fn full(values: Compared) -> f32 {
     }
 }
 
-/// The texts of the legend of a map.
+/// The texts of the legend of a map of views.
 fn legend_of(comparison: &Comparison, amplification: f32) -> Legend {
-    let Comparison { sign, channel, values, with, .. } = *comparison;
-    let other = LETTERS.get(with).copied().unwrap_or("B");
+    let other = LETTERS.get(comparison.with).copied().unwrap_or("B");
+    legend_between(comparison, amplification, [other, "A"])
+}
+
+/// The texts of the legend of a map of the first of two pictures minus the second.
+fn legend_between(comparison: &Comparison, amplification: f32, [other, a]: [&str; 2]) -> Legend {
+    let Comparison { sign, channel, values, .. } = *comparison;
     let difference = match (sign, amplification == 1.0) {
-        (Sign::Absolute, _) => format!("|{other} − A|"),
-        (Sign::Signed, true) => format!("{other} − A"),
-        (Sign::Signed, false) => format!("({other} − A)"),
+        (Sign::Absolute, _) => format!("|{other} − {a}|"),
+        (Sign::Signed, true) => format!("{other} − {a}"),
+        (Sign::Signed, false) => format!("({other} − {a})"),
     };
     let factor = if amplification == 1.0 { String::new() } else { format!("{} × ", short(amplification)) };
     let channel = match channel {
@@ -133,6 +138,26 @@ impl<'a> Plate<'a> {
             y += line;
         }
     }
+}
+
+/// A picture with nothing but the legend of a map, in its middle, as far as there is room. `names` are those of the picture
+/// and of the one subtracted from it.
+#[must_use]
+pub fn legend_alone(
+    size: [u32; 2],
+    ground: [u8; 3],
+    comparison: &Comparison,
+    amplification: f32,
+    names: &[String; 2],
+) -> Vec<u8> {
+    let mut canvas = Canvas::new(size, ground);
+    let legend = legend_between(comparison, amplification, names.each_ref().map(String::as_str));
+    if let Some(plate) = Plate::new(&canvas, size, &legend, 1) {
+        let [width, height] = plate.size;
+        let place = [(size[0] - width) / 2, (size[1] - height) / 2, width, height];
+        plate.draw(&mut canvas, place, |at| Colours::of(comparison.sign).at(at));
+    }
+    canvas.rgb8
 }
 
 /// Draws the legend in a lower corner where it does not cover the largest difference, if there is room.

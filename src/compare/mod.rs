@@ -32,7 +32,7 @@ mod shown;
 pub use channel::with_legends;
 pub use labels::with_row_labels;
 pub use layout::{Cell, cells, compose, edge, size_around};
-pub use legend::{fitting_amplification, short};
+pub use legend::{fitting_amplification, legend_alone, short};
 pub use metric::{Measured, Metric, Metrics, PIXELS_PER_DEGREE};
 pub use pair::{Differences, Largest, Pair, Unequal};
 pub use shown::{Shown, WrongSize};

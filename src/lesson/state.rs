@@ -21,11 +21,13 @@ use crate::{
         Scene, SceneIn,
         error::{LoadError, Path, Segment},
         examples::EXAMPLES,
-        load::{self, Defaults, Loaded, MAX_DEPTH},
+        load::{self, Defaults, Loaded},
         syntax::check_syntax,
     },
     text::{did_you_mean, quoted, sentence, shortened},
 };
+
+pub(super) use crate::scene::at::path;
 
 /// Name of the scene in the reader of scene files, which determines its format.
 const NAME: &str = "step.json";
@@ -211,40 +213,6 @@ pub(super) fn open(name: &str, shelf: Shelf) -> Result<Scene, String> {
         }
         error => error.to_string(),
     })
-}
-
-/// Reads a path such as `objects[0].material.alpha`, or returns the byte of the first mistake.
-pub(super) fn path(text: &str) -> Result<Path, (usize, String)> {
-    let mut path = Path::root();
-    let mut at = 0;
-    while at < text.len() {
-        if path.segments().len() == MAX_DEPTH {
-            let what = format!("a path has at most {MAX_DEPTH} steps; no path in a scene has more than five");
-            return Err((at, what));
-        }
-        let rest = &text[at..];
-        if let Some(inside) = rest.strip_prefix('[') {
-            let end = inside.find(']').ok_or((at, "this bracket is never closed".to_owned()))?;
-            let written = &inside[..end];
-            let rule = "is not an index; an index is a whole number, 0 or more";
-            let index =
-                written.trim().parse().map_err(|_| (at + 1, format!("{} {rule}", quoted(written))))?;
-            path = path.then(Segment::Index(index));
-            at += end + 2;
-            continue;
-        }
-        let dot = usize::from(rest.starts_with('.') && at > 0);
-        let word = &rest[dot..];
-        let length = word.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(word.len());
-        if length == 0 || dot == 0 && at > 0 {
-            let what =
-                "a path consists of keys with dots between them, and of [indices] in lists: objects[0].size";
-            return Err((at, what.to_owned()));
-        }
-        path = path.then(Segment::Key(word[..length].to_owned().into()));
-        at += dot + length;
-    }
-    Ok(path)
 }
 
 /// Reads the body of a `scene` block.

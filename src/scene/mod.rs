@@ -11,6 +11,7 @@ use crate::{
     registry::{LightSet, Registry},
 };
 
+pub mod at;
 mod beyond_room;
 pub mod check;
 mod clause;

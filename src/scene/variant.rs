@@ -15,6 +15,7 @@ use crate::{
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::Values,
     registry::Registry,
+    text::{did_you_mean, listed, quoted},
 };
 
 part! {
@@ -201,6 +202,30 @@ impl Scene {
             said.unwrap_or_default().into_iter().map(move |said| format!("view {}: {said}", LETTERS[view]))
         };
         (1..=self.variants.len()).flat_map(view).collect()
+    }
+
+    /// The view with a letter, or with the name of its variant.
+    ///
+    /// # Errors
+    /// Returns an error that names the views.
+    pub fn view_named(&self, name: &str) -> Result<usize, String> {
+        let letters = &LETTERS[..=self.variants.len().min(LETTERS.len() - 1)];
+        let letter = letters.iter().position(|letter| letter.eq_ignore_ascii_case(name));
+        let named = || self.variants.iter().position(|v| v.name.as_deref() == Some(name)).map(|i| i + 1);
+        letter.or_else(named).ok_or_else(|| {
+            let names = self.variants.iter().filter_map(|variant| variant.name.as_deref());
+            let hint = did_you_mean(name, names.map(|n| (n, n)));
+            let known =
+                |(i, letter): (usize, &&str)| match i.checked_sub(1).and_then(|i| self.variants.get(i)) {
+                    Some(variant) => match &variant.name {
+                        Some(name) => format!("{letter} ({name})"),
+                        None => (*letter).to_owned(),
+                    },
+                    None => (*letter).to_owned(),
+                };
+            let known: Vec<_> = letters.iter().enumerate().map(known).collect();
+            format!("there is no view {}; it must be {}{hint}", quoted(name), listed(&known, "or"))
+        })
     }
 
     /// The name of a view: that of its variant, of the scene, or its letter.

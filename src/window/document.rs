@@ -16,6 +16,7 @@ use super::{
     matching::Matches,
     order::Loading,
     plots::PlotFiles,
+    sheets::SheetFiles,
     views::ShownChannels,
     watching::{FileWatch, FilesChanged, complain},
 };
@@ -88,6 +89,7 @@ impl Plugin for DocumentPlugin {
             .init_resource::<ShownChannels>()
             .init_resource::<Matches>()
             .init_resource::<PlotFiles>()
+            .init_resource::<SheetFiles>()
             .insert_resource(LawChecks::by(options.trial_program.clone()))
             .init_resource::<Editors>()
             .add_message::<Effect>()

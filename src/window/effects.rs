@@ -3,7 +3,8 @@
 use bevy::{ecs::system::SystemParam, prelude::*, winit::EventLoopProxyWrapper};
 
 use super::{
-    authoring, camera, editor, exports, files, laws, manual, matching, plots, recovery, shaders, watching,
+    authoring, camera, editor, exports, files, laws, manual, matching, plots, recovery, shaders, sheets,
+    watching,
 };
 use crate::{
     panel::{
@@ -25,6 +26,7 @@ pub(super) struct Work<'w> {
     exports: Res<'w, exports::Exports>,
     matches: Res<'w, matching::Matches>,
     plots: Res<'w, plots::PlotFiles>,
+    sheets: Res<'w, sheets::SheetFiles>,
     proxy: Option<Res<'w, EventLoopProxyWrapper>>,
 }
 
@@ -44,6 +46,7 @@ impl Work<'_> {
         }
         self.matches.report(session, registry);
         self.plots.report(session);
+        self.sheets.report(session);
     }
 
     /// Begins or stops what an effect asks for. Returns any other effect.
@@ -63,6 +66,7 @@ impl Work<'_> {
             }
             Effect::CancelMatch => self.matches.0.cancel(),
             Effect::WritePlot(path) => self.plots.begin(path, session, registry, wake),
+            Effect::WriteSheet(path) => self.sheets.begin(path, session, registry, wake),
             Effect::CheckLaws(model) => self.laws.begin(&model, registry.folders(), wake),
             other => return Some(other),
         }

@@ -48,6 +48,7 @@ mod recovery;
 mod redraw;
 mod requirements;
 mod shaders;
+mod sheets;
 mod shell;
 mod views;
 pub mod watching;

@@ -62,6 +62,11 @@ fn pictures(to: &mut List) {
         let name = format!("Save view {letter} alone…");
         let save = command("save_view", name, Action::Do(Effect::Pick(Pick::Picture(Some(view)))));
         to.add(save.tip(help).absent(!alone));
+        let help = "Write the views beside each other to a PNG file, with labels, and below each the difference from view A as a \
+                    map with numbers. The CPU renderer draws them, as seen now.";
+        let save = command("save_sheet", "Save sheet…", Action::Do(Effect::Pick(Pick::Sheet)));
+        let save = save.says("Save a sheet of the views…").tip(help);
+        to.add(save.unless(!alone, "The scene has one view alone; add another (Ctrl+B)"));
         let copy = command("copy_picture", copy, copied(None));
         let help = "Put the picture as it is shown on the clipboard";
         to.add(copy.says("Copy the picture").keys("Ctrl+Shift+P").tip(help));

@@ -106,6 +106,8 @@ pub enum Effect {
     },
     /// Save the plot to a file.
     WritePlot(PathBuf),
+    /// Save a sheet of the views to a file.
+    WriteSheet(PathBuf),
     /// Stop the running match.
     CancelMatch,
     /// Stop the running export.
@@ -139,6 +141,8 @@ pub enum Pick {
     Picture(Option<usize>),
     /// A file for the plot.
     Plot,
+    /// A file for a sheet of the views.
+    Sheet,
     /// A lesson.
     Lesson,
     /// A folder for the shaders.

@@ -63,6 +63,14 @@ impl Session {
         letter.map_or_else(|| self.stem(), |letter| format!("{}_{}", self.stem(), letter.to_lowercase()))
     }
 
+    /// Reports the result of saving a sheet of the views.
+    pub fn sheet_written(&mut self, path: &Path, outcome: Result<(), String>) {
+        match outcome {
+            Ok(()) => self.note_file(format!("Saved the sheet to {}.", path.shown()), path),
+            Err(why) => self.say(Severity::Error, format!("The sheet was not saved: {why}.")),
+        }
+    }
+
     /// Reports the result of saving or copying a picture.
     pub fn pictured(&mut self, end: PictureEnd) {
         match end {

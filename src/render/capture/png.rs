@@ -1,18 +1,19 @@
 //! PNG files: pictures with metadata.
 
 use std::{
-    io::{self, BufWriter, Write},
+    io::{self, BufWriter, Cursor, Write},
     path::Path,
 };
 
 use png::{
-    BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent, text_metadata::ITXtChunk,
+    BitDepth, ColorType, Compression, Decoder, Encoder, EncodingError, SrgbRenderingIntent,
+    text_metadata::ITXtChunk,
 };
 
 use crate::{
     files::{self, Output},
     registry::Registry,
-    scene::{Scene, formats::SCENE_KEYWORD, save::to_json},
+    scene::{Scene, formats::SCENE_KEYWORD, load::MAX_PICTURE_BYTES, save::to_json},
 };
 
 /// The metadata of a picture: texts for picture viewers, and the scene, which the program can open again.
@@ -70,16 +71,50 @@ pub fn write(path: &Path, width: u32, height: u32, rgb8: &[u8], about: &About) -
     })
 }
 
+/// Writes a film that goes on for ever, as an animated PNG file: pictures of one size, so many per second. Programs that
+/// know no films show its first picture.
+///
+/// # Errors
+/// Returns the errors of [`write`](fn@write), and an error if there are no pictures.
+pub fn write_film(
+    path: &Path,
+    size: [u32; 2],
+    pictures: &[Vec<u8>],
+    rate: u32,
+    about: &About,
+) -> io::Result<()> {
+    files::in_folder(files::folder_of(path), || {
+        let mut output = Output::open(path)?;
+        encode_all(BufWriter::new(&mut output), size, pictures, Some(rate), about)?;
+        Ok(output.finish()?)
+    })
+}
+
 /// The picture as the bytes of a PNG file.
 ///
 /// # Errors
 /// Returns the errors of [`write`](fn@write), except those of the file system.
-pub fn encode(mut to: impl Write, width: u32, height: u32, rgb8: &[u8], about: &About) -> io::Result<()> {
+pub fn encode(to: impl Write, width: u32, height: u32, rgb8: &[u8], about: &About) -> io::Result<()> {
+    encode_all(to, [width, height], &[rgb8], None, about)
+}
+
+/// A picture, or the pictures of a film with so many per second.
+fn encode_all(
+    mut to: impl Write,
+    [width, height]: [u32; 2],
+    pictures: &[impl AsRef<[u8]>],
+    rate: Option<u32>,
+    about: &About,
+) -> io::Result<()> {
     let mut encoder = Encoder::new(&mut to, width, height);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     encoder.set_compression(Compression::Fast);
+    if let Some(rate) = rate {
+        encoder.set_animated(u32::try_from(pictures.len()).unwrap_or(u32::MAX), 0).map_err(plain)?;
+        encoder.set_frame_delay(1, u16::try_from(rate).unwrap_or(u16::MAX)).map_err(plain)?;
+    }
     for (keyword, text) in &about.texts {
         let (keyword, text) = ((*keyword).to_owned(), text.clone());
         // Latin-1 text fits into the plain chunk that every reader supports; names like "Blinn–Phong" do not.
@@ -95,9 +130,37 @@ pub fn encode(mut to: impl Write, width: u32, height: u32, rgb8: &[u8], about: &
         text.compressed = true;
         writer.write_text_chunk(&text).map_err(plain)?;
     }
-    writer.write_image_data(rgb8).map_err(plain)?;
+    for picture in pictures {
+        writer.write_image_data(picture.as_ref()).map_err(plain)?;
+    }
     writer.finish().map_err(plain)?;
     to.flush()
+}
+
+/// The picture in a file that has this text, if it is whole and of this size.
+#[must_use]
+pub fn read_with(path: &Path, keyword: &str, text: &str, size: [u32; 2]) -> Option<Vec<u8>> {
+    let bytes = files::read(path, MAX_PICTURE_BYTES).ok()?;
+    let mut reader = Decoder::new(Cursor::new(bytes)).read_info().ok()?;
+    let info = reader.info();
+    let has_text = info.uncompressed_latin1_text.iter().any(|own| own.keyword == keyword && own.text == text);
+    if !has_text || [info.width, info.height] != size || info.color_type != ColorType::Rgb {
+        return None;
+    }
+    let mut rgb8 = vec![0; reader.output_buffer_size()?];
+    reader.next_frame(&mut rgb8).ok()?;
+    // A file that was cut off may end after its pixels.
+    reader.finish().ok()?;
+    Some(rgb8)
+}
+
+/// True if a file is a picture with a text of this keyword.
+#[must_use]
+pub fn has_text(path: &Path, keyword: &str) -> bool {
+    let read = files::read(path, MAX_PICTURE_BYTES).ok();
+    let reader = read.and_then(|bytes| Decoder::new(Cursor::new(bytes)).read_info().ok());
+    reader
+        .is_some_and(|reader| reader.info().uncompressed_latin1_text.iter().any(|own| own.keyword == keyword))
 }
 
 /// Keeps the kind of operating system errors.
@@ -151,6 +214,44 @@ mod tests {
         assert!(said.contains("there is no scene in this picture, only texts called \"Software\""), "{said}");
         // No other files are left.
         assert_eq!(fs::read_dir(path.parent().expect("has one")).expect("readable").count(), 1);
+    }
+
+    #[test]
+    fn a_film_has_its_pictures_its_rate_and_its_scene() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("film.png");
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let pictures = [gradient(), vec![7; 16 * 8 * 3], gradient()];
+        write_film(&path, [16, 8], &pictures, 12, &About::scene(&scene, &registry)).expect("can be written");
+        let decoder = Decoder::new(io::BufReader::new(File::open(&path).expect("exists")));
+        let mut reader = decoder.read_info().expect("is a PNG");
+        assert_eq!(reader.info().animation_control.map(|of| (of.num_frames, of.num_plays)), Some((3, 0)));
+        for picture in &pictures {
+            let mut bytes = vec![0; reader.output_buffer_size().expect("fits")];
+            reader.next_frame(&mut bytes).expect("has a picture");
+            let delay = reader.info().frame_control.map(|of| (of.delay_num, of.delay_den));
+            assert!(bytes == *picture && delay == Some((1, 12)), "{delay:?}");
+        }
+        assert_eq!(load::file(&path, &registry, Defaults::Refuse).expect("has a scene").scene, scene);
+        assert!(write_film(&path, [16, 8], &[], 12, &About::program()).is_err());
+        assert_eq!(fs::read_dir(folder.path()).expect("readable").count(), 1);
+    }
+
+    #[test]
+    fn a_picture_is_known_by_its_text() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("p.png");
+        write(&path, 16, 8, &gradient(), &About::default().with("Sweep", "1")).expect("can be written");
+        assert_eq!(read_with(&path, "Sweep", "1", [16, 8]), Some(gradient()));
+        assert!(has_text(&path, "Sweep") && !has_text(&path, "Title"));
+        for (keyword, text, size) in
+            [("Sweep", "2", [16, 8]), ("Title", "1", [16, 8]), ("Sweep", "1", [8, 16])]
+        {
+            assert_eq!(read_with(&path, keyword, text, size), None);
+        }
+        let whole = fs::read(&path).expect("exists");
+        fs::write(&path, &whole[..whole.len() - 6]).expect("written");
+        assert_eq!(read_with(&path, "Sweep", "1", [16, 8]), None, "it was cut off");
     }
 
     #[test]

@@ -8,3 +8,4 @@ mod plot;
 mod sampling;
 mod signals;
 mod study;
+mod sweep;

@@ -68,6 +68,7 @@ fn a_dash_is_no_output_of_any_command() {
     let folder = folder();
     for arguments in [
         &["render", "s.json", "-o", "-"][..],
+        &["sweep", "s.json", "--vary", "objects[0].size=1,2", "-o", "-"],
         &["compare", "s.json", "-o", "-"],
         &["match", "s.json", "-o", "-"],
         &["export", "s.json", "--as", "html", "-o", "-"],

@@ -8,7 +8,8 @@ use lights_camera_models::{
     parameter::{Parameter, ParameterKind, Value, Values, kind::integer::Integer},
     registry::Registry,
     scene::{
-        Background, Comparison, Display, Light, Object, Observer, Scene, SceneSize, Variant, check,
+        Background, Comparison, Display, Light, Object, Observer, Repetition, Scene, SceneSize, Variant,
+        check,
         comparison::{Channel, Compared, Edge, Layout, Sign},
         load::{self, Defaults},
         variant::MAX_VARIANTS,
@@ -202,6 +203,7 @@ fn object() -> impl Strategy<Value = Object> {
                     reflection_model,
                     shading_model,
                     material,
+                    repeat: Repetition::None,
                 },
             )
     })

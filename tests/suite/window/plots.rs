@@ -621,3 +621,26 @@ fn pictures_of_the_plots() -> Result<(), Box<dyn std::error::Error>> {
     }
     Ok(())
 }
+
+#[test]
+fn a_sheet_of_the_views_is_written_from_the_window() {
+    let mut session = Session::default();
+    let path = PathBuf::from("/somewhere/a.png");
+    let asked = session.apply(Action::Do(Effect::WriteSheet(path.clone())), &Registry::builtin());
+    assert_eq!(asked, [Effect::WriteSheet(path)]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let plugins = LabPlugins::default().size(64, 36).exit_after(100_000).headless();
+    let mut app = app(plugins.build(), |_| ());
+    for (name, said) in [("a.png", "Saved the sheet to "), ("a.jpg", "The sheet was not saved: ")] {
+        let file = folder.path().join(name);
+        app.world_mut().resource_mut::<Messages<Effect>>().write(Effect::WriteSheet(file.clone()));
+        let found = (0..3000).any(|_| {
+            app.update();
+            thread::sleep(Duration::from_millis(2));
+            let messages = &app.world().resource::<Session>().messages;
+            messages.iter().any(|m| m.text.starts_with(said))
+        });
+        assert!(found, "{name}");
+        assert_eq!(file.exists(), name == "a.png");
+    }
+}

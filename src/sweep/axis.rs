@@ -1,0 +1,340 @@
+//! What a sweep varies: values by path, turns about the vertical, ways through the room.
+
+use glam::{Quat, Vec3};
+
+use super::values;
+use crate::{
+    caption::{Part as Words, header},
+    parameter::Value,
+    registry::Registry,
+    scene::{
+        Part, Scene,
+        at::Place,
+        rotation::{rotation, turned},
+        variant::LETTERS,
+    },
+    text::quoted,
+};
+
+/// The word for views in place of a path.
+const VIEW: &str = "view";
+
+/// One direction of a sweep: values that are set together, step by step.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// The name of what is varied: "roughness".
+    pub name: String,
+    /// The value of each step, in words.
+    pub labels: Vec<Words>,
+    /// True if something moves: films then need no values in the picture.
+    pub moves: bool,
+    /// Its word in names of files, and its values there.
+    pub(super) word: String,
+    pub(super) written: Vec<String>,
+    pub(super) sets: Vec<(Place, Vec<Value>)>,
+    /// The view of each step, if views vary.
+    pub(super) views: Vec<usize>,
+}
+
+impl Axis {
+    /// Values by path: `objects[0].material.roughness=0.1..0.9:5`, `reflection_model=lambert,phong`.
+    ///
+    /// # Errors
+    /// Returns the mistake: an unknown path with the nearest known, or values that are not of its kind.
+    pub fn vary(text: &str, scene: &Scene, registry: &Registry) -> Result<Self, String> {
+        let form = "write PATH=VALUES, as in objects[0].material.roughness=0.1..0.9:5";
+        let (path, given) =
+            text.split_once('=').ok_or_else(|| format!("{} has no =; {form}", quoted(text)))?;
+        let place = Place::find(path.trim(), scene, registry)?;
+        let values = values::read_distinct(given.trim(), &place, registry)?;
+        let label =
+            |value: &Value| Words { symbol: place.symbol(), ..Words::new(0, place.shown(value, registry)) };
+        let labels: Vec<_> = values.iter().map(label).collect();
+        let name = match place.part {
+            Part::Object(_) if scene.objects.len() > 1 => {
+                format!("{} of {}", place.label(), place.part.path())
+            }
+            Part::Light(_) => format!("{} of {}", place.label(), place.part.path()),
+            _ => place.label(),
+        };
+        // Numbers, and yes and no, do not say what they are about.
+        let bare = |words: &Words| {
+            let starts = |c: char| c.is_numeric() || "(-−".contains(c);
+            words.symbol.is_empty() && (words.text.starts_with(starts) || words.text.parse::<bool>().is_ok())
+        };
+        let prefix = |words: Words| match bare(&words) {
+            true => Words { text: format!("{} {}", place.label(), words.text), ..words },
+            false => words,
+        };
+        let labels = labels.into_iter().map(prefix).collect();
+        let word = path.trim().rsplit('.').next().unwrap_or_default().to_owned();
+        let written = values.iter().map(ToString::to_string).collect();
+        Ok(Self { name, labels, moves: false, word, written, sets: vec![(place, values)], views: Vec::new() })
+    }
+
+    /// Views of the scene, side by side: `view=A,B`, with their headings as labels.
+    ///
+    /// # Errors
+    /// Returns an error if a view is there twice.
+    pub fn views(views: &[usize], scene: &Scene, registry: &Registry) -> Result<Self, String> {
+        let letter = |view: &usize| LETTERS.get(*view).copied().unwrap_or_default().to_owned();
+        if let Some(i) = (1..views.len()).find(|i| views[..*i].contains(&views[*i])) {
+            return Err(format!("view {} is there twice; each makes one picture", letter(&views[i])));
+        }
+        Ok(Self {
+            name: VIEW.to_owned(),
+            labels: views.iter().map(|view| Words::new(0, header(scene, *view, registry))).collect(),
+            moves: false,
+            word: VIEW.to_owned(),
+            written: views.iter().map(letter).collect(),
+            sets: Vec::new(),
+            views: views.to_vec(),
+        })
+    }
+
+    /// A turn about the vertical through the middle of the visible objects: `360:24`, or with the thing that turns,
+    /// `objects[0]=360:24`; without it, the observer. Objects by number turn about themselves. Whole turns leave out their
+    /// end, which is their beginning.
+    ///
+    /// # Errors
+    /// Returns the mistake.
+    pub fn turn(text: &str, scene: &Scene, registry: &Registry) -> Result<Self, String> {
+        let (what, amount) = text.split_once('=').unwrap_or(("observer", text));
+        let form = "write DEGREES:COUNT, as in 360:24, or objects[0]=360:24";
+        let (degrees, count) = amount.split_once(':').ok_or_else(|| format!("{}: {form}", quoted(text)))?;
+        let degrees: Option<f32> = degrees.trim().parse().ok();
+        let degrees = degrees.filter(|v| v.is_finite() && *v != 0.0 && v.abs() <= 36_000.0);
+        let degrees = degrees.ok_or_else(|| {
+            format!(
+                "{}: the angle must be a number of degrees other than 0, at most 36000; {form}",
+                quoted(text)
+            )
+        })?;
+        let count = super::count(count).map_err(|why| format!("{}: {why}; {form}", quoted(text)))?;
+        let steps = if degrees % 360.0 == 0.0 { count } else { count - 1 };
+        let angles: Vec<f32> = (0..count).map(|i| degrees * i as f32 / steps as f32).collect();
+        let what = what.trim();
+        let parts = turning(what, scene).ok_or_else(|| {
+            format!(
+                "{} cannot turn; it must be observer, lights, lights[0], objects, objects[0], …",
+                quoted(what)
+            )
+        })?;
+        let centre = middle(scene);
+        let mut sets = Vec::new();
+        for part in parts {
+            for key in ["position", "direction", "rotation"] {
+                if key == "position" && what.starts_with("objects[") {
+                    continue;
+                }
+                // Not every part has all of them.
+                let Ok(place) = Place::find(&part.path().key(key).to_string(), scene, registry) else {
+                    continue;
+                };
+                let Some(Value::Triple(from)) = place.value(scene) else { continue };
+                let values =
+                    angles.iter().map(|angle| Value::Triple(turn(key, from.into(), *angle, centre).into()));
+                sets.push((place, values.collect()));
+            }
+        }
+        let written: Vec<_> =
+            angles.iter().map(|angle| (angle * 100.0).round() / 100.0).map(|v| v.to_string()).collect();
+        let labels =
+            written.iter().map(|angle| Words::new(0, format!("{}°", angle.replace('-', "−")))).collect();
+        Ok(Self {
+            name: format!("{what} turned"),
+            labels,
+            moves: true,
+            word: "turn".to_owned(),
+            written,
+            sets,
+            views: Vec::new(),
+        })
+    }
+
+    /// A way through the room at constant speed: `lights[0]=[1, 8, 9]..[9, 8, 9]:12`. What has a direction looks at `aim`
+    /// all the way, if that is given. A closed way leaves out its end, which is its beginning.
+    ///
+    /// # Errors
+    /// Returns the mistake.
+    pub fn path(text: &str, aim: Option<Vec3>, scene: &Scene, registry: &Registry) -> Result<Self, String> {
+        let form = "write WHAT=[x, y, z]..[x, y, z]:COUNT, as in lights[0]=[1, 8, 9]..[9, 8, 9]:12";
+        let (what, way) = text.split_once('=').ok_or_else(|| format!("{} has no =; {form}", quoted(text)))?;
+        let what = what.trim();
+        if !way.contains("..") {
+            return Err(format!("{}: a way has two points or more; {form}", quoted(text)));
+        }
+        let position = Place::find(&format!("{what}.position"), scene, registry)?;
+        let values = values::read(way.trim(), &position, registry)?;
+        let mut sets = Vec::new();
+        if let Some(aim) = aim {
+            let place = Place::find(&format!("{what}.direction"), scene, registry)?;
+            if place.value(scene).is_none() {
+                return Err(format!("{what} has no direction, so it cannot look at a point"));
+            }
+            let towards = |value: &Value| match value {
+                Value::Triple(from) => Value::from((aim - Vec3::from(*from)).normalize_or_zero()),
+                other => other.clone(),
+            };
+            sets.push((place, values.iter().map(towards).collect()));
+        }
+        let labels = values.iter().map(|value| Words::new(0, position.shown(value, registry))).collect();
+        let written = values.iter().map(ToString::to_string).collect();
+        sets.push((position, values));
+        Ok(Self {
+            name: format!("{what} moved"),
+            labels,
+            moves: true,
+            word: "path".to_owned(),
+            written,
+            sets,
+            views: Vec::new(),
+        })
+    }
+
+    /// What varies, from where to where: "roughness: r 0.1 to r 0.9 in 5 steps".
+    pub(super) fn summary(&self) -> String {
+        let words = |label: Option<&Words>| label.map(Words::words).unwrap_or_default();
+        let (first, last) = (words(self.labels.first()), words(self.labels.last()));
+        let name = if first.starts_with(&self.name) { String::new() } else { format!("{}: ", self.name) };
+        match self.count() {
+            1 => format!("{name}{first}"),
+            2 => format!("{name}{first} and {last}"),
+            n => format!("{name}{first} to {last} in {n} steps"),
+        }
+    }
+
+    /// Number of steps.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.labels.len()
+    }
+}
+
+/// The parts that turn, by their path.
+fn turning(what: &str, scene: &Scene) -> Option<Vec<Part>> {
+    let (lights, objects) = (0..scene.lights.len(), 0..scene.objects.len());
+    match what {
+        "observer" => return Some(vec![Part::Observer]),
+        "lights" => return Some(lights.map(Part::Light).collect()),
+        "objects" => return Some(objects.map(Part::Object).collect()),
+        _ => {}
+    }
+    let all = lights.map(Part::Light).chain(objects.map(Part::Object));
+    all.into_iter().find(|part| part.path().to_string() == what).map(|part| vec![part])
+}
+
+/// The middle of the visible objects.
+fn middle(scene: &Scene) -> Vec3 {
+    let (mut least, mut most) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for object in scene.shown() {
+        least = least.min(object.position - 0.5 * object.size);
+        most = most.max(object.position + 0.5 * object.size);
+    }
+    if least.is_finite() { 0.5 * (least + most) } else { 0.5 * scene.scene_size.corner() }
+}
+
+/// A value of a part after a turn.
+fn turn(key: &str, from: Vec3, degrees: f32, centre: Vec3) -> Vec3 {
+    if degrees % 360.0 == 0.0 {
+        return from;
+    }
+    let radians = degrees.to_radians();
+    let turn = Quat::from_rotation_y(radians);
+    match key {
+        "position" => centre + turn * (from - centre),
+        "direction" => turn * from,
+        _ => turned(rotation(from), Vec3::Y, radians),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Variant;
+
+    fn turned_to(text: &str, i: usize) -> Scene {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let axis = Axis::turn(text, &scene, &registry).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let values = axis.sets.iter().map(|(place, values)| (place, &values[i]));
+        scene.with(values, &registry).expect("in the room")
+    }
+
+    #[test]
+    fn the_observer_turns_about_the_objects_and_looks_at_them() {
+        let quarter = turned_to("360:4", 1);
+        assert!((quarter.observer.position - Vec3::new(9.5, 5.0, 5.0)).length() < 1e-4);
+        assert!((quarter.observer.direction - Vec3::NEG_X).length() < 1e-6);
+        assert_eq!(turned_to("360:4", 0), Scene::default());
+        // Part of a turn has both ends.
+        assert!((turned_to("90:2", 1).observer.position - quarter.observer.position).length() < 1e-4);
+    }
+
+    #[test]
+    fn lights_and_objects_turn_too() {
+        let light = turned_to("lights[0]=180:2", 1).lights[0].position.expect("has one");
+        assert!((light - Vec3::new(2.5, 8.0, 1.0)).length() < 1e-4, "{light}");
+        let object = &turned_to("objects[0]=360:8", 1).objects[0];
+        assert_eq!((object.rotation, object.position), (Vec3::new(0.0, 45.0, 0.0), Vec3::splat(5.0)));
+    }
+
+    #[test]
+    fn a_way_may_look_at_a_point() {
+        let (mut scene, registry) = (Scene::default(), Registry::builtin());
+        let way = "observer=[2, 5, 9]..[8, 5, 9]:2";
+        let axis = Axis::path(way, Some(Vec3::splat(5.0)), &scene, &registry).expect("a way");
+        let direction = axis.sets.iter().find(|(place, _)| place.label() == "direction").expect("it looks");
+        let expected = Vec3::new(3.0, 0.0, -4.0) / 5.0;
+        let found = direction.1[0].numbers().map(|v| v as f32);
+        assert!((Vec3::from(found) - expected).length() < 1e-6, "{found:?}");
+        scene.lights[0].direction = None;
+        let said = Axis::path("lights[0]=[1, 8, 9]..[9, 8, 9]:2", Some(Vec3::ONE), &scene, &registry);
+        assert!(said.is_err_and(|e| e.contains("lights[0] has no direction")));
+    }
+
+    #[test]
+    fn views_stand_beside_each_other() {
+        let registry = Registry::builtin();
+        let phong = Variant {
+            reflection_model: Some("phong".to_owned()),
+            name: Some("shiny".to_owned()),
+            ..Variant::default()
+        };
+        let scene = Scene { variants: vec![phong], ..Scene::default() };
+        let axis = Axis::vary("view=A,shiny", &scene, &registry).expect("two views");
+        assert_eq!((axis.views.as_slice(), axis.written.join(" ")), (&[0, 1][..], "A B".to_owned()));
+        assert!(axis.labels[1].text.starts_with("B · shiny"), "{:?}", axis.labels);
+        let sweep = crate::sweep::Sweep::new(&scene, 0, vec![axis], &registry).expect("valid");
+        assert_eq!(sweep.seen(1).expect("valid").0.reflection_model, "phong");
+        for (text, expected) in
+            [("view=A,C", "there is no view \"C\""), ("view=B,b", "view B is there twice")]
+        {
+            let said = Axis::vary(text, &scene, &registry).expect_err(text);
+            assert!(said.contains(expected), "{said}");
+        }
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        for (text, expected) in [
+            ("360", "write DEGREES:COUNT"),
+            ("0:4", "other than 0"),
+            ("nan:4", "a number of degrees"),
+            ("360:1", "at least 2"),
+            ("lamp=360:4", "\"lamp\" cannot turn"),
+            ("objects[3]=360:4", "\"objects[3]\" cannot turn"),
+        ] {
+            let said = Axis::turn(text, &scene, &registry).expect_err(text);
+            assert!(said.contains(expected), "{text}: {said}");
+        }
+        for (text, expected) in [
+            ("lights[0]", "has no ="),
+            ("lights[0]=[1, 2, 3]", "two points or more"),
+            ("lights[4]=[1, 2, 3]..[4, 5, 6]:3", "there is no lights[4]"),
+        ] {
+            let said = Axis::path(text, None, &scene, &registry).expect_err(text);
+            assert!(said.contains(expected), "{text}: {said}");
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! The pictures of a sweep, drawn side by side: each core has a picture of its own, and helps with the others' when there
+//! are too few left.
+
+use std::{
+    path::Path,
+    sync::{
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
+    thread,
+};
+
+use rayon::prelude::*;
+
+use super::{
+    Sweep,
+    parts::{self, Parts, unwritten},
+};
+use crate::{
+    caption::Sampled,
+    failure::Failure,
+    progress::{Cancelled, Progress},
+    reference::{self, Until},
+    registry::Registry,
+    render::capture::png::{self, About},
+    scene::{Scene, has_extent},
+};
+
+/// The settings of all pictures of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The width and height of each picture, pixels.
+    pub size: [u32; 2],
+    /// Samples per pixel: 1 or 4.
+    pub samples: u32,
+    /// The samples of lights with extent.
+    pub until: Until,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        let reference::Settings { width, height, samples, .. } = reference::Settings::default();
+        Self { size: [width, height], samples, until: Until::default() }
+    }
+}
+
+/// The pictures of a sweep.
+#[derive(Clone, Debug, Default)]
+pub struct Drawn {
+    /// Red, green, blue, row by row from the top: a picture for each combination, the first axis varying fastest.
+    pub pictures: Vec<Vec<u8>>,
+    /// How lights with extent were sampled, where there are some.
+    pub sampled: Vec<Sampled>,
+    /// Number of pictures that were there already.
+    pub kept: usize,
+}
+
+/// The files of a sweep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Written {
+    /// Number of files drawn and written.
+    pub drawn: usize,
+    /// Number of files that were there already, from an earlier run.
+    pub kept: usize,
+}
+
+/// Fails if a scene cannot be drawn.
+pub type Check<'a> = &'a (dyn Fn(&Scene) -> Result<(), Failure> + Sync);
+
+/// Draws the pictures of a sweep. `parts` keeps finished ones for another run, if this one is interrupted.
+///
+/// # Errors
+/// Returns an error if the user cancels, if a scene cannot be drawn, or if a part cannot be written.
+pub fn pictures(
+    sweep: &Sweep,
+    settings: &Settings,
+    parts: Option<&Parts>,
+    check: Check,
+    progress: &Progress,
+) -> Result<Drawn, Failure> {
+    let all = each(sweep.count(), progress, |i, cancelled| {
+        let one = One::new(sweep, settings, i)?;
+        if let Some(rgb8) = parts.and_then(|parts| parts.find(i, &one.stamp, settings.size)) {
+            return Ok((rgb8, None, true));
+        }
+        let (rgb8, sampled) = one.draw(check, cancelled)?;
+        if let Some(parts) = parts {
+            parts.keep(i, &one.stamp, settings.size, &rgb8)?;
+        }
+        Ok((rgb8, sampled, false))
+    })?;
+    let mut drawn = Drawn::default();
+    for (rgb8, sampled, was_there) in all {
+        drawn.pictures.push(rgb8);
+        drawn.sampled.extend(sampled);
+        drawn.kept += usize::from(was_there);
+    }
+    Ok(drawn)
+}
+
+/// Draws the pictures of a sweep into a folder, each [named](Sweep::file) after its values, with its scene. Files that an
+/// earlier run of the same sweep wrote are kept.
+///
+/// # Errors
+/// Returns an error if the user cancels, if a scene cannot be drawn, or if a file cannot be written. Files finished by then
+/// stay.
+pub fn files(
+    sweep: &Sweep,
+    settings: &Settings,
+    folder: &Path,
+    check: Check,
+    progress: &Progress,
+) -> Result<Written, Failure> {
+    let [width, height] = settings.size;
+    let all = each(sweep.count(), progress, |i, cancelled| {
+        let one = One::new(sweep, settings, i)?;
+        let file = folder.join(sweep.file(i));
+        if parts::is_done(&file, &one.stamp, settings.size) {
+            return Ok(true);
+        }
+        let (rgb8, _) = one.draw(check, cancelled)?;
+        let about = About::scene(&one.scene.clone().alone(), sweep.registry).with("Renderer", "CPU");
+        let about = about.with(parts::KEYWORD, one.stamp);
+        png::write(&file, width, height, &rgb8, &about).map_err(|error| unwritten(&file, &error))?;
+        Ok(false)
+    })?;
+    let kept = all.iter().filter(|kept| **kept).count();
+    Ok(Written { drawn: all.len() - kept, kept })
+}
+
+/// A picture of a sweep.
+struct One<'a> {
+    scene: Scene,
+    settings: reference::Settings,
+    until: Until,
+    stamp: String,
+    registry: &'a Registry,
+}
+
+impl<'a> One<'a> {
+    fn new(sweep: &Sweep<'a>, settings: &Settings, i: usize) -> Result<Self, Failure> {
+        let (scene, terms) = sweep.seen(i).map_err(Failure::Invalid)?;
+        let Settings { size: [width, height], samples, until } = *settings;
+        let settings = reference::Settings { width, height, samples, terms };
+        let stamp = parts::stamp(&scene, &settings, until, sweep.registry);
+        Ok(Self { scene, settings, until, stamp, registry: sweep.registry })
+    }
+
+    /// The same picture as that of `lcm render`.
+    fn draw(&self, check: Check, cancelled: &AtomicBool) -> Result<(Vec<u8>, Option<Sampled>), Failure> {
+        let Self { scene, settings, registry, .. } = self;
+        check(scene)?;
+        let odd = AtomicBool::default();
+        let drawn = if has_extent(scene.shining(), registry) {
+            let ends = || cancelled.load(Ordering::Relaxed);
+            let progress = Progress { tell: &|_, _| (), cancelled: &ends };
+            let drawn = reference::render_until(scene, registry, settings, self.until, &odd, &progress);
+            let (light, sampled) = drawn.map_err(ended)?;
+            (light.to_rgb8(&scene.display), Some(sampled))
+        } else {
+            (reference::render_rgb8_noting(scene, registry, settings, &odd), None)
+        };
+        // An endless function of a custom model is detected only when it runs.
+        check(scene)?;
+        Ok(drawn)
+    }
+}
+
+fn ended(cancelled: Cancelled) -> Failure {
+    Failure::Invalid(cancelled.to_string())
+}
+
+/// Does some work for each number, on all cores, and collects the results in order. Progress is told by the calling thread.
+fn each<T: Send>(
+    count: usize,
+    progress: &Progress,
+    work: impl Fn(usize, &AtomicBool) -> Result<T, Failure> + Sync,
+) -> Result<Vec<T>, Failure> {
+    let cancelled = AtomicBool::default();
+    let (tell, told) = mpsc::channel::<()>();
+    thread::scope(|scope| {
+        let (cancelled, work) = (&cancelled, &work);
+        let worker = scope.spawn(move || {
+            let one = |tell: &mut mpsc::Sender<()>, i: usize| {
+                if cancelled.load(Ordering::Relaxed) {
+                    return Err(ended(Cancelled));
+                }
+                let done = work(i, cancelled)?;
+                // Nobody listens any more only if the caller has ended.
+                let _ = tell.send(());
+                Ok(done)
+            };
+            // One by one, so that no core waits for a block of another.
+            (0..count)
+                .into_par_iter()
+                .with_max_len(1)
+                .map_with(tell, one)
+                .collect::<Result<Vec<T>, Failure>>()
+        });
+        let said = |done: usize| format!("{done} of {count} pictures");
+        let mut going = progress.step(0.0, &said(0)).is_ok();
+        for (done, ()) in (1..).zip(told) {
+            going &= progress.step(done as f32 / count.max(1) as f32, &said(done)).is_ok();
+            cancelled.fetch_or(!going, Ordering::Relaxed);
+        }
+        worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{fs, path::PathBuf};
+
+    use super::*;
+    use crate::sweep::Axis;
+
+    const SMALL: Settings =
+        Settings { size: [32, 18], samples: 1, until: Until { samples: 16, noise: None } };
+
+    fn sweep<'a>(scene: &'a Scene, registry: &'a Registry) -> Sweep<'a> {
+        let axis = Axis::vary("objects[0].size=0.5..3:6", scene, registry).expect("numbers");
+        Sweep::new(scene, 0, vec![axis], registry).expect("valid")
+    }
+
+    #[test]
+    fn pictures_are_those_of_each_scene_alone_in_order() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let sweep = sweep(&scene, &registry);
+        let all = pictures(&sweep, &SMALL, None, &|_| Ok(()), &Progress::NONE).expect("drawn");
+        let [width, height] = SMALL.size;
+        let settings = reference::Settings { width, height, samples: 1, ..reference::Settings::default() };
+        for (i, picture) in all.pictures.iter().enumerate() {
+            let (seen, _) = sweep.seen(i).expect("valid");
+            assert!(*picture == reference::render_rgb8(&seen, &registry, &settings), "{i}");
+        }
+        assert_ne!(all.pictures[0], all.pictures[5]);
+    }
+
+    #[test]
+    fn progress_is_told_and_cancelling_ends_it() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let sweep = sweep(&scene, &registry);
+        let told = std::cell::RefCell::new(Vec::new());
+        let tell = |done: f32, what: &str| told.borrow_mut().push((done, what.to_owned()));
+        let progress = Progress { tell: &tell, cancelled: &|| false };
+        pictures(&sweep, &SMALL, None, &|_| Ok(()), &progress).expect("drawn");
+        assert_eq!(told.borrow().len(), 7);
+        assert_eq!(told.borrow()[6], (1.0, "6 of 6 pictures".to_owned()));
+        let cancelled = Progress { tell: &tell, cancelled: &|| true };
+        let ended = pictures(&sweep, &SMALL, None, &|_| Ok(()), &cancelled);
+        // With so little work, it may be done before it hears of it.
+        assert!(ended.is_ok() || matches!(ended, Err(Failure::Invalid(what)) if what == "cancelled"));
+    }
+
+    #[test]
+    fn finished_files_are_kept_and_others_drawn_again() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let sweep = sweep(&scene, &registry);
+        let folder = tempfile::tempdir().expect("a folder");
+        let all = |settings: &Settings| {
+            files(&sweep, settings, folder.path(), &|_| Ok(()), &Progress::NONE).expect("written")
+        };
+        assert_eq!(all(&SMALL), Written { drawn: 6, kept: 0 });
+        let file = folder.path().join(sweep.file(2));
+        let before = fs::read(&file).expect("there");
+        fs::remove_file(&file).expect("removed");
+        assert_eq!(all(&SMALL), Written { drawn: 1, kept: 5 });
+        assert!(fs::read(&file).expect("there") == before, "the same bytes");
+        // Other pictures, and files of others.
+        assert_eq!(all(&Settings { samples: 4, ..SMALL }), Written { drawn: 6, kept: 0 });
+        fs::write(&file, &before[..before.len() / 2]).expect("written");
+        assert_eq!(all(&Settings { samples: 4, ..SMALL }), Written { drawn: 1, kept: 5 });
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_or_written_fails_whole() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let sweep = sweep(&scene, &registry);
+        let refuse = |_: &Scene| -> Result<(), Failure> { Err(Failure::Invalid("no".to_owned())) };
+        let failed = pictures(&sweep, &SMALL, None, &refuse, &Progress::NONE);
+        assert!(matches!(failed, Err(Failure::Invalid(what)) if what == "no"));
+        let folder = tempfile::tempdir().expect("a folder");
+        let taken = folder.path().join("taken");
+        fs::write(&taken, "").expect("written");
+        let failed = files(&sweep, &SMALL, &taken, &|_| Ok(()), &Progress::NONE);
+        assert!(matches!(failed, Err(Failure::Write(what)) if what.contains("could not be written")));
+    }
+
+    #[test]
+    fn parts_are_kept_for_another_run_and_removed_at_the_end() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let sweep = sweep(&scene, &registry);
+        let around = tempfile::tempdir().expect("a folder");
+        let output: PathBuf = around.path().join("sheet.png");
+        let run = || {
+            let parts = Parts::beside(&output).at_once();
+            let drawn = pictures(&sweep, &SMALL, Some(&parts), &|_| Ok(()), &Progress::NONE).expect("drawn");
+            (parts, drawn)
+        };
+        let (_, first) = run();
+        let (parts, again) = run();
+        assert_eq!((first.kept, again.kept), (0, 6));
+        assert!(first.pictures == again.pictures);
+        fs::write(around.path().join("sheet.png.parts/mine"), "").expect("written");
+        parts.remove();
+        let left: Vec<_> =
+            fs::read_dir(around.path().join("sheet.png.parts")).expect("there").flatten().collect();
+        assert_eq!(left.len(), 1, "what somebody else put there stays");
+    }
+}

@@ -1,0 +1,257 @@
+//! Sweeps: pictures of one scene with some of its values varied, for a folder, a sheet or a film.
+//!
+//! A sweep is deterministic: its pictures depend only on the scene, the axes and the settings, and are those of the CPU
+//! renderer for each scene alone.
+//!
+//! ```
+//! use lights_camera_models::{
+//!     progress::Progress,
+//!     registry::Registry,
+//!     scene::Scene,
+//!     sweep::{Axis, Settings, Sweep, pictures},
+//! };
+//! let (scene, registry) = (Scene::default(), Registry::builtin());
+//! let axis = Axis::vary("reflection_model=lambert,phong,minnaert", &scene, &registry).expect("known models");
+//! let sweep = Sweep::new(&scene, 0, vec![axis], &registry).expect("three pictures");
+//! let settings = Settings { size: [64, 36], ..Settings::default() };
+//! let all = pictures(&sweep, &settings, None, &|_| Ok(()), &Progress::NONE).expect("drawn");
+//! assert_eq!(all.pictures.len(), 3);
+//! assert_ne!(all.pictures[0], all.pictures[1]);
+//! ```
+
+mod axis;
+mod draw;
+mod film;
+mod parts;
+mod sheet;
+mod values;
+mod write;
+
+use rayon::prelude::*;
+
+pub use axis::Axis;
+pub use draw::{Check, Drawn, Settings, Written, files, pictures};
+pub use film::{GIF, MAX_RATE, gif};
+pub use parts::Parts;
+pub use sheet::{Against, Grid, Page, maps};
+pub use write::{Format, Look, Plan};
+
+use crate::{
+    caption::{self, Caption, Part as Words},
+    optics::TermSelection,
+    registry::Registry,
+    scene::Scene,
+    text::listed,
+};
+
+/// Maximum number of pictures in a sweep.
+pub const MAX_PICTURES: usize = 10_000;
+/// Maximum number of pixels of all pictures of a sheet or a film together: they are in memory at once.
+pub const MAX_PIXELS: u64 = 1 << 28;
+/// Maximum width and height of a sheet, pixels: programs cannot show larger ones.
+pub const MAX_SIDE: u32 = 16_384;
+/// Maximum number of problems named for a picture.
+const MAX_NAMED: usize = 3;
+
+/// A scene with what varies in it.
+#[derive(Clone, Debug)]
+pub struct Sweep<'a> {
+    /// The scene as it is.
+    pub scene: &'a Scene,
+    /// The view that is shown; 0 is the scene itself.
+    pub view: usize,
+    /// What varies. The first one varies from picture to picture, the last one slowest.
+    pub axes: Vec<Axis>,
+    /// The known models and types.
+    pub registry: &'a Registry,
+}
+
+impl<'a> Sweep<'a> {
+    /// A sweep, all of whose scenes are valid.
+    ///
+    /// # Errors
+    /// Returns an error if there is nothing to vary, if two axes set the same value, if there are more than [`MAX_PICTURES`]
+    /// pictures, or if a value breaks a rule of scenes: then the first such picture and its problems.
+    pub fn new(
+        scene: &'a Scene,
+        view: usize,
+        axes: Vec<Axis>,
+        registry: &'a Registry,
+    ) -> Result<Self, String> {
+        if axes.is_empty() {
+            return Err(
+                "nothing varies; name a value, as in --vary objects[0].material.roughness=0.1..0.9:5"
+                    .to_owned(),
+            );
+        }
+        let mut paths: Vec<_> =
+            axes.iter().flat_map(|axis| &axis.sets).map(|(place, _)| place.path.to_string()).collect();
+        paths.extend(axes.iter().filter(|axis| !axis.views.is_empty()).map(|axis| axis.name.clone()));
+        paths.sort();
+        if let Some(pair) = paths.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(format!("{} is varied twice; vary it once, with all its values", pair[0]));
+        }
+        let count = axes.iter().fold(1_usize, |count, axis| count.saturating_mul(axis.count()));
+        if count > MAX_PICTURES {
+            let factors: Vec<_> = axes.iter().map(|axis| axis.count().to_string()).collect();
+            return Err(format!(
+                "{} are {count} pictures, but a sweep has at most {MAX_PICTURES}; vary less",
+                factors.join(" × ")
+            ));
+        }
+        let sweep = Self { scene, view, axes, registry };
+        match (0..count).into_par_iter().find_map_first(|i| sweep.seen(i).err()) {
+            Some(problem) => Err(problem),
+            None => Ok(sweep),
+        }
+    }
+
+    /// Number of pictures.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.axes.iter().map(Axis::count).product()
+    }
+
+    /// The step of each axis in a picture.
+    fn steps(&self, mut picture: usize) -> Vec<usize> {
+        let step = |axis: &Axis| {
+            let step = picture % axis.count();
+            picture /= axis.count();
+            step
+        };
+        self.axes.iter().map(step).collect()
+    }
+
+    /// The label of each axis in a picture.
+    #[must_use]
+    pub fn labels(&self, picture: usize) -> Vec<&Words> {
+        self.axes.iter().zip(self.steps(picture)).map(|(axis, step)| &axis.labels[step]).collect()
+    }
+
+    /// The scene that a picture shows, and its terms.
+    ///
+    /// # Errors
+    /// Returns the rules of scenes that its values break.
+    pub fn seen(&self, picture: usize) -> Result<(Scene, TermSelection), String> {
+        let steps = self.steps(picture);
+        let sets = self.axes.iter().zip(&steps);
+        let values =
+            sets.flat_map(|(axis, step)| axis.sets.iter().map(|(place, values)| (place, &values[*step])));
+        let scene = self.scene.with(values, self.registry).map_err(|problems| {
+            let named: Vec<_> = problems.iter().take(MAX_NAMED).map(ToString::to_string).collect();
+            named.join("\n")
+        })?;
+        let view = sets_view(&self.axes, &steps).unwrap_or(self.view);
+        scene.seen(view, self.registry).ok_or_else(|| "there is no such view".to_owned())
+    }
+
+    /// The name of the file of a picture: its number, which keeps names apart, and its values.
+    #[must_use]
+    pub fn file(&self, picture: usize) -> String {
+        let digits = self.count().to_string().len();
+        let mut name = format!("{:0digits$}", picture + 1);
+        for (axis, step) in self.axes.iter().zip(self.steps(picture)) {
+            name.push_str(&format!("_{}_{}", plain(&axis.word), plain(&axis.written[step])));
+        }
+        // Far below the limits of file systems.
+        name.truncate(120);
+        name + ".png"
+    }
+
+    /// The caption of all pictures together: what they share, and what varies.
+    #[must_use]
+    pub fn caption(&self) -> Caption {
+        let of = |i: usize| {
+            let (seen, terms) = self.seen(i).ok()?;
+            Some(caption::of_scene(&seen, terms, self.registry))
+        };
+        let all: Vec<_> = (0..self.count()).into_par_iter().filter_map(of).collect();
+        let mut caption = all
+            .first()
+            .cloned()
+            .unwrap_or_else(|| caption::of_scene(self.scene, TermSelection::All, self.registry));
+        caption.facts.retain(|fact| all.iter().all(|other| other.facts.contains(fact)));
+        // A part that continued one that varies begins now.
+        if let Some(first) = caption.facts.first_mut() {
+            first.continues = false;
+        }
+        caption.facts.extend(self.axes.iter().map(|axis| Words::new(0, axis.summary())));
+        caption
+    }
+
+    /// What varies, in one line.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        listed(&self.axes.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>(), "and")
+    }
+}
+
+/// The view in a picture, if views vary.
+fn sets_view(axes: &[Axis], steps: &[usize]) -> Option<usize> {
+    axes.iter().zip(steps).find_map(|(axis, step)| axis.views.get(*step).copied())
+}
+
+/// A text with only letters, digits, dots and signs that no shell and no file system minds.
+fn plain(text: &str) -> String {
+    let text: String =
+        text.chars().map(|c| if c.is_ascii_alphanumeric() || ".-".contains(c) { c } else { '-' }).collect();
+    text.trim_end_matches('-').to_owned()
+}
+
+/// The number of steps in a text.
+fn count(text: &str) -> Result<usize, String> {
+    match text.trim().parse::<usize>() {
+        Ok(count) if (2..=MAX_PICTURES).contains(&count) => Ok(count),
+        _ => Err(format!("the count must be a whole number, at least 2 and at most {MAX_PICTURES}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sweep<'a>(scene: &'a Scene, registry: &'a Registry, texts: &[&str]) -> Result<Sweep<'a>, String> {
+        let axes =
+            texts.iter().map(|text| Axis::vary(text, scene, registry)).collect::<Result<Vec<_>, _>>()?;
+        Sweep::new(scene, 0, axes, registry)
+    }
+
+    #[test]
+    fn the_first_axis_varies_fastest_and_files_are_named_after_values() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let made = sweep(&scene, &registry, &["objects[0].size=1,2,3", "reflection_model=lambert,phong"])
+            .expect("valid");
+        assert_eq!(made.count(), 6);
+        let seen =
+            |i: usize| made.seen(i).map(|(s, _)| (s.objects[0].size, s.reflection_model)).expect("valid");
+        assert_eq!(seen(1), (2.0, "lambert".to_owned()));
+        assert_eq!(seen(4), (2.0, "phong".to_owned()));
+        assert_eq!(made.file(4), "5_size_2_reflection-model_phong.png");
+        let words: Vec<_> = made.labels(4).into_iter().map(Words::words).collect();
+        assert_eq!(words, ["size 2 m", "Phong"]);
+        let facts = caption::line(&made.caption().facts);
+        assert!(facts.contains("size 1 m to size 3 m in 3 steps"), "{facts}");
+        assert!(
+            !facts.starts_with("Lambert") && facts.contains("Gouraud"),
+            "what varies is not shared: {facts}"
+        );
+    }
+
+    #[test]
+    fn too_much_and_twice_and_out_of_range_are_refused() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let cases: [(&[&str], &str); 4] = [
+            (
+                &["objects[0].size=1..2:1000", "lights[0].intensity=1..2:1000"],
+                "1000 × 1000 are 1000000 pictures, but a sweep has at most 10000",
+            ),
+            (&["objects[0].size=1,2", "objects[0].size=3,4"], "objects[0].size is varied twice"),
+            (&["observer.position[0]=5..15:3"], "a position must be inside the room"),
+            (&[], "nothing varies"),
+        ];
+        for (texts, expected) in cases {
+            let said = sweep(&scene, &registry, texts).expect_err(expected);
+            assert!(said.contains(expected), "{said}");
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! Finished pictures of a sweep that was interrupted: in the files of its folder, or in a folder beside its one file.
+
+use std::{
+    fs,
+    hash::{DefaultHasher, Hash as _, Hasher as _},
+    io,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use crate::{
+    failure::Failure,
+    files::{self, Shown as _, words},
+    reference::{Settings, Until},
+    registry::Registry,
+    render::capture::png::{self, About},
+    scene::{Scene, save::to_json},
+};
+
+/// The keyword of the text in a picture that names what was drawn.
+pub(super) const KEYWORD: &str = "Sweep";
+/// Pictures of shorter work are not kept: drawing them again takes less time than writing them.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// The end of the name of the folder.
+const END: &str = ".parts";
+
+/// What a picture depends on: the scene, the settings and the program; empty if that is not all, since a scene with files, or
+/// with models and shaders from files, may be drawn differently another time.
+pub(super) fn stamp(scene: &Scene, settings: &Settings, until: Until, registry: &Registry) -> String {
+    let from_files = registry.has_foreign() || registry.sources().edited().next().is_some();
+    if from_files || scene.files().next().is_some() {
+        return String::new();
+    }
+    let mut hasher = DefaultHasher::new();
+    to_json(scene, None, registry).hash(&mut hasher);
+    let Settings { width, height, samples, terms } = *settings;
+    (width, height, samples, terms.id(), until.samples, until.noise.map(f32::to_bits)).hash(&mut hasher);
+    let version = env!("CARGO_PKG_VERSION");
+    format!("{version} {:016x}", hasher.finish())
+}
+
+/// The failure to write a file.
+pub(super) fn unwritten(file: &Path, error: &io::Error) -> Failure {
+    Failure::Write(format!("{} could not be written: {}", file.shown(), words(error)))
+}
+
+/// True if a file is the picture with a stamp.
+pub(super) fn is_done(file: &Path, stamp: &str, size: [u32; 2]) -> bool {
+    found(file, stamp, size).is_some()
+}
+
+/// The picture in a file, if it has this stamp and is whole.
+fn found(file: &Path, stamp: &str, size: [u32; 2]) -> Option<Vec<u8>> {
+    if stamp.is_empty() || !file.is_file() {
+        return None;
+    }
+    png::read_with(file, KEYWORD, stamp, size)
+}
+
+/// The folder of the parts of a sheet or a film: finished pictures, numbered.
+#[derive(Debug)]
+pub struct Parts {
+    folder: PathBuf,
+    begun: Instant,
+    patience: Duration,
+}
+
+impl Parts {
+    /// The parts of a file, beside it: those of `sheet.png` are in `sheet.png.parts`.
+    #[must_use]
+    pub fn beside(output: &Path) -> Self {
+        let mut folder = output.as_os_str().to_owned();
+        folder.push(END);
+        let folder = PathBuf::from(folder);
+        // Whoever went on once may have to do so again.
+        let patience = if folder.is_dir() { Duration::ZERO } else { PATIENCE };
+        Self { folder, begun: Instant::now(), patience }
+    }
+
+    /// Keeps pictures from the first one on.
+    #[must_use]
+    pub fn at_once(self) -> Self {
+        Self { patience: Duration::ZERO, ..self }
+    }
+
+    /// The folder.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    fn file(&self, i: usize) -> PathBuf {
+        self.folder.join(format!("{i}.png"))
+    }
+
+    /// A picture of an earlier run.
+    pub(super) fn find(&self, i: usize, stamp: &str, size: [u32; 2]) -> Option<Vec<u8>> {
+        found(&self.file(i), stamp, size)
+    }
+
+    /// Keeps a picture, if the work takes long enough.
+    pub(super) fn keep(&self, i: usize, stamp: &str, [w, h]: [u32; 2], rgb8: &[u8]) -> Result<(), Failure> {
+        if stamp.is_empty() || self.begun.elapsed() < self.patience {
+            return Ok(());
+        }
+        let file = self.file(i);
+        // What somebody else put there stays.
+        if files::may_overwrite(&file, files::PNG, []).is_err() {
+            return Ok(());
+        }
+        let about = About::default().with(KEYWORD, stamp);
+        png::write(&file, w, h, rgb8, &about).map_err(|error| unwritten(&file, &error))
+    }
+
+    /// Removes the pictures, once nobody needs them.
+    pub fn remove(&self) {
+        let Ok(entries) = fs::read_dir(&self.folder) else { return };
+        for entry in entries.flatten() {
+            let path = entry.path();
+            let is_number =
+                path.file_stem().is_some_and(|stem| stem.to_string_lossy().parse::<usize>().is_ok());
+            // Nothing depends on whether this succeeds.
+            if is_number && path.extension().is_some_and(|end| end == "png") && png::has_text(&path, KEYWORD)
+            {
+                let _ = fs::remove_file(&path);
+            }
+        }
+        let _ = fs::remove_dir(&self.folder);
+    }
+}
