@@ -337,13 +337,13 @@ fn of_field(field: &Field, text: &str) -> Option<Value> {
         Kind::Count(_) => text.parse::<u32>().ok().map(Value::from),
         Kind::Flag(_) => text.parse::<bool>().ok().map(Value::from),
         Kind::Text(_) | Kind::Id(_) | Kind::Choice(_) => Some(text.into()),
-        Kind::Position | Kind::Direction | Kind::Rotation => {
+        Kind::Position | Kind::Direction | Kind::Step | Kind::Rotation => {
             let all =
                 items(text).into_iter().map(|(_, item)| item.parse().ok()).collect::<Option<Vec<f32>>>()?;
             <[f32; 3]>::try_from(all).ok().map(Value::Triple)
         }
         Kind::Colour => Colour { default: [0; 3] }.parse(text),
-        Kind::Material | Kind::Parameters | Kind::Part | Kind::Parts => None,
+        Kind::Material | Kind::Parameters | Kind::List | Kind::Part | Kind::Parts => None,
     }
 }
 

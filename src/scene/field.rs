@@ -92,7 +92,7 @@ impl Kind {
     #[must_use]
     pub const fn entries(&self) -> &'static [&'static str] {
         match self {
-            Self::Position | Self::Direction | Self::Rotation => &AXES,
+            Self::Position | Self::Direction | Self::Step | Self::Rotation => &AXES,
             Self::Colour => &RGB,
             _ => &[],
         }
