@@ -1,4 +1,5 @@
-//! Enums whose values are declared in a file each, lists of types that are, and choices, which take a line each.
+//! Enums whose values are declared in a file each, lists of types that are, choices, and builder methods, which take a line
+//! each.
 
 /// An enum with the static that declares each of its values. The declaration has an `id`.
 macro_rules! declared {
@@ -89,4 +90,15 @@ macro_rules! choice {
     };
 }
 
-pub(crate) use {choice, declared, take_each};
+/// Builder methods, each with its arguments and the fields it sets.
+macro_rules! setters {
+    ($($(#[$doc:meta])* $name:ident($($argument:ident: $Type:ty),*) { $($field:tt)+ })+) => {
+        $($(#[$doc])*
+        #[must_use]
+        pub const fn $name(self, $($argument: $Type),*) -> Self {
+            Self { $($field)+, ..self }
+        })+
+    };
+}
+
+pub(crate) use {choice, declared, setters, take_each};
