@@ -1,5 +1,5 @@
-//! Enums whose values are declared in a file each, lists of types that are, choices, and builder methods, which take a line
-//! each.
+//! Enums whose values are declared in a file each, lists of types that are, choices, and the methods that differ only in
+//! names: builder methods, calls of another trait, the registered types' methods.
 
 /// An enum with the static that declares each of its values. The declaration has an `id`.
 macro_rules! declared {
@@ -101,4 +101,40 @@ macro_rules! setters {
     };
 }
 
-pub(crate) use {choice, declared, setters, take_each};
+/// Methods of a trait for trait objects that call the same methods of a trait that is none.
+macro_rules! forwards {
+    (|$this:ident| $to:expr => $Trait:ident: $(fn $name:ident($($argument:ident: $Type:ty),*) -> $Result:ty;)+) => {
+        $(fn $name(&self, $($argument: $Type),*) -> $Result {
+            let $this = self;
+            $Trait::$name($to, $($argument),*)
+        })+
+    };
+}
+
+/// The debug output of a type: its name and one field.
+macro_rules! debug_by {
+    ($Type:ident: $($field:ident).+) => {
+        impl std::fmt::Debug for $Type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.debug_tuple(stringify!($Type)).field(&self.$($field).+).finish()
+            }
+        }
+    };
+}
+
+/// The parameters of a registered type by name, and its id as debug output.
+macro_rules! entry {
+    ($Entry:ident) => {
+        impl $Entry {
+            /// The parameter with this name, if the type has it.
+            #[must_use]
+            pub fn parameter(&self, name: &str) -> Option<&'static $crate::parameter::Parameter> {
+                self.parameters.iter().find(|p| p.name == name)
+            }
+        }
+
+        $crate::declared::debug_by!($Entry: declaration.id);
+    };
+}
+
+pub(crate) use {choice, debug_by, declared, entry, forwards, setters, take_each};

@@ -4,7 +4,6 @@
 use std::{
     borrow::Cow,
     collections::HashMap,
-    fmt,
     path::{Path, PathBuf},
     sync::{
         Arc, LazyLock, Mutex, OnceLock, PoisonError, RwLock, RwLockReadGuard, Weak,
@@ -19,6 +18,7 @@ use serde::{Serialize, Serializer};
 use super::outside::Outside;
 use crate::{
     caught::lock,
+    declared::debug_by,
     files::{self, Shown as _},
 };
 
@@ -51,11 +51,7 @@ impl PartialEq for FileFormat {
     }
 }
 
-impl fmt::Debug for FileFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("FileFormat").field(&self.name).finish()
-    }
-}
+debug_by!(FileFormat: name);
 
 /// A file named in a scene.
 #[derive(Clone, Reflect)]
@@ -475,11 +471,7 @@ impl PartialEq for NamedFile {
     }
 }
 
-impl fmt::Debug for NamedFile {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("NamedFile").field(&self.name).finish()
-    }
-}
+debug_by!(NamedFile: name);
 
 impl Serialize for NamedFile {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -3,12 +3,10 @@
 //! **To add one**: write `shading/x.rs` and `assets/shaders/shading/x.wgsl`, and add its name to
 //! [`register_builtin`].
 
-use std::fmt;
-
 use glam::Vec3;
 
 use crate::{
-    declared::take_each,
+    declared::{entry, forwards, take_each},
     optics::colour::Encoding,
     parameter::{self, Parameter, ParameterSet, Values},
     shader::{Source, wgsl},
@@ -154,12 +152,10 @@ pub trait Shading: Send + Sync {
 }
 
 impl<S: ShadingModel> Shading for S {
-    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
-        ShadingModel::vertex(self, lighting, corner)
-    }
-
-    fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
-        ShadingModel::pixel(self, lighting, varying, face_normal)
+    forwards! {
+        |this| this => ShadingModel:
+        fn vertex(lighting: &dyn Lighting, corner: &Corner) -> Varying;
+        fn pixel(lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3;
     }
 }
 
@@ -190,12 +186,6 @@ impl ShadingEntry {
         }
     }
 
-    /// The parameter with this name, if the shading model has it.
-    #[must_use]
-    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
-        self.parameters.iter().find(|p| p.name == name)
-    }
-
     /// The parameters of one object as [`PARAMETER_WORDS`] numbers, the end of its row in the table that shaders read.
     #[must_use]
     pub fn row(&self, values: &Values, encoding: Encoding) -> Vec<u8> {
@@ -205,8 +195,4 @@ impl ShadingEntry {
     }
 }
 
-impl fmt::Debug for ShadingEntry {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("ShadingEntry").field(&self.declaration.id).finish()
-    }
-}
+entry!(ShadingEntry);
