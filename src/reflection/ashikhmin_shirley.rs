@@ -68,10 +68,7 @@ impl ReflectionModel for AshikhminShirley {
         built_in!("ashikhmin_shirley", "Ashikhmin–Shirley", Classical).ambient_by_albedo().anisotropic();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_l <= 0.0 || cos_v <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_l, cos_v)) = frame.cosines(l, v) else { return Terms::default() };
         let r_s = self.k_s * self.specular_colour;
         let slope = half_slope(l, v, frame);
         let squared = slope * slope;

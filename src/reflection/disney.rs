@@ -213,13 +213,11 @@ impl ReflectionModel for Disney {
     /// The factors of the main lobe, without the clear coat.
     fn factor(&self, factor: Factor) -> Option<Vec3> {
         let alpha = self.alpha();
-        Some(match factor {
-            Factor::Fresnel { cos_d } => schlick(self.f0(), cos_d),
-            Factor::Distribution { h } => Vec3::splat(ggx(h, alpha)),
-            Factor::Masking { l, v } => {
-                Factor::of_visibility(separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha)), l, v)
-            }
-        })
+        factor.by(
+            |cos_d| schlick(self.f0(), cos_d),
+            |h| ggx(h, alpha),
+            |l, v| separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha)),
+        )
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

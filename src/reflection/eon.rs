@@ -46,10 +46,7 @@ impl ReflectionModel for Eon {
     const DECLARATION: Declaration = built_in!("eon", "EON", Diffuse).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_l <= 0.0 || cos_v <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_l, cos_v)) = frame.cosines(l, v) else { return Terms::default() };
         let factor = eon(cos_l, cos_v, l.dot(v), self.roughness, self.base_colour);
         Terms { diffuse: cos_l * factor * self.base_colour, ..Terms::default() }
     }

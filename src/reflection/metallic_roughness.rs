@@ -113,14 +113,11 @@ impl ReflectionModel for MetallicRoughness {
 
     fn factor(&self, factor: Factor) -> Option<Vec3> {
         let alpha = Vec2::splat(self.alpha());
-        Some(match factor {
-            Factor::Fresnel { cos_d } => schlick(self.f0(), cos_d),
-            Factor::Distribution { h } => Vec3::splat(ggx(h, alpha)),
-            Factor::Masking { l, v } => {
-                let visibility = height_correlated(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha));
-                Factor::of_visibility(visibility, l, v)
-            }
-        })
+        factor.by(
+            |cos_d| schlick(self.f0(), cos_d),
+            |h| ggx(h, alpha),
+            |l, v| height_correlated(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha)),
+        )
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

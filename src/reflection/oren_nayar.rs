@@ -61,10 +61,7 @@ impl ReflectionModel for OrenNayar {
     const DECLARATION: Declaration = built_in!("oren_nayar", "Oren–Nayar", Diffuse).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_l <= 0.0 || cos_v <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_l, cos_v)) = frame.cosines(l, v) else { return Terms::default() };
         let sigma = self.sigma.to_radians();
         let factor = match self.oren_nayar_form {
             0 => oren_nayar_full(cos_l, cos_v, l.dot(v), sigma, self.base_colour),

@@ -108,10 +108,7 @@ impl ReflectionModel for Strauss {
     const DECLARATION: Declaration = built_in!("strauss", "Strauss", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_i <= 0.0 || cos_o <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_i, cos_o)) = frame.cosines(l, v) else { return Terms::default() };
         let (s, m) = (self.smoothness, self.metallic);
         let diffuse = (1.0 - s * s * s) * (1.0 - self.transparency);
         let straight = s * s * s * (1.0 - self.transparency);

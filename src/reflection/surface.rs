@@ -149,9 +149,6 @@ pub fn brdf(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
 /// The BRDF `f_r` in sr⁻¹ of a response; see [`brdf`].
 #[must_use]
 pub fn brdf_of(response: Terms, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
-    let cos_i = frame.n.dot(l);
-    if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
-        return Vec3::ZERO;
-    }
+    let Some((cos_i, _)) = frame.cosines(l, v) else { return Vec3::ZERO };
     (response.diffuse + response.specular) / (std::f32::consts::PI * cos_i)
 }

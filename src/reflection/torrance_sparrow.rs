@@ -121,15 +121,11 @@ impl ReflectionModel for TorranceSparrow {
     }
 
     fn factor(&self, factor: Factor) -> Option<Vec3> {
-        Some(match factor {
-            Factor::Fresnel { cos_d } => conductor_rgb(self.ior, self.extinction, cos_d),
-            Factor::Distribution { h } => {
-                Vec3::splat(gaussian(h.truncate().length(), h.z, self.facet_spread))
-            }
-            Factor::Masking { l, v } => {
-                Factor::of_visibility(v_cavity(l.z, v.z, half_vector(l, v).z, 0.5 * (l + v).length()), l, v)
-            }
-        })
+        factor.by(
+            |cos_d| conductor_rgb(self.ior, self.extinction, cos_d),
+            |h| gaussian(h.truncate().length(), h.z, self.facet_spread),
+            |l, v| v_cavity(l.z, v.z, half_vector(l, v).z, 0.5 * (l + v).length()),
+        )
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

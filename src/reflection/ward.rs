@@ -69,10 +69,7 @@ impl ReflectionModel for Ward {
     const DECLARATION: Declaration = built_in!("ward", "Ward", Classical).ambient_by_albedo().anisotropic();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_l <= 0.0 || cos_v <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_l, cos_v)) = frame.cosines(l, v) else { return Terms::default() };
         let slope = half_slope(l, v, frame);
         let lobe = (-(slope.x / self.alpha_x).powi(2) - (slope.y / self.alpha_y).powi(2)).exp()
             / (4.0 * self.alpha_x * self.alpha_y);
