@@ -1,4 +1,4 @@
-//! Enums whose values are declared in a file each, lists of types that are, choices, and the methods that differ only in
+//! Enums whose values are declared in a file each, lists of types that are, choices, ids, and the methods that differ only in
 //! names: builder methods, calls of another trait, the registered types' methods.
 
 /// An enum with the static that declares each of its values. The declaration has an `id`.
@@ -41,6 +41,34 @@ macro_rules! declared {
 macro_rules! take_each {
     ($to:ident: $($Type:ident)+) => {
         $($to.take::<$Type>();)+
+    };
+}
+
+/// An enum, each value with an id.
+macro_rules! ids {
+    ($(#[$about:meta])* $Name:ident { $($(#[$doc:meta])* $Value:ident = $id:literal,)+ }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $Name {
+            $($(#[$doc])* $Value,)+
+        }
+
+        impl $Name {
+            /// All variants, in display order.
+            pub const ALL: [Self; [$($id),+].len()] = [$(Self::$Value),+];
+
+            /// The name in files and on the command line.
+            #[must_use]
+            pub const fn id(self) -> &'static str {
+                [$($id),+][self as usize]
+            }
+
+            /// The variant with this id.
+            #[must_use]
+            pub fn from_id(id: &str) -> Option<Self> {
+                Self::ALL.into_iter().find(|one| one.id() == id)
+            }
+        }
     };
 }
 
@@ -137,4 +165,4 @@ macro_rules! entry {
     };
 }
 
-pub(crate) use {choice, debug_by, declared, entry, forwards, setters, take_each};
+pub(crate) use {choice, debug_by, declared, entry, forwards, ids, setters, take_each};

@@ -26,6 +26,7 @@
 //! ```
 
 use crate::{
+    declared::ids,
     parameter::{Parameter, Value},
     progress::{Cancelled, Progress},
     reflection::usage::unused,
@@ -60,32 +61,21 @@ const MOST_LOBES: [usize; 2] = [2500, 250];
 /// number.
 const MOST_PICTURES: [usize; 2] = [400, 50];
 
-/// The quantity that is compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum What {
-    /// The responses of the models for many pairs of directions.
-    #[default]
-    Lobe,
-    /// The pictures of the views.
-    Picture,
-    /// The width of the highlights.
-    Highlight,
+ids! {
+    /// The quantity that is compared.
+    #[derive(Default)]
+    What {
+        /// The responses of the models for many pairs of directions.
+        #[default]
+        Lobe = "lobe",
+        /// The pictures of the views.
+        Picture = "picture",
+        /// The width of the highlights.
+        Highlight = "highlight",
+    }
 }
 
 impl What {
-    /// All variants, in display order.
-    pub const ALL: [Self; 3] = [Self::Lobe, Self::Picture, Self::Highlight];
-
-    /// Name on the command line.
-    #[must_use]
-    pub const fn id(self) -> &'static str {
-        match self {
-            Self::Lobe => "lobe",
-            Self::Picture => "picture",
-            Self::Highlight => "highlight",
-        }
-    }
-
     /// One sentence about the comparison.
     #[must_use]
     pub const fn summary(self) -> &'static str {
@@ -110,12 +100,6 @@ impl What {
             Self::Picture => "RMS difference in linear light over the covered pixels",
             Self::Highlight => "RMS difference of the widths, as a logarithm: 0.1 is about 10 %",
         }
-    }
-
-    /// The variant with this id.
-    #[must_use]
-    pub fn from_id(id: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|what| what.id() == id)
     }
 }
 
