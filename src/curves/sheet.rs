@@ -7,7 +7,10 @@ use super::{
     draw::{Axis, COLOURS, Figure, Line, Mark, Plot, Polar, SIDE, Series, Slices, Tile},
     slice::LOG_RANGE,
 };
-use crate::render::capture::png::{About, encode};
+use crate::{
+    render::capture::png::{About, encode},
+    text::capitalised,
+};
 
 /// Curves or slices of one kind, with display settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,10 +94,7 @@ impl Sheet {
     #[must_use]
     pub fn heading(&self) -> String {
         let Setup { kind, theta_i, phi_i } = self.setup;
-        let mut words = kind.declaration().heading.unwrap_or(kind.name()).to_owned();
-        if let Some(first) = words.get(..1) {
-            words = format!("{}{}", first.to_uppercase(), &words[1..]);
-        }
+        let mut words = capitalised(kind.declaration().heading.unwrap_or(kind.name()));
         if kind.has_light() {
             words += &format!(" in the plane of incidence, light at {theta_i}°");
         }

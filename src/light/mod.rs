@@ -11,6 +11,7 @@ use crate::{
     optics::{colour::Encoding, radiometry::Arriving, sampling::power_heuristic},
     parameter::{Parameter, ParameterSet, Table, TypeComponent, Value, Values, words},
     shader::Source,
+    text::capitalised,
 };
 
 mod ambient;
@@ -438,13 +439,7 @@ impl LightEntry {
     /// The name of the parameter struct in WGSL: `SpotParameters` for the id `spot`.
     #[must_use]
     pub fn parameter_struct(&self) -> String {
-        let mut name = String::new();
-        for word in self.declaration.id.split('_') {
-            let mut letters = word.chars();
-            name.extend(letters.next().map(|c| c.to_ascii_uppercase()));
-            name.push_str(letters.as_str());
-        }
-        name + "Parameters"
+        self.declaration.id.split('_').map(capitalised).collect::<String>() + "Parameters"
     }
 }
 

@@ -19,11 +19,14 @@ use crate::{
         albedo::NODES,
         colour::{BACKGROUND, Encoding},
         lobes::MAX_LOBES,
-        tone::ToneMapping,
     },
     parameter::Parameter,
+    render::camera::tonemapping,
     scene::observer::{NEAR, orientation},
-    text::template::{chosen, filled},
+    text::{
+        template::{chosen, filled},
+        wrapped,
+    },
 };
 
 /// The program for a scene; `package` is its name.
@@ -71,7 +74,7 @@ pub(super) fn text(lit: &Lit, package: &str) -> String {
             ("package", &package),
             ("window", &string(title)),
             ("plugins", &all(&plugin)),
-            ("tone_mapping", &tonemapping(scene.display.tone_mapping)),
+            ("tone_mapping", &format!("{:?}", tonemapping(scene.display.tone_mapping))),
             ("up", &up(observer.direction)),
             ("meshes", &meshes.iter().map(|name| format!("    {name}: Handle<Mesh>,\n")).collect::<String>()),
             ("shaders", &shaders(lit)),
@@ -89,21 +92,9 @@ fn attributes(polygons: bool) -> &'static str {
 
 /// A comment above a declaration, wrapped to the line width.
 fn doc(out: &mut String, text: &str, indent: &str, mark: &str) {
-    const WIDTH: usize = 100;
-    let mut line = String::new();
-    for word in comment(text).split_whitespace() {
-        if !line.is_empty()
-            && indent.len() + mark.len() + 2 + line.chars().count() + word.chars().count() > WIDTH
-        {
-            let _ = writeln!(out, "{indent}{mark} {line}");
-            line.clear();
-        }
-        if !line.is_empty() {
-            line.push(' ');
-        }
-        line.push_str(word);
-    }
-    if !line.is_empty() {
+    const WIDTH: usize = 99;
+    let lines = wrapped(&comment(text), WIDTH - indent.len() - mark.len());
+    for line in lines.iter().filter(|line| !line.is_empty()) {
         let _ = writeln!(out, "{indent}{mark} {line}");
     }
 }
@@ -292,20 +283,6 @@ fn curve_type(length: usize) -> String {
         format!("AlbedoCurve{}", length / NODES)
     } else {
         format!("AlbedoCurveOf{length}")
-    }
-}
-
-/// The name of a tone mapping in Bevy.
-fn tonemapping(tone: ToneMapping) -> &'static str {
-    match tone {
-        ToneMapping::None => "None",
-        ToneMapping::Reinhard => "Reinhard",
-        ToneMapping::ReinhardLuminance => "ReinhardLuminance",
-        ToneMapping::Aces => "AcesFitted",
-        ToneMapping::AgX => "AgX",
-        ToneMapping::TonyMcMapface => "TonyMcMapface",
-        ToneMapping::BlenderFilmic => "BlenderFilmic",
-        ToneMapping::KhronosPbrNeutral => "KhronosPbrNeutral",
     }
 }
 
