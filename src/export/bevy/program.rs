@@ -11,7 +11,7 @@ use super::words::{camel, comment, field as field_name, kind, number, snake, str
 use crate::{
     export::{
         Request,
-        lights::{LightField, size},
+        lights::LightField,
         lit::{Lit, Material, MeshData, Program},
         names::Names,
     },
@@ -20,7 +20,7 @@ use crate::{
         colour::{BACKGROUND, Encoding},
         lobes::MAX_LOBES,
     },
-    parameter::Parameter,
+    parameter::{Parameter, lanes},
     render::camera::tonemapping,
     scene::observer::{NEAR, orientation},
     text::{
@@ -130,7 +130,7 @@ fn lights(lit: &Lit) -> String {
         light(&mut out, &|field| row.words(field));
     }
     if lit.lights.rows.is_empty() {
-        light(&mut out, &|field| vec![0; size(field.kind)]);
+        light(&mut out, &|field| vec![0; lanes(field.kind)]);
     }
     out
 }
