@@ -14,24 +14,12 @@ parameters! {
 }
 
 impl ShadingModel for Derivative {
-    const DECLARATION: Declaration = Declaration {
-        id: "derivative",
-        name: "Derivative",
-        author: "screen-space derivatives",
-        source: "CA LC3: normals from partial derivatives; dFdx and dFdy, OpenGL Shading Language 1.10 (2004)",
-        summary: "Facet normals from the derivatives of position on the screen; colour calculated at every pixel.",
-        stage: Stage::Pixel,
-        key: 'D',
-        wgsl: wgsl!("shading/derivative.wgsl"),
-    };
+    const DECLARATION: Declaration = Declaration::new("derivative", "Derivative", Stage::Pixel, 'D', wgsl!("shading/derivative.wgsl"))
+        .published("screen-space derivatives", "CA LC3: normals from partial derivatives; dFdx and dFdy, OpenGL Shading Language 1.10 (2004)")
+        .summary("Facet normals from the derivatives of position on the screen; colour calculated at every pixel.");
 
     fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
-        Varying {
-            position: corner.position,
-            normal: corner.normal,
-            tangent: corner.tangent,
-            colour: Vec3::ZERO,
-        }
+        corner.varying(Vec3::ZERO)
     }
 
     fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {

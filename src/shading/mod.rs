@@ -115,6 +115,14 @@ pub struct Corner {
     pub face_centre: Vec3,
 }
 
+impl Corner {
+    /// The values of the vertex, with a colour.
+    #[must_use]
+    pub fn varying(&self, colour: Vec3) -> Varying {
+        Varying { position: self.position, normal: self.normal, tangent: self.tangent, colour }
+    }
+}
+
 /// The values passed from the corners to the pixels, interpolated with perspective correction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Varying {

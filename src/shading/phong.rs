@@ -18,12 +18,7 @@ impl ShadingModel for PhongShading {
         .summary("Normals interpolated between the vertices and renormalised; colour calculated at every pixel.");
 
     fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
-        Varying {
-            position: corner.position,
-            normal: corner.normal,
-            tangent: corner.tangent,
-            colour: Vec3::ZERO,
-        }
+        corner.varying(Vec3::ZERO)
     }
 
     fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {

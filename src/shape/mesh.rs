@@ -105,25 +105,21 @@ impl PolygonMesh {
     /// The normal of every polygon: the normalised cross product of two of its sides (CA DD8).
     #[must_use]
     pub fn polygon_normals(&self) -> Vec<Vec3> {
-        self.polygons
-            .iter()
-            .map(|p| {
-                let (corners, n) = self.corner_positions(p);
-                polygon_normal(&corners[..n])
-            })
-            .collect()
+        self.of_polygons(polygon_normal)
     }
 
     /// The centre of every polygon.
     #[must_use]
     pub fn polygon_centres(&self) -> Vec<Vec3> {
-        self.polygons
-            .iter()
-            .map(|p| {
-                let (corners, n) = self.corner_positions(p);
-                polygon_centre(&corners[..n])
-            })
-            .collect()
+        self.of_polygons(polygon_centre)
+    }
+
+    fn of_polygons(&self, of: impl Fn(&[Vec3]) -> Vec3) -> Vec<Vec3> {
+        let of = |polygon| {
+            let (corners, n) = self.corner_positions(polygon);
+            of(&corners[..n])
+        };
+        self.polygons.iter().map(of).collect()
     }
 
     /// The normal of every vertex, CA DD9; that of the surface where polygons [have
