@@ -69,6 +69,12 @@ pub fn detailed(message: &str, detail: &str) -> String {
     format!("{said}; {detail}{question}")
 }
 
+/// A decimal fraction without trailing zeros.
+#[must_use]
+pub fn trimmed(text: String) -> String {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 /// A fraction in per cent, with two digits: "12 %", "1.2 %", "0.12 %", "< 0.01 %".
 #[must_use]
 pub fn per_cent(part: f32) -> String {
