@@ -1,5 +1,5 @@
-//! Enums whose values are declared in a file each, lists of types that are, choices, ids, and the methods that differ only in
-//! names: builder methods, calls of another trait, the registered types' methods.
+//! Enums whose values are declared in a file each, lists of types that are, choices and other enums with
+//! texts, and the methods that differ only in names: builder methods, calls of another trait, the registered types' methods.
 
 /// An enum with the static that declares each of its values. The declaration has an `id`.
 macro_rules! declared {
@@ -44,24 +44,51 @@ macro_rules! take_each {
     };
 }
 
-/// An enum, each value with an id.
-macro_rules! ids {
-    ($(#[$about:meta])* $Name:ident { $($(#[$doc:meta])* $Value:ident = $id:literal,)+ }) => {
+/// An enum with methods that give a text for each value.
+macro_rules! texts {
+    (
+        $(#[$about:meta])* $Name:ident($($(#[$of:meta])* $method:ident),+)
+        { $($(#[$doc:meta])* $Value:ident = $($text:literal)+,)+ }
+    ) => {
         $(#[$about])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum $Name {
             $($(#[$doc])* $Value,)+
         }
 
+        const _: () = {
+            #[allow(non_camel_case_types)]
+            enum Text { $($method),+ }
+
+            const TEXTS: [[&str; [$(Text::$method),+].len()]; [$($Name::$Value),+].len()] =
+                [$([$($text),+]),+];
+
+            impl $Name {
+                $($(#[$of])*
+                #[must_use]
+                pub const fn $method(self) -> &'static str {
+                    TEXTS[self as usize][Text::$method as usize]
+                })+
+            }
+        };
+    };
+}
+
+/// An enum, each value with an id, perhaps with further texts.
+macro_rules! ids {
+    (
+        $(#[$about:meta])* $Name:ident $(($($(#[$of:meta])* $method:ident),+))?
+        { $($(#[$doc:meta])* $Value:ident = $id:literal $($text:literal)*,)+ }
+    ) => {
+        $crate::declared::texts! {
+            $(#[$about])*
+            $Name(#[doc = "The name in files and on the command line."] id $($(, $(#[$of])* $method)+)?)
+            { $($(#[$doc])* $Value = $id $($text)*,)+ }
+        }
+
         impl $Name {
             /// All variants, in display order.
             pub const ALL: [Self; [$($id),+].len()] = [$(Self::$Value),+];
-
-            /// The name in files and on the command line.
-            #[must_use]
-            pub const fn id(self) -> &'static str {
-                [$($id),+][self as usize]
-            }
 
             /// The variant with this id.
             #[must_use]
@@ -75,33 +102,20 @@ macro_rules! ids {
 /// An enum of choices, each with an id for files, a name for people, and one sentence.
 macro_rules! choice {
     ($(#[$doc:meta])* $name:ident { $($(#[$default:ident])? $variant:ident $id:literal $label:literal $help:literal,)+ }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-        pub enum $name {
-            $(#[doc = $help] $(#[$default])? $variant,)+
+        $crate::declared::texts! {
+            $(#[$doc])*
+            #[derive(Default)]
+            $name(
+                #[doc = "The id in files and on the command line."] id,
+                #[doc = "The name for people."] name,
+                #[doc = "One sentence of explanation."] summary
+            )
+            { $(#[doc = $help] $(#[$default])? $variant = $id $label $help,)+ }
         }
 
         impl $name {
             /// Every choice, in the order of presentation.
             pub const ALL: &[Self] = &[$(Self::$variant),+];
-
-            /// The id in files and on the command line.
-            #[must_use]
-            pub const fn id(self) -> &'static str {
-                match self { $(Self::$variant => $id,)+ }
-            }
-
-            /// The name for people.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $label,)+ }
-            }
-
-            /// One sentence of explanation.
-            #[must_use]
-            pub const fn summary(self) -> &'static str {
-                match self { $(Self::$variant => $help,)+ }
-            }
 
             /// The choice with this id.
             #[must_use]
@@ -165,4 +179,4 @@ macro_rules! entry {
     };
 }
 
-pub(crate) use {choice, debug_by, declared, entry, forwards, ids, setters, take_each};
+pub(crate) use {choice, debug_by, declared, entry, forwards, ids, setters, take_each, texts};

@@ -6,25 +6,22 @@ use crate::{declared::ids, optics::colour::luminance};
 
 ids! {
     /// The channel shown by a curve.
-    Channel {
+    Channel(
+        /// The name in words.
+        name
+    ) {
         /// Luminance by ITU-R BT.709.
-        Luminance = "luminance",
+        Luminance = "luminance" "luminance",
         /// Red.
-        Red = "r",
+        Red = "r" "red",
         /// Green.
-        Green = "g",
+        Green = "g" "green",
         /// Blue.
-        Blue = "b",
+        Blue = "b" "blue",
     }
 }
 
 impl Channel {
-    /// The name in words.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        ["luminance", "red", "green", "blue"][self as usize]
-    }
-
     /// The value of a colour; not finite if one of its channels is not.
     #[must_use]
     pub fn of(self, rgb: Vec3) -> f64 {

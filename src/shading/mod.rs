@@ -6,7 +6,7 @@
 use glam::Vec3;
 
 use crate::{
-    declared::{entry, forwards, take_each},
+    declared::{entry, forwards, take_each, texts},
     optics::colour::Encoding,
     parameter::{self, Parameter, ParameterSet, Values},
     shader::{Source, wgsl},
@@ -39,26 +39,18 @@ pub fn register_builtin(to: &mut impl Take) {
     take_each!(to: Flat Gouraud PhongShading Derivative);
 }
 
-/// The stage that evaluates the reflection model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Stage {
-    /// Once per polygon.
-    Polygon,
-    /// Once per vertex.
-    Vertex,
-    /// Once per pixel.
-    Pixel,
-}
-
-impl Stage {
-    /// The stage in words: "per polygon", "per vertex" or "per pixel".
-    #[must_use]
-    pub fn phrase(self) -> &'static str {
-        match self {
-            Self::Polygon => "per polygon",
-            Self::Vertex => "per vertex",
-            Self::Pixel => "per pixel",
-        }
+texts! {
+    /// The stage that evaluates the reflection model.
+    Stage(
+        /// The stage in words: "per polygon", "per vertex" or "per pixel".
+        phrase
+    ) {
+        /// Once per polygon.
+        Polygon = "per polygon",
+        /// Once per vertex.
+        Vertex = "per vertex",
+        /// Once per pixel.
+        Pixel = "per pixel",
     }
 }
 
