@@ -34,6 +34,7 @@ impl Declaration {
             laws: Laws::NONE,
             ambient: Ambient::Formula,
             anisotropic: false,
+            matte: false,
             wgsl,
         }
     }
@@ -68,6 +69,9 @@ impl Declaration {
 
         /// Makes the response depend on the tangent.
         anisotropic() { anisotropic: true }
+
+        /// Makes a cosine its lobe for sampling light with extent.
+        matte() { matte: true }
     }
 
     /// Claims reciprocity: the path of light may be reversed.

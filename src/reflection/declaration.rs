@@ -31,6 +31,8 @@ pub struct Declaration {
     pub ambient: Ambient,
     /// True if the response depends on the tangent: rotating the surface about its normal changes it.
     pub anisotropic: bool,
+    /// True for a model without a highlight.
+    pub matte: bool,
     /// The twin in WGSL: `fn response` over a struct `Parameters`, and `fn ambient_response` for models
     /// that declare [`Ambient::Formula`].
     pub wgsl: Source,
