@@ -50,6 +50,13 @@ impl From<[Vec3; 3]> for Terms {
 }
 
 impl Terms {
+    /// Terms without an ambient one.
+    #[must_use]
+    #[inline]
+    pub fn of(diffuse: Vec3, specular: Vec3) -> Self {
+        Self { ambient: Vec3::ZERO, diffuse, specular }
+    }
+
     /// The ambient, the diffuse and the specular term.
     #[must_use]
     pub fn each(self) -> [Vec3; 3] {

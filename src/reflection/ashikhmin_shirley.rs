@@ -87,11 +87,9 @@ impl ReflectionModel for AshikhminShirley {
             let x = 0.5 * mu;
             x * (5.0 + x * (-10.0 + x * (10.0 + x * (-5.0 + x))))
         };
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: 28.0 / 23.0 * cos_l * left(cos_l) * left(cos_v) * self.base_colour * (1.0 - r_s),
-            specular: lobe * (cos_l / cos_l.max(cos_v)) / cos_d * schlick(r_s, cos_d),
-        }
+        let diffuse = 28.0 / 23.0 * cos_l * left(cos_l) * left(cos_v) * self.base_colour * (1.0 - r_s);
+        let specular = lobe * (cos_l / cos_l.max(cos_v)) / cos_d * schlick(r_s, cos_d);
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {

@@ -59,11 +59,7 @@ impl ReflectionModel for BlinnPhongNormalised {
         let mirrored = self.k_s * self.specular_colour;
         let norm = (n + 2.0) * ((n + 4.0) / (8.0 * ((-0.5 * n).exp2() + n)));
         let lobe = power_of_cosine(half_tangent_squared(l, v, frame.n), n);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: (1.0 - mirrored) * self.base_colour * cos_i,
-            specular: mirrored * (norm * lobe * cos_i),
-        }
+        Terms::of((1.0 - mirrored) * self.base_colour * cos_i, mirrored * (norm * lobe * cos_i))
     }
 
     fn lobes(&self) -> Lobes {

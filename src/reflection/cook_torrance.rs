@@ -93,11 +93,9 @@ impl ReflectionModel for CookTorrance {
         let d = beckmann(local, Vec2::splat(self.slope));
         let visibility = v_cavity(cos_l, cos_v, local.z, cos_d);
         let f = conductor_rgb(self.ior, self.extinction, cos_d);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: (1.0 - self.specular_weight) * cos_l * self.base_colour,
-            specular: self.specular_weight * PI * d * (visibility * cos_l) * f,
-        }
+        let diffuse = (1.0 - self.specular_weight) * cos_l * self.base_colour;
+        let specular = self.specular_weight * PI * d * (visibility * cos_l) * f;
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {

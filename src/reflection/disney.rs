@@ -187,11 +187,10 @@ impl ReflectionModel for Disney {
         let main = lobe(ggx(h, alpha), alpha) * (f0 + (Vec3::ONE - f0) * fresnel);
         let coat =
             lobe(gtr(h, Vec2::splat(self.coat_width()), 1.0), Vec2::splat(0.25)) * (0.04 + 0.96 * fresnel);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: PI * cos_l * (1.0 - self.metallic) * body,
-            specular: PI * cos_l * (main + 0.25 * self.clearcoat * coat),
-        }
+        Terms::of(
+            PI * cos_l * (1.0 - self.metallic) * body,
+            PI * cos_l * (main + 0.25 * self.clearcoat * coat),
+        )
     }
 
     fn lobes(&self) -> Lobes {

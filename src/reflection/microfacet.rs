@@ -286,7 +286,7 @@ impl ReflectionModel for Microfacet {
         }
         let entering = (Vec3::ONE - self.f(l.z)) * (Vec3::ONE - self.f(v.z));
         let diffuse = self.base_colour * entering * (self.body(l, v, cos_d) * l.z);
-        Terms { ambient: Vec3::ZERO, diffuse, specular }
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {

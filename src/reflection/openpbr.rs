@@ -540,7 +540,7 @@ impl ReflectionModel for OpenPbr {
             diffuse *= below;
             specular = specular * below + self.fuzz_weight * lobe * l.z * self.fuzz_colour;
         }
-        Terms { ambient: Vec3::ZERO, diffuse, specular }
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {

@@ -118,11 +118,7 @@ impl ReflectionModel for Strauss {
             (straight + (straight + K_J) * f * strauss_masking(up_l) * strauss_masking(up_v)).min(1.0);
         let lobe = power_of_cosine(mirror_tangent_squared(l, v, frame.n), self.exponent());
         let tint = Vec3::ONE + m * (1.0 - f) * (self.base_colour - 1.0);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: self.base_colour * (diffuse * (1.0 - m * s) * cos_i),
-            specular: tint * (mirrored * lobe),
-        }
+        Terms::of(self.base_colour * (diffuse * (1.0 - m * s) * cos_i), tint * (mirrored * lobe))
     }
 
     fn lobes(&self) -> Lobes {

@@ -98,11 +98,9 @@ impl ReflectionModel for TorranceSparrow {
         let d = gaussian(frame.n.cross(h).length(), cos_h, self.facet_spread);
         let visibility = v_cavity(cos_l, cos_v, cos_h, cos_d);
         let f = conductor_rgb(self.ior, self.extinction, cos_d);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: (1.0 - self.specular_weight) * cos_l * self.base_colour,
-            specular: self.specular_weight * PI * d * (visibility * cos_l) * f,
-        }
+        let diffuse = (1.0 - self.specular_weight) * cos_l * self.base_colour;
+        let specular = self.specular_weight * PI * d * (visibility * cos_l) * f;
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {

@@ -78,11 +78,9 @@ impl ReflectionModel for Ward {
             0 => (cos_l / cos_v.max(1e-12)).sqrt(),
             _ => 1.0 / cos_v.max(1e-12),
         };
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: (1.0 - self.k_s) * cos_l * self.base_colour,
-            specular: self.k_s * lobe * cosines * self.specular_colour,
-        }
+        let diffuse = (1.0 - self.k_s) * cos_l * self.base_colour;
+        let specular = self.k_s * lobe * cosines * self.specular_colour;
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {

@@ -110,6 +110,7 @@ pub struct Corner {
 impl Corner {
     /// The values of the vertex, with a colour.
     #[must_use]
+    #[inline]
     pub fn varying(&self, colour: Vec3) -> Varying {
         Varying { position: self.position, normal: self.normal, tangent: self.tangent, colour }
     }
