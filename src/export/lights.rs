@@ -112,8 +112,8 @@ impl<'a> Lights<'a> {
             let mut at = 0;
             for p in &entry.fields() {
                 let source = FieldSource::Parameter(t, at);
-                fields.push(field(&self.parameter_field(t, p.name), p.wgsl_type(), source));
-                at += lanes(p.wgsl_type());
+                fields.push(field(&self.parameter_field(t, p.name), p.kind.wgsl(), source));
+                at += lanes(p.kind.wgsl());
             }
         }
         fields

@@ -54,7 +54,7 @@ impl Parameter {
     #[must_use]
     pub fn clause(&self) -> String {
         // The label need not be a noun: "two-sided".
-        if self.is_flag() {
+        if self.kind.is_flag() {
             return format!("{} must be {}", self.name, self.rule());
         }
         let unit = match self.suffix() {
@@ -126,7 +126,7 @@ mod tests {
             assert_eq!(FLAG.parse(text).expect_err("refused").to_string(), rule);
         }
         let other = Parameter::choice("two_sided", &[("no", "No"), ("yes", "Yes")], 0);
-        assert!(!other.is_flag());
+        assert!(!other.kind.is_flag());
         assert_eq!(FLAG.clash(&other), Some(("a flag".to_owned(), "a choice".to_owned())));
     }
 }

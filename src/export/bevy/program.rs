@@ -231,7 +231,7 @@ fn fields(all: &[Parameter]) -> String {
         let own = p.symbol.is_empty() || p.symbol == p.label;
         let symbol = if own { String::new() } else { format!("{}: ", p.symbol) };
         doc(&mut out, &format!("{symbol}{}{unit}.", p.label), "    ", "///");
-        let _ = writeln!(out, "    {}: {},", field_name(p.name), kind(p.wgsl_type()));
+        let _ = writeln!(out, "    {}: {},", field_name(p.name), kind(p.kind.wgsl()));
     }
     if all.is_empty() {
         out.push_str("    unused: f32,\n");

@@ -84,7 +84,7 @@ pub(super) fn value(p: &Parameter, values: &Values, encoding: Encoding) -> (Stri
     }
     p.kind.words(&given, encoding, &mut words);
     let all: Vec<_> = words.iter().map(|word| f32::from_bits(*word)).collect();
-    match (p.wgsl_type(), &all[..]) {
+    match (p.kind.wgsl(), &all[..]) {
         ("u32", _) => {
             let name = p.kind.options().get(words[0] as usize).map(|(_, name)| (*name).to_owned());
             (words[0].to_string(), name)

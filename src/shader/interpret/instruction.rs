@@ -394,9 +394,4 @@ impl Instruction {
     pub(super) fn writes(self) -> Option<u16> {
         (!self.jumps() && self.operation != Operation::StoreAt).then_some(self.d)
     }
-
-    /// True if it reads or writes registers with numbers known only at run time.
-    pub(super) fn wanders(self) -> bool {
-        matches!(self.operation, Operation::LoadAt | Operation::StoreAt)
-    }
 }
