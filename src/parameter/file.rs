@@ -480,7 +480,7 @@ impl Serialize for NamedFile {
 }
 
 /// A file with its numbers, for calculation.
-#[derive(Clone, Debug, Default, Reflect)]
+#[derive(Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(opaque)]
 #[reflect(Clone, Debug, Default, PartialEq)]
 pub struct Table {
@@ -488,12 +488,6 @@ pub struct Table {
     pub file: Option<NamedFile>,
     /// The numbers of the file when the table was taken.
     pub numbers: Arc<[f32]>,
-}
-
-impl PartialEq for Table {
-    fn eq(&self, other: &Self) -> bool {
-        self.file == other.file && self.numbers == other.numbers
-    }
 }
 
 #[cfg(test)]
