@@ -430,12 +430,6 @@ impl LightEntry {
         tables
     }
 
-    /// The number of [`words`](Self::words).
-    #[must_use]
-    pub fn word_count(&self) -> usize {
-        self.words(&Values::default(), Encoding::default()).len()
-    }
-
     /// The name of the parameter struct in WGSL: `SpotParameters` for the id `spot`.
     #[must_use]
     pub fn parameter_struct(&self) -> String {

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
+use super::{Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::{parameters, shader::wgsl};
 
 parameters! {
@@ -14,13 +14,16 @@ parameters! {
 }
 
 impl ShadingModel for Derivative {
-    const DECLARATION: Declaration = Declaration::new("derivative", "Derivative", Stage::Pixel, 'D', wgsl!("shading/derivative.wgsl"))
-        .published("screen-space derivatives", "CA LC3: normals from partial derivatives; dFdx and dFdy, OpenGL Shading Language 1.10 (2004)")
-        .summary("Facet normals from the derivatives of position on the screen; colour calculated at every pixel.");
-
-    fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
-        corner.varying(Vec3::ZERO)
-    }
+    const DECLARATION: Declaration = Declaration {
+        id: "derivative",
+        name: "Derivative",
+        author: "screen-space derivatives",
+        source: "CA LC3: normals from partial derivatives; dFdx and dFdy, OpenGL Shading Language 1.10 (2004)",
+        summary: "Facet normals from the derivatives of position on the screen; colour calculated at every pixel.",
+        stage: Stage::Pixel,
+        key: 'D',
+        wgsl: wgsl!("shading/derivative.wgsl"),
+    };
 
     fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
         lighting.colour(varying.position, face_normal, varying.tangent)

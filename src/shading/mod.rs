@@ -136,8 +136,10 @@ pub trait ShadingModel: ParameterSet {
     const DECLARATION: Declaration;
 
     /// The values calculated at a corner of a polygon. For [`Stage::Polygon`] they must be equal at all
-    /// corners of a polygon except for `position`.
-    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying;
+    /// corners of a polygon except for `position`. By default those of the vertex, without a colour.
+    fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
+        corner.varying(Vec3::ZERO)
+    }
 
     /// The colour of a pixel; `face_normal` is the exact normal of the **triangle** that covers it.
     fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3;

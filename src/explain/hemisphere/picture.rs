@@ -3,7 +3,11 @@
 use glam::{Vec2, Vec3};
 
 use super::{Above, DISCS, Disc, Hemisphere};
-use crate::{explain::rounded, lettering::{Lettering, pixel}, optics::colour::srgb_encode8};
+use crate::{
+    explain::rounded,
+    lettering::{Lettering, pixel},
+    optics::colour::srgb_encode8,
+};
 
 /// A picture with its description.
 #[derive(Clone, Debug)]

@@ -70,6 +70,7 @@ pub struct Program {
     /// The initial values of private variables.
     initial: Box<[(u16, u32)]>,
     argument_words: usize,
+    /// The number of words in a row of the table, including padding; 0 without a table.
     row_words: usize,
     results: Box<[u16]>,
     /// Identifies the program.
@@ -189,12 +190,6 @@ impl Program {
     #[must_use]
     pub fn result_words(&self) -> usize {
         self.results.len()
-    }
-
-    /// The number of words in a row of the table, including padding; 0 without a table.
-    #[must_use]
-    pub fn row_words(&self) -> usize {
-        self.row_words
     }
 
     /// Runs the function. Missing arguments are zero; results are written as far as there is space.
