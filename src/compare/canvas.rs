@@ -29,11 +29,6 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// A picture of one colour.
-    pub(super) fn new(size: [u32; 2], colour: [u8; 3]) -> Self {
-        Self { size, rgb8: colour.repeat(size[0] as usize * size[1] as usize) }
-    }
-
     /// The scale of text and lines, proportional to the picture: 1 if its shorter side has 720 pixels.
     pub(super) fn scale(&self) -> f32 {
         (self.size[0].min(self.size[1]) as f32 / 720.0).clamp(0.6, 4.0)

@@ -24,7 +24,9 @@ pub trait Surface: Send + Sync {
     /// The directional albedo over the view, for models that declare [`Ambient::Albedo`].
     fn curve(&self) -> Option<AlbedoCurve>;
     /// See [`ReflectionModel::lobe`].
-    fn lobe(&self) -> Option<LobeAlbedo>;
+    fn lobe(&self) -> Option<LobeAlbedo> {
+        None
+    }
     /// See [`ReflectionModel::curves`].
     fn curves(&self) -> Vec<Vec4> {
         Vec::new()
@@ -34,7 +36,9 @@ pub trait Surface: Send + Sync {
         Lobes::default()
     }
     /// See [`ReflectionModel::readouts`].
-    fn readouts(&self) -> Vec<Readout>;
+    fn readouts(&self) -> Vec<Readout> {
+        Vec::new()
+    }
     /// See [`ReflectionModel::factor`].
     fn factor(&self, _factor: Factor) -> Option<Vec3> {
         None
