@@ -1,5 +1,6 @@
-//! Enums whose values are declared in a file each, lists of types that are, choices, which take a line each, and the
-//! keys of declared fields.
+//! Enums whose values are declared in a file each, lists of types that are, choices and other enums with
+//! texts, the keys of declared fields, and the methods that differ only in names: builder methods, calls of another trait,
+//! the registered types' methods.
 
 /// An enum with the static that declares each of its values. The declaration has an `id`.
 macro_rules! declared {
@@ -44,36 +45,78 @@ macro_rules! take_each {
     };
 }
 
+/// An enum with methods that give a text for each value.
+macro_rules! texts {
+    (
+        $(#[$about:meta])* $Name:ident($($(#[$of:meta])* $method:ident),+)
+        { $($(#[$doc:meta])* $Value:ident = $($text:literal)+,)+ }
+    ) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $Name {
+            $($(#[$doc])* $Value,)+
+        }
+
+        const _: () = {
+            #[allow(non_camel_case_types)]
+            enum Text { $($method),+ }
+
+            const TEXTS: [[&str; [$(Text::$method),+].len()]; [$($Name::$Value),+].len()] =
+                [$([$($text),+]),+];
+
+            impl $Name {
+                $($(#[$of])*
+                #[must_use]
+                pub const fn $method(self) -> &'static str {
+                    TEXTS[self as usize][Text::$method as usize]
+                })+
+            }
+        };
+    };
+}
+
+/// An enum, each value with an id, perhaps with further texts.
+macro_rules! ids {
+    (
+        $(#[$about:meta])* $Name:ident $(($($(#[$of:meta])* $method:ident),+))?
+        { $($(#[$doc:meta])* $Value:ident = $id:literal $($text:literal)*,)+ }
+    ) => {
+        $crate::declared::texts! {
+            $(#[$about])*
+            $Name(#[doc = "The name in files and on the command line."] id $($(, $(#[$of])* $method)+)?)
+            { $($(#[$doc])* $Value = $id $($text)*,)+ }
+        }
+
+        impl $Name {
+            /// All variants, in display order.
+            pub const ALL: [Self; [$($id),+].len()] = [$(Self::$Value),+];
+
+            /// The variant with this id.
+            #[must_use]
+            pub fn from_id(id: &str) -> Option<Self> {
+                Self::ALL.into_iter().find(|one| one.id() == id)
+            }
+        }
+    };
+}
+
 /// An enum of choices, each with an id for files, a name for people, and one sentence.
 macro_rules! choice {
     ($(#[$doc:meta])* $name:ident { $($(#[$default:ident])? $variant:ident $id:literal $label:literal $help:literal,)+ }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-        pub enum $name {
-            $(#[doc = $help] $(#[$default])? $variant,)+
+        $crate::declared::texts! {
+            $(#[$doc])*
+            #[derive(Default)]
+            $name(
+                #[doc = "The id in files and on the command line."] id,
+                #[doc = "The name for people."] name,
+                #[doc = "One sentence of explanation."] summary
+            )
+            { $(#[doc = $help] $(#[$default])? $variant = $id $label $help,)+ }
         }
 
         impl $name {
             /// Every choice, in the order of presentation.
             pub const ALL: &[Self] = &[$(Self::$variant),+];
-
-            /// The id in files and on the command line.
-            #[must_use]
-            pub const fn id(self) -> &'static str {
-                match self { $(Self::$variant => $id,)+ }
-            }
-
-            /// The name for people.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $label,)+ }
-            }
-
-            /// One sentence of explanation.
-            #[must_use]
-            pub const fn summary(self) -> &'static str {
-                match self { $(Self::$variant => $help,)+ }
-            }
 
             /// The choice with this id.
             #[must_use]
@@ -112,4 +155,53 @@ macro_rules! keys {
     };
 }
 
-pub(crate) use {choice, declared, key, keys, take_each};
+/// Builder methods, each with its arguments and the fields it sets.
+macro_rules! setters {
+    ($($(#[$doc:meta])* $name:ident($($argument:ident: $Type:ty),*) { $($field:tt)+ })+) => {
+        $($(#[$doc])*
+        #[must_use]
+        pub const fn $name(self, $($argument: $Type),*) -> Self {
+            Self { $($field)+, ..self }
+        })+
+    };
+}
+
+/// Methods of a trait for trait objects that call the same methods of a trait that is none.
+macro_rules! forwards {
+    (|$this:ident| $to:expr => $Trait:ident: $(fn $name:ident($($argument:ident: $Type:ty),*) -> $Result:ty;)+) => {
+        $(fn $name(&self, $($argument: $Type),*) -> $Result {
+            let $this = self;
+            $Trait::$name($to, $($argument),*)
+        })+
+    };
+}
+
+/// The debug output of a type: its name and one field.
+macro_rules! debug_by {
+    ($Type:ident: $($field:ident).+) => {
+        impl std::fmt::Debug for $Type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.debug_tuple(stringify!($Type)).field(&self.$($field).+).finish()
+            }
+        }
+    };
+}
+
+/// The parameters of a registered type by name, and its id as debug output.
+macro_rules! entry {
+    ($Entry:ident) => {
+        impl $Entry {
+            /// The parameter with this name, if the type has it.
+            #[must_use]
+            pub fn parameter(&self, name: &str) -> Option<&'static $crate::parameter::Parameter> {
+                self.parameters.iter().find(|p| p.name == name)
+            }
+        }
+
+        $crate::declared::debug_by!($Entry: declaration.id);
+    };
+}
+
+pub(crate) use {
+    choice, debug_by, declared, entry, forwards, ids, key, keys, setters, take_each, texts,
+};

@@ -243,13 +243,12 @@ fn laid_out<T>(job: LayoutJob, then: impl FnOnce(&Galley, &Fonts) -> T) -> T {
 }
 
 /// The pixel at a position, if it is in the picture.
-fn pixel(picture: &mut [u8], size: [u32; 2], at: [i64; 2]) -> Option<&mut [u8; 3]> {
+pub(crate) fn pixel(picture: &mut [u8], size: [u32; 2], at: [i64; 2]) -> Option<&mut [u8; 3]> {
     let [x, y] = [u32::try_from(at[0]).ok()?, u32::try_from(at[1]).ok()?];
     if x >= size[0] || y >= size[1] {
         return None;
     }
-    let start = (y as usize * size[0] as usize + x as usize) * 3;
-    picture.get_mut(start..start + 3)?.try_into().ok()
+    picture.as_chunks_mut().0.get_mut(y as usize * size[0] as usize + x as usize)
 }
 
 /// Puts a pixel of a glyph over a pixel of the picture.

@@ -202,7 +202,7 @@ fn sheet(
     for (i, subject) in subjects.iter().enumerate() {
         let tell = |done: f32, _: &str| bar.set_position(100 * i as u64 + (100.0 * done) as u64);
         let progress = Progress { tell: &tell, cancelled: &|| false };
-        if setup.kind.form() == Form::Slices {
+        if setup.kind.declaration().form == Form::Slices {
             sheet.slices.push(slice(subject, &setup, Detail::Fine, &progress).map_err(failed)?);
         } else {
             sheet.curves.push(curve(subject, &setup, Detail::Fine, &progress).map_err(failed)?);

@@ -1,6 +1,6 @@
 //! A picture to draw on: rectangles, a circle, text.
 
-use crate::lettering::Lettering;
+use crate::lettering::{Lettering, pixel};
 
 /// The background of plates with text, and the colour between pictures.
 pub(super) const DARK: [u8; 3] = [22, 22, 22];
@@ -29,26 +29,14 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// A picture of one colour.
-    pub(super) fn new(size: [u32; 2], colour: [u8; 3]) -> Self {
-        Self { size, rgb8: colour.repeat(size[0] as usize * size[1] as usize) }
-    }
-
     /// The scale of text and lines, proportional to the picture: 1 if its shorter side has 720 pixels.
     pub(super) fn scale(&self) -> f32 {
         (self.size[0].min(self.size[1]) as f32 / 720.0).clamp(0.6, 4.0)
     }
 
-    fn pixel(&mut self, x: i64, y: i64) -> Option<&mut [u8; 3]> {
-        let [width, height] = self.size.map(i64::from);
-        let inside = (0..width).contains(&x) && (0..height).contains(&y);
-        let i = inside.then_some(y * width + x)? as usize;
-        self.rgb8.as_chunks_mut::<3>().0.get_mut(i)
-    }
-
     /// Mixes a colour into a pixel; does nothing outside the picture.
     fn blend(&mut self, x: i64, y: i64, colour: [u8; 3], part: f32) {
-        let Some(pixel) = self.pixel(x, y) else { return };
+        let Some(pixel) = pixel(&mut self.rgb8, self.size, [x, y]) else { return };
         for (old, new) in pixel.iter_mut().zip(colour) {
             let (from, to) = (f32::from(*old), f32::from(new));
             *old = (from + part * (to - from)).round() as u8;

@@ -12,6 +12,7 @@ use crate::{
         comparison::{Channel, Compared, Comparison, Sign},
         variant::LETTERS,
     },
+    text::trimmed,
 };
 
 /// The value at full scale.
@@ -64,8 +65,7 @@ pub fn fitting_amplification(values: Compared, largest: f32) -> f32 {
 #[must_use]
 pub fn short(number: f32) -> String {
     let digits = 2 - (number.abs().max(1e-9).log10().floor() as i32).min(2);
-    let text = format!("{number:.*}", usize::try_from(digits).unwrap_or_default());
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    trimmed(format!("{number:.*}", usize::try_from(digits).unwrap_or_default()))
 }
 
 /// The parts of a legend below each other on a plate: a title, a bar, and further colours with their meanings.

@@ -3,31 +3,31 @@
 use std::{ffi::OsStr, io, path::Path};
 
 use super::Sheet;
-use crate::files::{self, Shown as _, Signature};
+use crate::{
+    declared::ids,
+    files::{self, Shown as _, Signature},
+};
 
-/// The format of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Vector graphics.
-    Svg,
-    /// Pixels.
-    Png,
-    /// Numbers.
-    Csv,
+ids! {
+    /// The format of a file. Its id is the extension, without the dot.
+    Format {
+        /// Vector graphics.
+        Svg = "svg",
+        /// Pixels.
+        Png = "png",
+        /// Numbers.
+        Csv = "csv",
+    }
 }
 
 impl Format {
-    /// All formats.
-    pub const ALL: [Self; 3] = [Self::Svg, Self::Png, Self::Csv];
-
     /// The format given by the extension of a file name.
     ///
     /// # Errors
     /// Returns an error if no format has this extension.
     pub fn of(path: &Path) -> Result<Self, String> {
         let extension = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
-        let known = |format: &Self| extension.as_deref() == Some(format.extension());
-        match Self::ALL.into_iter().find(known) {
+        match extension.as_deref().and_then(Self::from_id) {
             Some(format) => Ok(format),
             // The name of a device or a pipe gives no format.
             None if extension.is_none() && files::is_stream(path) => Ok(Self::Csv),
@@ -42,16 +42,6 @@ impl Format {
                     }
                 })
             }
-        }
-    }
-
-    /// The extension, without the dot.
-    #[must_use]
-    pub fn extension(self) -> &'static str {
-        match self {
-            Self::Svg => "svg",
-            Self::Png => "png",
-            Self::Csv => "csv",
         }
     }
 

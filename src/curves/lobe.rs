@@ -191,11 +191,8 @@ impl Lobe {
             [None, None, None] => parts(&[[a, b, c]]),
             [Some(d), Some(e), Some(f)] => parts(&[[a, d, f], [d, b, e], [f, e, c], [d, e, f]]),
             [Some(d), None, None] => parts(&[[a, d, c], [d, b, c]]),
-            [None, Some(e), None] => parts(&[[b, e, a], [e, c, a]]),
-            [None, None, Some(f)] => parts(&[[c, f, b], [f, a, b]]),
             [Some(d), Some(e), None] => parts(&[[d, b, e], [a, d, c], [d, e, c]]),
-            [None, Some(e), Some(f)] => parts(&[[e, c, f], [b, e, a], [e, f, a]]),
-            [Some(d), None, Some(f)] => parts(&[[f, a, d], [c, f, b], [f, d, b]]),
+            _ => self.split([b, c, a], halves),
         }
     }
 }

@@ -88,7 +88,7 @@ pub enum Detail {
 /// A point of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// The angle in degrees; see [`Kind::angle`].
+    /// The angle in degrees; see [`Declaration::horizontal`].
     pub angle: f64,
     /// The value in red, green and blue, as calculated: it may not be finite.
     pub rgb: Vec3,

@@ -7,7 +7,10 @@ use super::{
     draw::{Axis, COLOURS, Figure, Line, Mark, Plot, Polar, SIDE, Series, Slices, Tile},
     slice::LOG_RANGE,
 };
-use crate::render::capture::png::{About, encode};
+use crate::{
+    render::capture::png::{About, encode},
+    text::capitalised,
+};
 
 /// Curves or slices of one kind, with display settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,18 +94,15 @@ impl Sheet {
     #[must_use]
     pub fn heading(&self) -> String {
         let Setup { kind, theta_i, phi_i } = self.setup;
-        let mut words = kind.declaration().heading.unwrap_or(kind.name()).to_owned();
-        if let Some(first) = words.get(..1) {
-            words = format!("{}{}", first.to_uppercase(), &words[1..]);
-        }
-        if kind.has_light() {
+        let mut words = capitalised(kind.declaration().heading.unwrap_or(kind.name()));
+        if kind.declaration().has_light {
             words += &format!(" in the plane of incidence, light at {theta_i}°");
         }
-        if phi_i != 0.0 && kind.has_azimuth() {
+        if phi_i != 0.0 && kind.declaration().has_azimuth {
             words += &format!(", azimuth {phi_i}°");
         }
         match self.channel {
-            _ if kind.is_scalar() => {}
+            _ if kind.declaration().is_scalar => {}
             Some(channel) => words += &format!(", {}", channel.name()),
             None if self.is_coloured() => words += ", luminance",
             None => {}
@@ -120,7 +120,7 @@ impl Sheet {
     #[must_use]
     pub fn figure(&self) -> Figure {
         let heading = self.heading();
-        let form = self.setup.kind.form();
+        let form = self.setup.kind.declaration().form;
         let names: Vec<_> = match form {
             Form::Slices => self.slices.iter().map(|s| s.name.as_str()).collect(),
             Form::Plot | Form::Polar => self.curves.iter().map(|c| c.name.as_str()).collect(),
@@ -146,7 +146,7 @@ impl Sheet {
                 Figure::Plot(Plot {
                     title,
                     heading,
-                    x: Axis::new(self.setup.kind.angle(), from, to, 7),
+                    x: Axis::new(self.setup.kind.declaration().horizontal.name, from, to, 7),
                     y,
                     series: self.series(),
                     notes,
@@ -249,11 +249,11 @@ pub(super) fn span(kind: Kind, log: bool, from_centre: bool, values: &[f64]) -> 
     if log {
         let least = values.iter().copied().filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
         if !least.is_finite() {
-            return Axis::log(kind.quantity(), 0.001, 1.0);
+            return Axis::log(kind.declaration().quantity, 0.001, 1.0);
         }
         let to = round_up(top, &[1.0, 2.0, 5.0, 10.0]);
         let from = least.max(to / 10f64.powf(DECADES)).min(to / 10.0);
-        return Axis::log(kind.quantity(), 10f64.powf((from.log10() + 1e-9).floor()), to);
+        return Axis::log(kind.declaration().quantity, 10f64.powf((from.log10() + 1e-9).floor()), to);
     }
     let whole = kind.declaration().up_to_one;
     let steps = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
@@ -265,7 +265,7 @@ pub(super) fn span(kind: Kind, log: bool, from_centre: bool, values: &[f64]) -> 
     let to = if to <= 1.0 && whole { 1.0 } else { round_up(to, &steps) };
     let bottom = values.iter().copied().fold(0.0, f64::min);
     let from = if bottom < 0.0 && !from_centre { -round_up(-bottom, &steps) } else { 0.0 };
-    Axis::new(kind.quantity(), from, to, 6)
+    Axis::new(kind.declaration().quantity, from, to, 6)
 }
 
 /// The next larger number that is one of the steps times a power of ten.

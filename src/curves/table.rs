@@ -26,7 +26,7 @@ impl Sheet {
         let value = declared.column;
         text += declared.horizontal.columns.0;
         text.push(',');
-        if self.setup.kind.is_scalar() {
+        if self.setup.kind.declaration().is_scalar {
             text += value;
         } else {
             text += &format!("{value}_r,{value}_g,{value}_b,luminance");
@@ -51,7 +51,7 @@ impl Sheet {
 
     fn row(&self, text: &mut String, name: &str, angles: &str, rgb: Vec3) {
         // Writing to a string cannot fail.
-        let _ = if self.setup.kind.is_scalar() {
+        let _ = if self.setup.kind.declaration().is_scalar {
             writeln!(text, "{name},{angles},{}", rgb.x)
         } else {
             let luminance = Channel::Luminance.of(rgb) as f32;

@@ -24,7 +24,7 @@ use std::{path::Path, sync::Arc};
 
 use crate::files::Shown as _;
 use crate::{
-    reflection::{Ambient, Declaration, Family},
+    reflection::{Ambient, Declaration},
     registry::{Registry, check::wgsl, compose::compose},
     shader::{Source, check::ShaderProblem, limits, whole::validate_drawing},
     shading::Stage,
@@ -145,20 +145,16 @@ fn declared(
         .map_err(|mistakes| mistakes.into_iter().map(wrong).collect::<Vec<_>>())?;
     let formula = text::definition(&text[said.end..], "ambient_response").is_some();
     let ambient = if formula { Ambient::Formula } else { Ambient::Albedo };
+    let wgsl = Source { path: intern::text(&source_path(id)), text: stand_in(ambient) };
     let declaration = intern::declaration(Declaration {
-        id: intern::text(id),
-        name: said.name,
-        family: Family::Custom,
         author: said.author,
         source: said.source,
         summary: said.summary,
-        synonyms: &[],
         equation: said.equation,
-        quantities: &[],
         laws: said.laws,
         ambient,
         anisotropic: said.anisotropic,
-        wgsl: Source { path: intern::text(&source_path(id)), text: stand_in(ambient) },
+        ..Declaration::new(intern::text(id), said.name, wgsl)
     });
     let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();
     let reads = Reads { lobe, own: said.curves.into(), lobes: Arc::new(said.lobes) };

@@ -17,9 +17,7 @@ use crate::{
         lobes::Lobes,
     },
     parameter::{BLOCK_BYTES, Parameter, Values, pack, words},
-    reflection::{
-        Ambient, Declaration, EquationPart, Instantiate, Lobe, ModelEntry, Readout, Surface, append_curve,
-    },
+    reflection::{Ambient, Declaration, EquationPart, Instantiate, Lobe, ModelEntry, Surface, append_curve},
     shader::interpret::{Program, StepLimit},
     text::mathematics::{parse, plain_symbol, same_symbol},
 };
@@ -204,14 +202,6 @@ impl Surface for Grey {
         let new = || AlbedoCurve::new(|l, v| self.response(l, v, &Frame::LOCAL), false);
         *self.curve.get_or_init(|| (self.ambient == Ambient::Albedo).then(new))
     }
-
-    fn lobe(&self) -> Option<LobeAlbedo> {
-        None
-    }
-
-    fn readouts(&self) -> Vec<Readout> {
-        Vec::new()
-    }
 }
 
 /// The members of the WGSL struct `Parameters`, one word for each number.
@@ -323,9 +313,5 @@ impl Surface for Interpreted {
 
     fn curves(&self) -> Vec<Vec4> {
         self.read.as_ref().map_or_else(Vec::new, |(_, curves)| curves.clone())
-    }
-
-    fn readouts(&self) -> Vec<Readout> {
-        Vec::new()
     }
 }

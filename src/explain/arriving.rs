@@ -2,15 +2,15 @@
 
 use super::{
     Lit,
-    lines::calculation,
+    lines::{Known, calculation},
     put::{Symbols, put_in},
     workings::sides,
 };
 use crate::{
     light::Factor,
     text::{
-        expression::{Expression, Scope, Value},
-        mathematics::{definitions, same_symbol},
+        expression::{Expression, Value},
+        mathematics::definitions,
     },
 };
 
@@ -23,19 +23,6 @@ pub struct Step {
     pub numbers: String,
     /// The value of the step.
     pub value: Value,
-}
-
-struct Known(Vec<(String, Value)>);
-
-impl Scope for Known {
-    fn value(&mut self, symbol: &str) -> Result<Value, String> {
-        let found = self.0.iter().find(|(known, _)| same_symbol(known, symbol));
-        found.map(|(_, value)| *value).ok_or_else(|| format!("{symbol} is not given"))
-    }
-
-    fn call(&mut self, name: &str, _: &[String]) -> Result<Value, String> {
-        Err(format!("{name} is not given"))
-    }
 }
 
 impl Factor {

@@ -83,7 +83,7 @@ impl Shot<'_> {
         let declaration = self.registry.light(&light.light_type).map(|entry| entry.declaration);
         let position = declaration.filter(|d| d.has_position).map(|_| by.record.position);
         let (intensity, geometry) = match by.incident {
-            Incident::From { l, intensity } => (intensity, Some(Geometry::new(l, run))),
+            Incident::From { l, intensity } => (intensity, Some(Geometry::of(l, run.v, run.frame))),
             Incident::Uniform { intensity } => (intensity, None),
         };
         let integral = by.integral.map(|integral| Integral {
@@ -95,7 +95,7 @@ impl Shot<'_> {
             samples: integral.samples,
             solid_angle: integral.solid_angle,
             brightest: integral.brightest.map(|brightest| Brightest {
-                geometry: Geometry::new(brightest.l, run),
+                geometry: Geometry::of(brightest.l, run.v, run.frame),
                 luminance: brightest.radiance,
                 response: brightest.response,
             }),

@@ -4,10 +4,7 @@
 //! directions, or from pixels known to be affected. It also finds models that cannot be tried because a
 //! function runs too long.
 
-use std::{
-    collections::{HashMap, HashSet},
-    fmt,
-};
+use std::collections::{HashMap, HashSet};
 
 use glam::{Vec2, Vec3};
 
@@ -46,18 +43,13 @@ const MOST_SURFACES: usize = 512;
 const MOST_PIXELS: usize = 16;
 
 /// A light, or an object with its reflection model, whose light is not finite or cannot be calculated.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{path} {what}")]
 pub struct NotFinite {
     /// Path in the scene.
     pub path: Path,
     /// The rest of the sentence: type or model, value, and position.
     pub what: String,
-}
-
-impl fmt::Display for NotFinite {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}", self.path, self.what)
-    }
 }
 
 /// Selects the lights and models of a scene to try.

@@ -2,12 +2,9 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::{
-    optics::{
-        Frame,
-        geometry::{half_vector, mirror},
-    },
-    reference::probe::Loop,
+use crate::optics::{
+    Frame,
+    geometry::{half_vector, mirror},
 };
 
 /// Directions at a point, and their cosines.
@@ -28,11 +25,6 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// The directions of a light loop, for light from `l`.
-    pub(super) fn new(l: Vec3, point: &Loop) -> Self {
-        Self::of(l, point.v, point.frame)
-    }
-
     /// The geometry for light from `l` and a viewer at `v`: unit vectors.
     #[must_use]
     pub fn of(l: Vec3, v: Vec3, frame: Frame) -> Self {

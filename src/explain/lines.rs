@@ -107,12 +107,14 @@ impl Line {
     }
 }
 
-/// Written numbers contain no names.
-struct Nameless;
+/// Values by their symbols.
+#[derive(Default)]
+pub(super) struct Known(pub(super) Vec<(String, Value)>);
 
-impl Scope for Nameless {
+impl Scope for Known {
     fn value(&mut self, symbol: &str) -> Result<Value, String> {
-        Err(format!("{symbol} has no number"))
+        let found = self.0.iter().find(|(known, _)| mathematics::same_symbol(known, symbol));
+        found.map(|(_, value)| *value).ok_or_else(|| format!("{symbol} has no number"))
     }
 
     fn call(&mut self, name: &str, _: &[String]) -> Result<Value, String> {
@@ -126,7 +128,8 @@ impl Scope for Nameless {
 /// Returns a description of the error if the line cannot be calculated.
 pub fn reading(numbers: &str) -> Result<Value, String> {
     let body = sides(numbers).map_or(numbers, |(_, body)| body);
-    Expression::read(body)?.value(&mut Nameless)
+    // Written numbers contain no names.
+    Expression::read(body)?.value(&mut Known::default())
 }
 
 /// True if two values agree to this many significant digits, or both are negligible: below a billionth.

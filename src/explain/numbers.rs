@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::text::expression::Value;
+use crate::text::{expression::Value, trimmed};
 
 /// Significant digits: codes have eight bits.
 pub(super) const DIGITS: usize = 4;
@@ -33,22 +33,14 @@ pub fn rounded(v: impl Into<f64>, digits: usize) -> String {
     let whole = size.log10().floor() as i32;
     let text = match whole {
         _ if size == 0.0 => "0".to_owned(),
-        -4..=5 => trimmed(&format!("{size:.*}", (digits as i32 - 1 - whole).max(0) as usize)),
+        -4..=5 => trimmed(format!("{size:.*}", (digits as i32 - 1 - whole).max(0) as usize)),
         _ => {
             let text = format!("{size:.*e}", digits - 1);
             let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
-            format!("{}·10^{}", trimmed(digits), power.replace('-', "−"))
+            format!("{}·10^{}", trimmed(digits.to_owned()), power.replace('-', "−"))
         }
     };
     format!("{sign}{text}")
-}
-
-/// A decimal fraction without trailing zeros.
-fn trimmed(text: &str) -> String {
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text.to_owned(),
-    }
 }
 
 /// A colour or a vector: `(0.5, 0.25, 0)`.

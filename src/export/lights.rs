@@ -112,8 +112,8 @@ impl<'a> Lights<'a> {
             let mut at = 0;
             for p in &entry.fields() {
                 let source = FieldSource::Parameter(t, at);
-                fields.push(field(&self.parameter_field(t, p.name), p.wgsl_type(), source));
-                at += size(p.wgsl_type());
+                fields.push(field(&self.parameter_field(t, p.name), p.kind.wgsl(), source));
+                at += lanes(p.kind.wgsl());
             }
         }
         fields
@@ -131,17 +131,11 @@ impl<'a> Lights<'a> {
     }
 }
 
-/// The size of a WGSL type, in words.
-#[must_use]
-pub fn size(kind: &str) -> usize {
-    lanes(kind)
-}
-
 /// The size of a WGSL record with these fields, in bytes.
 #[must_use]
 pub fn stride(fields: &[LightField]) -> usize {
     let end = fields.iter().fold(0usize, |end, field| {
-        let words = size(field.kind);
+        let words = lanes(field.kind);
         end.next_multiple_of(4 * words.next_power_of_two()) + 4 * words
     });
     end.next_multiple_of(16)
@@ -159,9 +153,9 @@ impl LightRow {
             FieldSource::Intensity => vec![self.record.intensity.to_bits()],
             FieldSource::Type => vec![self.light_type as u32],
             FieldSource::Parameter(t, at) if t == self.light_type => {
-                self.words[at..at + size(field.kind)].to_vec()
+                self.words[at..at + lanes(field.kind)].to_vec()
             }
-            FieldSource::Parameter(..) => vec![0; size(field.kind)],
+            FieldSource::Parameter(..) => vec![0; lanes(field.kind)],
         }
     }
 }

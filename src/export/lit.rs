@@ -211,30 +211,22 @@ impl<'a> Lit<'a> {
         let values = self.values(program, object);
         // Debug distinguishes all numbers.
         let look = (program, format!("{values:?}"));
-        let material = match known.materials.get(&look) {
-            Some(material) => *material,
-            None => {
-                let material = self.material(program, values);
-                self.materials.push(material);
-                known.materials.insert(look, self.materials.len() - 1);
-                self.materials.len() - 1
-            }
-        };
+        let material = *known.materials.entry(look).or_insert_with(|| {
+            let material = self.material(program, values);
+            self.materials.push(material);
+            self.materials.len() - 1
+        });
         let faces = self.programs[program].faces();
         let key = (shape.key(&object.shape, object.tessellation), faces);
-        let mesh = match known.meshes.get(&key) {
-            Some(mesh) => *mesh,
-            None => {
-                let tessellation = shape.tessellation(object.tessellation);
-                let polygons = shape.mesh(&object.shape, tessellation);
-                let mesh = if faces { face_mesh(&polygons) } else { shared_mesh(&polygons) };
-                let suffix = if faces { "_polygons" } else { "" };
-                let base = format!("{}_{tessellation}{suffix}", shape.declaration.id);
-                self.meshes.push(data(known.names.unique(base), &mesh, faces));
-                known.meshes.insert(key, self.meshes.len() - 1);
-                self.meshes.len() - 1
-            }
-        };
+        let mesh = *known.meshes.entry(key).or_insert_with(|| {
+            let tessellation = shape.tessellation(object.tessellation);
+            let polygons = shape.mesh(&object.shape, tessellation);
+            let mesh = if faces { face_mesh(&polygons) } else { shared_mesh(&polygons) };
+            let suffix = if faces { "_polygons" } else { "" };
+            let base = format!("{}_{tessellation}{suffix}", shape.declaration.id);
+            self.meshes.push(data(known.names.unique(base), &mesh, faces));
+            self.meshes.len() - 1
+        });
         self.objects.push(Drawn { index, material, mesh });
         Ok(())
     }

@@ -10,7 +10,7 @@ use super::{
     lit::{Drawn, Lit},
     translate::ENTRY_POINTS,
 };
-use crate::{optics::colour::Encoding, scene::observer::clip_from_room};
+use crate::{optics::colour::Encoding, scene::observer::clip_from_room, shader::check::struct_layout};
 
 /// The uniforms of a module: binding, name, and their bytes for one object of a scene.
 #[must_use]
@@ -50,21 +50,10 @@ fn view(lit: &Lit, aspect: f32) -> Vec<u8> {
     bytes
 }
 
-/// The members of a struct with name and byte offset; and the size of the struct.
-fn members(module: &Module, name: &str) -> Option<(Vec<(String, usize)>, usize)> {
-    module.types.iter().find_map(|(_, ty)| match &ty.inner {
-        TypeInner::Struct { members, span } if ty.name.as_deref() == Some(name) => {
-            let all = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize));
-            Some((all.collect(), *span as usize))
-        }
-        _ => None,
-    })
-}
-
 /// The bytes of `Illumination`.
 fn lights(module: &Module, lit: &Lit) -> Vec<u8> {
     let (Some((fields, size)), Some((record, stride))) =
-        (members(module, "Illumination"), members(module, "Light"))
+        (struct_layout(module, "Illumination"), struct_layout(module, "Light"))
     else {
         return Vec::new();
     };

@@ -3,16 +3,15 @@
 //! **To add one**: write `light/x.rs` and `assets/shaders/light/x.wgsl`, and add its name to
 //! [`register_builtin`].
 
-use std::fmt;
-
 use bevy::{ecs::component::Component, reflect::Reflectable};
 use glam::{Vec2, Vec3};
 
 use crate::{
-    declared::take_each,
+    declared::{entry, forwards, take_each},
     optics::{colour::Encoding, radiometry::Arriving, sampling::power_heuristic},
     parameter::{Parameter, ParameterSet, Table, TypeComponent, Value, Values, words},
     shader::Source,
+    text::capitalised,
 };
 
 mod ambient;
@@ -231,16 +230,14 @@ pub trait Emitter: Send + Sync {
 }
 
 impl<L: LightType> Emitter for L {
-    fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
-        LightType::incident(self, light, p)
-    }
-
-    fn sample(&self, light: &LightRecord, p: Vec3, u: Vec2) -> Sample {
-        LightType::sample(self, light, p, u)
-    }
-
-    fn seen(&self, light: &LightRecord, p: Vec3, l: Vec3) -> Seen {
-        LightType::seen(self, light, p, l)
+    forwards! {
+        |this| this => LightType:
+        fn incident(light: &LightRecord, p: Vec3) -> Incident;
+        fn sample(light: &LightRecord, p: Vec3, u: Vec2) -> Sample;
+        fn seen(light: &LightRecord, p: Vec3, l: Vec3) -> Seen;
+        fn bounds(light: &LightRecord, p: Vec3) -> Option<Cone>;
+        fn same_between(light: &LightRecord, corners: &[Vec3; 4]) -> Option<Vec3>;
+        fn factors(light: &LightRecord, p: Vec3) -> Vec<Factor>;
     }
 
     fn seen_along(&self, light: &LightRecord, p: Vec3, directions: &[Vec3], to: &mut [(Vec3, f32)]) {
@@ -248,18 +245,6 @@ impl<L: LightType> Emitter for L {
             let seen = LightType::seen(self, light, p, *l);
             *to = (seen.radiance, seen.distance);
         }
-    }
-
-    fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone> {
-        LightType::bounds(self, light, p)
-    }
-
-    fn same_between(&self, light: &LightRecord, corners: &[Vec3; 4]) -> Option<Vec3> {
-        LightType::same_between(self, light, corners)
-    }
-
-    fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
-        LightType::factors(self, light, p)
     }
 }
 
@@ -394,12 +379,6 @@ impl LightEntry {
         self.solid_angle(&Values::default()).is_some()
     }
 
-    /// The parameter with this name, if the type has it.
-    #[must_use]
-    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
-        self.parameters.iter().find(|p| p.name == name)
-    }
-
     /// The parameter with the half angle, in degrees, of the cone drawn as a gizmo.
     #[must_use]
     pub fn cone_parameter(&self) -> Option<&'static Parameter> {
@@ -464,27 +443,11 @@ impl LightEntry {
         tables
     }
 
-    /// The number of [`words`](Self::words).
-    #[must_use]
-    pub fn word_count(&self) -> usize {
-        self.words(&Values::default(), Encoding::default()).len()
-    }
-
     /// The name of the parameter struct in WGSL: `SpotParameters` for the id `spot`.
     #[must_use]
     pub fn parameter_struct(&self) -> String {
-        let mut name = String::new();
-        for word in self.declaration.id.split('_') {
-            let mut letters = word.chars();
-            name.extend(letters.next().map(|c| c.to_ascii_uppercase()));
-            name.push_str(letters.as_str());
-        }
-        name + "Parameters"
+        self.declaration.id.split('_').map(capitalised).collect::<String>() + "Parameters"
     }
 }
 
-impl fmt::Debug for LightEntry {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("LightEntry").field(&self.declaration.id).finish()
-    }
-}
+entry!(LightEntry);

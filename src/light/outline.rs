@@ -41,8 +41,12 @@ impl LightEntry {
     /// The diameter of a ball around all [sizes](super::Declaration::sizes) of a light, metres.
     #[must_use]
     pub fn span(&self, values: &Values) -> f32 {
-        let half = |size: &Size| self.parameter(size.parameter()).map(|p| size.part() * values.number(p));
+        let half = |size: &Size| self.metres(size, values);
         2.0 * self.declaration.sizes.iter().filter_map(half).map(|half| half * half).sum::<f32>().sqrt()
+    }
+
+    fn metres(&self, size: &Size, values: &Values) -> Option<f32> {
+        self.parameter(size.parameter()).map(|p| size.part() * values.number(p))
     }
 
     /// The outlines of a light with extent as seen from a position: lists of points in the room, whose convex
@@ -65,10 +69,7 @@ impl LightEntry {
         }
         let (mut half, mut radii) = (Vec3::ZERO, Vec::new());
         for size in declaration.sizes {
-            let Some(metres) = self.parameter(size.parameter()).map(|p| size.part() * values.number(p))
-            else {
-                continue;
-            };
+            let Some(metres) = self.metres(size, values) else { continue };
             match size {
                 Size::Width(_) => half.x = metres,
                 Size::Height(_) => half.y = metres,

@@ -96,7 +96,6 @@ pub fn highlight_width(surface: &dyn Surface, light: f64) -> Option<f64> {
 pub(super) struct Highlight {
     /// Each with the angle of the light, the side, and the wanted width.
     widths: Vec<(Pair, Vec<(Light, usize, f64)>)>,
-    count: usize,
 }
 
 impl Highlight {
@@ -124,14 +123,13 @@ impl Highlight {
             }
             widths.push((pair, wanted));
         }
-        let count = widths.iter().map(|(_, wanted)| wanted.len()).sum();
-        if count == 0 { Err(0) } else { Ok(Self { widths, count }) }
+        if widths.is_empty() { Err(0) } else { Ok(Self { widths }) }
     }
 }
 
 impl Target for Highlight {
     fn count(&self) -> usize {
-        self.count
+        self.widths.iter().map(|(_, wanted)| wanted.len()).sum()
     }
 
     /// The logarithms of the ratios of widths.

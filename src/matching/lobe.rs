@@ -52,7 +52,6 @@ pub(super) struct Lobe {
     /// Each with its pairs of directions and the wanted responses.
     lobes: Vec<(Pair, Vec<(Vec3, Vec3)>, Vec<f64>)>,
     terms: TermSelection,
-    count: usize,
 }
 
 /// The response for each pair of directions, three numbers each.
@@ -77,15 +76,14 @@ impl Lobe {
             responses(&*pair.wanted, &all, a.terms, &mut wanted);
             (pair, all, wanted)
         };
-        let lobes: Vec<_> = Pair::all([a, b], registry).into_iter().map(lobe).collect();
-        let count = lobes.iter().map(|(_, _, wanted)| wanted.len()).sum();
-        Self { lobes, terms: b.terms, count }
+        let lobes = Pair::all([a, b], registry).into_iter().map(lobe).collect();
+        Self { lobes, terms: b.terms }
     }
 }
 
 impl Target for Lobe {
     fn count(&self) -> usize {
-        self.count
+        self.lobes.iter().map(|(_, _, wanted)| wanted.len()).sum()
     }
 
     fn differences(&mut self, values: &Given, mut to: &mut [f64]) {

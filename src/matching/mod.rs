@@ -26,6 +26,7 @@
 //! ```
 
 use crate::{
+    declared::ids,
     parameter::{Parameter, Value},
     progress::{Cancelled, Progress},
     reflection::usage::unused,
@@ -60,62 +61,28 @@ const MOST_LOBES: [usize; 2] = [2500, 250];
 /// number.
 const MOST_PICTURES: [usize; 2] = [400, 50];
 
-/// The quantity that is compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum What {
-    /// The responses of the models for many pairs of directions.
-    #[default]
-    Lobe,
-    /// The pictures of the views.
-    Picture,
-    /// The width of the highlights.
-    Highlight,
-}
-
-impl What {
-    /// All variants, in display order.
-    pub const ALL: [Self; 3] = [Self::Lobe, Self::Picture, Self::Highlight];
-
-    /// Name on the command line.
-    #[must_use]
-    pub const fn id(self) -> &'static str {
-        match self {
-            Self::Lobe => "lobe",
-            Self::Picture => "picture",
-            Self::Highlight => "highlight",
-        }
-    }
-
-    /// One sentence about the comparison.
-    #[must_use]
-    pub const fn summary(self) -> &'static str {
-        match self {
-            Self::Lobe => {
-                "The reflected light, for all directions of light and viewer: independent of this scene’s lights and shapes."
-            }
-            Self::Picture => {
-                "The light of the pictures, on the covered pixels: as near as it gets on this scene."
-            }
-            Self::Highlight => {
-                "The width of the highlight where it has half its brightness, in the plane of incidence; its brightness is left alone."
-            }
-        }
-    }
-
-    /// Meaning of the error, with its unit.
-    #[must_use]
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Lobe => "RMS difference of the reflected light; 1 is a white matte surface lit head-on",
-            Self::Picture => "RMS difference in linear light over the covered pixels",
-            Self::Highlight => "RMS difference of the widths, as a logarithm: 0.1 is about 10 %",
-        }
-    }
-
-    /// The variant with this id.
-    #[must_use]
-    pub fn from_id(id: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|what| what.id() == id)
+ids! {
+    /// The quantity that is compared.
+    #[derive(Default)]
+    What(
+        /// One sentence about the comparison.
+        summary,
+        /// Meaning of the error, with its unit.
+        unit
+    ) {
+        /// The responses of the models for many pairs of directions.
+        #[default]
+        Lobe = "lobe"
+            "The reflected light, for all directions of light and viewer: independent of this scene’s lights and shapes."
+            "RMS difference of the reflected light; 1 is a white matte surface lit head-on",
+        /// The pictures of the views.
+        Picture = "picture"
+            "The light of the pictures, on the covered pixels: as near as it gets on this scene."
+            "RMS difference in linear light over the covered pixels",
+        /// The width of the highlights.
+        Highlight = "highlight"
+            "The width of the highlight where it has half its brightness, in the plane of incidence; its brightness is left alone."
+            "RMS difference of the widths, as a logarithm: 0.1 is about 10 %",
     }
 }
 

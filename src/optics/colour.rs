@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::declared::ids;
+
 /// Weights of linear Rec. 709 red, green and blue in luminance (ITU-R BT.709-6).
 pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
@@ -9,36 +11,20 @@ pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 /// scene, so exposure does not change it; tone mapping does. Scenes may give another one.
 pub const BACKGROUND: [u8; 3] = [46, 46, 46];
 
-/// Decoding of colours on the way in and encoding on the way out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Encoding {
-    /// Input colours are sRGB-encoded and decoded to linear light; the picture is encoded (IEC 61966-2-1). Every
-    /// calculation with light assumes this.
-    #[default]
-    Srgb,
-    /// Neither: the numbers are used unchanged ("gamma-naive"). Deliberately wrong, for comparison.
-    Off,
+ids! {
+    /// Decoding of colours on the way in and encoding on the way out.
+    #[derive(Default)]
+    Encoding {
+        /// Input colours are sRGB-encoded and decoded to linear light; the picture is encoded (IEC 61966-2-1). Every
+        /// calculation with light assumes this.
+        #[default]
+        Srgb = "srgb",
+        /// Neither: the numbers are used unchanged ("gamma-naive"). Deliberately wrong, for comparison.
+        Off = "off",
+    }
 }
 
 impl Encoding {
-    /// All variants, in display order.
-    pub const ALL: [Self; 2] = [Self::Srgb, Self::Off];
-
-    /// Name in scene files.
-    #[must_use]
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Srgb => "srgb",
-            Self::Off => "off",
-        }
-    }
-
-    /// The variant with this id.
-    #[must_use]
-    pub fn from_id(id: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|encoding| encoding.id() == id)
-    }
-
     /// The colour for calculation from an 8-bit colour as written by users.
     #[must_use]
     pub fn decode(self, rgb: [u8; 3]) -> Vec3 {

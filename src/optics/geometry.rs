@@ -47,6 +47,14 @@ impl Frame {
         }
     }
 
+    /// The cosines `N·L` and `N·V`; `None` if the light or the viewer is not above the surface.
+    #[must_use]
+    #[inline]
+    pub fn cosines(&self, l: Vec3, v: Vec3) -> Option<(f32, f32)> {
+        let (cos_l, cos_v) = (self.n.dot(l), self.n.dot(v));
+        if cos_l <= 0.0 || cos_v <= 0.0 { None } else { Some((cos_l, cos_v)) }
+    }
+
     /// A direction in the room, in the local frame: components along tangent, bitangent and normal.
     #[must_use]
     pub fn to_local(&self, d: Vec3) -> Vec3 {

@@ -26,6 +26,8 @@ pub use geometry::Frame;
 
 use glam::Vec3;
 
+use crate::declared::ids;
+
 /// The response of a reflection model to one light of unit intensity, split into the three terms of
 /// the equation.
 ///
@@ -48,6 +50,13 @@ impl From<[Vec3; 3]> for Terms {
 }
 
 impl Terms {
+    /// Terms without an ambient one.
+    #[must_use]
+    #[inline]
+    pub fn of(diffuse: Vec3, specular: Vec3) -> Self {
+        Self { ambient: Vec3::ZERO, diffuse, specular }
+    }
+
     /// The ambient, the diffuse and the specular term.
     #[must_use]
     pub fn each(self) -> [Vec3; 3] {
@@ -66,44 +75,19 @@ impl Terms {
     }
 }
 
-/// The displayed terms of the equation: a teaching aid that shows each part of `I = I_a + I_d + I_s` alone.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum TermSelection {
-    /// The whole equation.
-    #[default]
-    All,
-    /// `I_a` alone. Ambient lights belong to this term.
-    Ambient,
-    /// `I_d` alone.
-    Diffuse,
-    /// `I_s` alone.
-    Specular,
-}
-
-impl TermSelection {
-    /// All variants, in display order.
-    pub const ALL: [Self; 4] = [Self::All, Self::Ambient, Self::Diffuse, Self::Specular];
-
-    /// Name on the command line.
-    #[must_use]
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::All => "all",
-            Self::Ambient => "ambient",
-            Self::Diffuse => "diffuse",
-            Self::Specular => "specular",
-        }
-    }
-
-    /// The selection with an id.
-    #[must_use]
-    pub fn from_id(id: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|terms| terms.id() == id)
-    }
-
-    /// Number of the selection in shaders (`TERM_…` in `lights.wgsl`).
-    #[must_use]
-    pub fn code(self) -> u32 {
-        self as u32
+ids! {
+    /// The displayed terms of the equation: a teaching aid that shows each part of `I = I_a + I_d + I_s` alone. Shaders
+    /// have their numbers, `TERM_…` in `lights.wgsl`.
+    #[derive(Default)]
+    TermSelection {
+        /// The whole equation.
+        #[default]
+        All = "all",
+        /// `I_a` alone. Ambient lights belong to this term.
+        Ambient = "ambient",
+        /// `I_d` alone.
+        Diffuse = "diffuse",
+        /// `I_s` alone.
+        Specular = "specular",
     }
 }

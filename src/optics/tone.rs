@@ -2,92 +2,72 @@
 
 use std::sync::LazyLock;
 
-use super::{colour::luminance, table::Table};
 use glam::{Mat3, Vec3};
+
+use super::{colour::luminance, table::Table};
+use crate::declared::ids;
 
 /// The brightest input of tone mapping, the largest half float: the GPU renderer holds the picture in half floats
 /// before its tone mapping pass. Brighter light is clamped to this.
 pub const BRIGHTEST: f32 = 65_504.0;
 
-/// A curve that maps light from 0 to ∞ into the display's 0 to 1. The formulas and tables are those of the GPU
-/// renderer's tone mapping, so that both renderers agree; input and output are linear Rec. 709.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum ToneMapping {
-    /// No curve: values above 1 are clipped. Values stay comparable, so this is the default.
-    #[default]
-    None,
-    /// `c / (1 + c)` per channel (E. Reinhard, M. Stark, P. Shirley, J. Ferwerda 2002, *Photographic Tone
-    /// Reproduction for Digital Images*).
-    Reinhard,
-    /// `c / (1 + Y)` with the luminance `Y` of `c`: Reinhard's curve on luminance alone, which keeps hue
-    /// and saturation.
-    ReinhardLuminance,
-    /// The fit of the ACES RRT and ODT by S. Hill (2017, in M. Pettineo's *BakingLab*):
-    /// `M₂ · (v (v + 0.0245786) − 0.000090537) / (v (0.983729 v + 0.4329510) + 0.238081)` with `v = M₁ c`.
-    Aces,
-    /// AgX (T. Sobotka 2022), default contrast: `T(s(M c))`, where `M` moves the primaries inwards,
-    /// `s(v) = (log₂(v / 0.18) + 10) / 16.5`, clamped to [0, 1], and `T` is a table of 32³ colours.
-    AgX,
-    /// Tony McMapface (T. Stachowiak 2023): `T(c / (1 + c))` with a table `T` of 48³ colours.
-    TonyMcMapface,
-    /// Filmic as in Blender 2.79 to 3.6 (T. Sobotka 2017): `T(s(c))` with
-    /// `s(v) = (log₂(v / 0.18) + 11) / 23`, clamped to [0, 1], and a table `T` of 64³ colours.
-    BlenderFilmic,
-    /// Khronos PBR Neutral (The Khronos Group 2024, *PBR Neutral Tone Mapping*, by E. Lalish and others).
-    ///
-    /// With the smallest channel `x` of `c`, `f = x − 6.25 x²` for `x < 0.08`, and `0.04` above, subtracts the Fresnel
-    /// reflection of a dielectric: `c' = c − f`. Where the largest channel `p` of `c'` is below `k = 0.76`, that is the
-    /// result. Above, `p' = 1 − (1 − k)² / (p + 1 − 2k)` compresses it, and `c' p' / p` approaches white `p'` by the
-    /// fraction `1 − 1 / (0.15 (p − p') + 1)`.
-    KhronosPbrNeutral,
+ids! {
+    /// A curve that maps light from 0 to ∞ into the display's 0 to 1. The formulas and tables are those of the GPU
+    /// renderer's tone mapping, so that both renderers agree; input and output are linear Rec. 709.
+    #[derive(Default)]
+    ToneMapping {
+        /// No curve: values above 1 are clipped. Values stay comparable, so this is the default.
+        #[default]
+        None = "none",
+        /// `c / (1 + c)` per channel (E. Reinhard, M. Stark, P. Shirley, J. Ferwerda 2002, *Photographic Tone
+        /// Reproduction for Digital Images*).
+        Reinhard = "reinhard",
+        /// `c / (1 + Y)` with the luminance `Y` of `c`: Reinhard's curve on luminance alone, which keeps hue
+        /// and saturation.
+        ReinhardLuminance = "reinhard_luminance",
+        /// The fit of the ACES RRT and ODT by S. Hill (2017, in M. Pettineo's *BakingLab*):
+        /// `M₂ · (v (v + 0.0245786) − 0.000090537) / (v (0.983729 v + 0.4329510) + 0.238081)` with `v = M₁ c`.
+        Aces = "aces",
+        /// AgX (T. Sobotka 2022), default contrast: `T(s(M c))`, where `M` moves the primaries inwards,
+        /// `s(v) = (log₂(v / 0.18) + 10) / 16.5`, clamped to [0, 1], and `T` is a table of 32³ colours.
+        AgX = "agx",
+        /// Tony McMapface (T. Stachowiak 2023): `T(c / (1 + c))` with a table `T` of 48³ colours.
+        TonyMcMapface = "tony_mc_mapface",
+        /// Filmic as in Blender 2.79 to 3.6 (T. Sobotka 2017): `T(s(c))` with
+        /// `s(v) = (log₂(v / 0.18) + 11) / 23`, clamped to [0, 1], and a table `T` of 64³ colours.
+        BlenderFilmic = "blender_filmic",
+        /// Khronos PBR Neutral (The Khronos Group 2024, *PBR Neutral Tone Mapping*, by E. Lalish and others).
+        ///
+        /// With the smallest channel `x` of `c`, `f = x − 6.25 x²` for `x < 0.08`, and `0.04` above, subtracts the Fresnel
+        /// reflection of a dielectric: `c' = c − f`. Where the largest channel `p` of `c'` is below `k = 0.76`, that is the
+        /// result. Above, `p' = 1 − (1 − k)² / (p + 1 − 2k)` compresses it, and `c' p' / p` approaches white `p'` by the
+        /// fraction `1 − 1 / (0.15 (p − p') + 1)`.
+        KhronosPbrNeutral = "khronos_pbr_neutral",
+    }
 }
 
 impl ToneMapping {
-    /// All variants, in display order.
-    pub const ALL: [Self; 8] = [
-        Self::None,
-        Self::Reinhard,
-        Self::ReinhardLuminance,
-        Self::Aces,
-        Self::AgX,
-        Self::TonyMcMapface,
-        Self::BlenderFilmic,
-        Self::KhronosPbrNeutral,
-    ];
-
-    /// A line about the variant in `tone.txt`: id, name, author or summary.
+    /// A line about the variant in `tone.txt`: name, author or summary.
     fn line(self, line: usize) -> &'static str {
-        include_str!("tone.txt").lines().nth(5 * self as usize + line).unwrap_or_default()
-    }
-
-    /// Name in scene files and on the command line.
-    #[must_use]
-    pub fn id(self) -> &'static str {
-        self.line(0)
-    }
-
-    /// The variant with this name.
-    #[must_use]
-    pub fn from_id(id: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|t| t.id() == id)
+        include_str!("tone.txt").lines().nth(4 * self as usize + line).unwrap_or_default()
     }
 
     /// Display name.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.line(1)
+        self.line(0)
     }
 
     /// Author and year; empty without a curve.
     #[must_use]
     pub fn author(self) -> &'static str {
-        self.line(2)
+        self.line(1)
     }
 
     /// A description in one or two sentences.
     #[must_use]
     pub fn summary(self) -> &'static str {
-        self.line(3)
+        self.line(2)
     }
 
     /// True if the curve needs a table of colours; the others are formulas.

@@ -23,7 +23,7 @@ pub fn matches(text: &str, search: &str) -> bool {
 pub(super) fn further(model: &ModelEntry) -> impl Iterator<Item = (String, &'static str)> {
     let of = |parameter: &'static Parameter| {
         let own = (format!("{} {} {}", parameter.label, parameter.symbol, parameter.name), parameter.label);
-        let choices = if parameter.is_flag() { &[][..] } else { parameter.kind.options() };
+        let choices = if parameter.kind.is_flag() { &[][..] } else { parameter.kind.options() };
         std::iter::once(own).chain(choices.iter().map(|(id, name)| (format!("{name} {id}"), *name)))
     };
     let synonyms = model.declaration.synonyms.iter().map(|synonym| ((*synonym).to_owned(), *synonym));

@@ -2,6 +2,7 @@
 //! declarations. They begin with that of a [kind](super::kind).
 
 use super::{Parameter, ParameterKind};
+use crate::declared::setters;
 
 impl Parameter {
     /// A parameter whose symbol and label are its name, without unit and help.
@@ -10,28 +11,18 @@ impl Parameter {
         Self { name, symbol: name, label: name, unit: "", help: "", kind, used_when: None }
     }
 
-    /// Sets the symbol for equations.
-    #[must_use]
-    pub const fn symbol(self, symbol: &'static str) -> Self {
-        Self { symbol, ..self }
-    }
+    setters! {
+        /// Sets the symbol for equations.
+        symbol(symbol: &'static str) { symbol }
 
-    /// Sets the display label.
-    #[must_use]
-    pub const fn label(self, label: &'static str) -> Self {
-        Self { label, ..self }
-    }
+        /// Sets the display label.
+        label(label: &'static str) { label }
 
-    /// Sets the unit.
-    #[must_use]
-    pub const fn unit(self, unit: &'static str) -> Self {
-        Self { unit, ..self }
-    }
+        /// Sets the unit.
+        unit(unit: &'static str) { unit }
 
-    /// Sets a sentence about the parameter's effect.
-    #[must_use]
-    pub const fn help(self, help: &'static str) -> Self {
-        Self { help, ..self }
+        /// Sets a sentence about the parameter's effect.
+        help(help: &'static str) { help }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Parameter structs as components of entities, without their types: light types and object types are known
 //! by lists.
 
-use std::{any::type_name, fmt};
+use std::any::type_name;
 
 use bevy::{
     ecs::{
@@ -15,7 +15,7 @@ use bevy::{
 };
 
 use super::{Parameter, set::ParameterSet, values::Values};
-use crate::optics::colour::Encoding;
+use crate::{declared::debug_by, optics::colour::Encoding};
 
 /// The encoding of colours in components: they are linear, whatever the display settings.
 const ENCODING: Encoding = Encoding::Srgb;
@@ -105,11 +105,7 @@ impl TypeComponent {
     }
 }
 
-impl fmt::Debug for TypeComponent {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("TypeComponent").field(&self.name).finish()
-    }
-}
+debug_by!(TypeComponent: name);
 
 #[cfg(test)]
 mod tests {

@@ -4,12 +4,6 @@ use super::{Parameter, UsedWhen, kind::Value};
 use crate::text::with_article;
 
 impl Parameter {
-    /// True for a [flag](super::ParameterKind::flag).
-    #[must_use]
-    pub fn is_flag(&self) -> bool {
-        self.kind.is_flag()
-    }
-
     /// The difference in type or unit that prevents two declarations from being the same parameter of
     /// materials, described for this declaration and for the other. Ranges and defaults may differ.
     #[must_use]
@@ -82,11 +76,5 @@ impl Parameter {
         let same = [0.0, -360.0, 360.0].map(|turn| Value::Number(degrees + turn));
         let legal = same.into_iter().find(|value| self.allows(value));
         legal.or_else(|| self.nearest(&Value::Number(degrees)))
-    }
-
-    /// The WGSL type of the parameter's field.
-    #[must_use]
-    pub fn wgsl_type(&self) -> &'static str {
-        self.kind.wgsl()
     }
 }

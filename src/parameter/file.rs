@@ -4,7 +4,6 @@
 use std::{
     borrow::Cow,
     collections::HashMap,
-    fmt,
     path::{Path, PathBuf},
     sync::{
         Arc, LazyLock, Mutex, OnceLock, RwLock, RwLockReadGuard, Weak,
@@ -19,6 +18,7 @@ use serde::{Serialize, Serializer};
 use super::outside::Outside;
 use crate::{
     caught::{lock, unpoisoned},
+    declared::debug_by,
     files::{self, Shown as _},
 };
 
@@ -51,11 +51,7 @@ impl PartialEq for FileFormat {
     }
 }
 
-impl fmt::Debug for FileFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("FileFormat").field(&self.name).finish()
-    }
-}
+debug_by!(FileFormat: name);
 
 /// A file named in a scene.
 #[derive(Clone, Reflect)]
@@ -475,11 +471,7 @@ impl PartialEq for NamedFile {
     }
 }
 
-impl fmt::Debug for NamedFile {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("NamedFile").field(&self.name).finish()
-    }
-}
+debug_by!(NamedFile: name);
 
 impl Serialize for NamedFile {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -488,7 +480,7 @@ impl Serialize for NamedFile {
 }
 
 /// A file with its numbers, for calculation.
-#[derive(Clone, Debug, Default, Reflect)]
+#[derive(Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(opaque)]
 #[reflect(Clone, Debug, Default, PartialEq)]
 pub struct Table {
@@ -496,12 +488,6 @@ pub struct Table {
     pub file: Option<NamedFile>,
     /// The numbers of the file when the table was taken.
     pub numbers: Arc<[f32]>,
-}
-
-impl PartialEq for Table {
-    fn eq(&self, other: &Self) -> bool {
-        self.file == other.file && self.numbers == other.numbers
-    }
 }
 
 #[cfg(test)]

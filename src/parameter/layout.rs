@@ -13,9 +13,9 @@ pub fn layout(parameters: &[Parameter]) -> Vec<(&'static str, &'static str, usiz
     let mut offset = 0usize;
     let mut fields = Vec::with_capacity(parameters.len());
     for p in parameters {
-        let lanes = lanes(p.wgsl_type());
+        let lanes = lanes(p.kind.wgsl());
         offset = offset.next_multiple_of(4 * lanes.next_power_of_two());
-        fields.push((p.name, p.wgsl_type(), offset));
+        fields.push((p.name, p.kind.wgsl(), offset));
         offset += 4 * lanes;
     }
     fields

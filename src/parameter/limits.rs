@@ -1,5 +1,7 @@
 //! The legal values of numbers.
 
+use crate::text::trimmed;
+
 /// The smallest legal value of a number that must be greater than zero.
 pub const ABOVE_ZERO: f32 = f32::MIN_POSITIVE;
 
@@ -120,7 +122,6 @@ pub fn number(value: f64) -> String {
     if magnitude != 0.0 && magnitude < 5e-5 {
         return format!("{value:.1e}").replace('-', "−");
     }
-    let text = format!("{value:.4}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
+    let text = trimmed(format!("{value:.4}"));
     if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
 }

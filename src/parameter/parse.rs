@@ -1,13 +1,12 @@
 //! A value from text, as typed on the command line, and the rule that a value breaks.
 
-use std::fmt;
-
 use super::{Parameter, kind::Value};
 use crate::text::shortened;
 
 /// The reason why a text is not a legal value of a parameter. Displayed as the end of a sentence: "is 0.2,
 /// but the diffuse coefficient must be between 0.5 and 1".
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("is {}, but {rule}", if .found.trim().is_empty() { "empty".to_owned() } else { shortened(.found) })]
 #[non_exhaustive]
 pub struct ParseError {
     /// The text.
@@ -15,15 +14,6 @@ pub struct ParseError {
     /// The broken rule: "the diffuse coefficient must be between 0.5 and 1".
     pub rule: String,
 }
-
-impl fmt::Display for ParseError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let found = if self.found.trim().is_empty() { "empty".into() } else { shortened(&self.found) };
-        write!(f, "is {found}, but {}", self.rule)
-    }
-}
-
-impl std::error::Error for ParseError {}
 
 impl Parameter {
     /// The value written as text: a number, three numbers such as `255,128,0` or `255 128 0`, the name of a choice, or
@@ -64,7 +54,7 @@ impl Parameter {
     #[must_use]
     pub fn clause(&self) -> String {
         // The label need not be a noun: "two-sided".
-        if self.is_flag() {
+        if self.kind.is_flag() {
             return format!("{} must be {}", self.name, self.rule());
         }
         let unit = match self.suffix() {
@@ -136,7 +126,7 @@ mod tests {
             assert_eq!(FLAG.parse(text).expect_err("refused").to_string(), rule);
         }
         let other = Parameter::choice("two_sided", &[("no", "No"), ("yes", "Yes")], 0);
-        assert!(!other.is_flag());
+        assert!(!other.kind.is_flag());
         assert_eq!(FLAG.clash(&other), Some(("a flag".to_owned(), "a choice".to_owned())));
     }
     #[test]

@@ -29,6 +29,15 @@ impl Values {
         }
     }
 
+    /// A value for each of some parameters, in order.
+    #[must_use]
+    pub fn each<'p>(
+        parameters: impl IntoIterator<Item = &'p Parameter>,
+        mut value: impl FnMut(&Parameter) -> Value,
+    ) -> Self {
+        Self(parameters.into_iter().map(|p| (p.name.into(), value(p))).collect())
+    }
+
     /// Sets a parameter.
     pub fn set(&mut self, name: impl Into<Cow<'static, str>>, value: Value) {
         self.0.insert(name.into(), value);

@@ -68,10 +68,7 @@ impl ReflectionModel for AshikhminShirley {
         built_in!("ashikhmin_shirley", "Ashikhmin–Shirley", Classical).ambient_by_albedo().anisotropic();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_l <= 0.0 || cos_v <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_l, cos_v)) = frame.cosines(l, v) else { return Terms::default() };
         let r_s = self.k_s * self.specular_colour;
         let slope = half_slope(l, v, frame);
         let squared = slope * slope;
@@ -90,11 +87,9 @@ impl ReflectionModel for AshikhminShirley {
             let x = 0.5 * mu;
             x * (5.0 + x * (-10.0 + x * (10.0 + x * (-5.0 + x))))
         };
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: 28.0 / 23.0 * cos_l * left(cos_l) * left(cos_v) * self.base_colour * (1.0 - r_s),
-            specular: lobe * (cos_l / cos_l.max(cos_v)) / cos_d * schlick(r_s, cos_d),
-        }
+        let diffuse = 28.0 / 23.0 * cos_l * left(cos_l) * left(cos_v) * self.base_colour * (1.0 - r_s);
+        let specular = lobe * (cos_l / cos_l.max(cos_v)) / cos_d * schlick(r_s, cos_d);
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {

@@ -54,19 +54,12 @@ impl ReflectionModel for BlinnPhongNormalised {
         built_in!("blinn_phong_normalised", "Normalised Blinn–Phong", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let cos_i = frame.n.dot(l);
-        if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_i, _)) = frame.cosines(l, v) else { return Terms::default() };
         let n = self.alpha;
         let mirrored = self.k_s * self.specular_colour;
         let norm = (n + 2.0) * ((n + 4.0) / (8.0 * ((-0.5 * n).exp2() + n)));
         let lobe = power_of_cosine(half_tangent_squared(l, v, frame.n), n);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: (1.0 - mirrored) * self.base_colour * cos_i,
-            specular: mirrored * (norm * lobe * cos_i),
-        }
+        Terms::of((1.0 - mirrored) * self.base_colour * cos_i, mirrored * (norm * lobe * cos_i))
     }
 
     fn lobes(&self) -> Lobes {

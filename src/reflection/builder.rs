@@ -5,7 +5,7 @@ use super::{
     declaration::{Ambient, Declaration, EquationPart, Family, Laws, Term},
     quantity::Quantity,
 };
-use crate::shader::Source;
+use crate::{declared::setters, shader::Source};
 
 impl Declaration {
     /// A model with an id, a name, and its twin in WGSL. By default it claims no laws, responds to uniform
@@ -34,56 +34,44 @@ impl Declaration {
             laws: Laws::NONE,
             ambient: Ambient::Formula,
             anisotropic: false,
+            matte: false,
             wgsl,
         }
     }
 
-    /// Sets the id.
-    #[must_use]
-    pub const fn id(self, id: &'static str) -> Self {
-        Self { id, ..self }
-    }
+    setters! {
+        /// Sets the id.
+        id(id: &'static str) { id }
 
-    /// Sets the twin in WGSL.
-    #[must_use]
-    pub const fn wgsl(self, wgsl: Source) -> Self {
-        Self { wgsl, ..self }
-    }
+        /// Sets the twin in WGSL.
+        wgsl(wgsl: Source) { wgsl }
 
-    /// Sets the family.
-    #[must_use]
-    pub const fn family(self, family: Family) -> Self {
-        Self { family, ..self }
-    }
+        /// Sets the family.
+        family(family: Family) { family }
 
-    /// Sets author and year, in short, and the publication.
-    #[must_use]
-    pub const fn published(self, author: &'static str, source: &'static str) -> Self {
-        Self { author, source, ..self }
-    }
+        /// Sets author and year, in short, and the publication.
+        published(author: &'static str, source: &'static str) { author, source }
 
-    /// Sets the summary: purpose and look, in one or two sentences.
-    #[must_use]
-    pub const fn summary(self, summary: &'static str) -> Self {
-        Self { summary, ..self }
-    }
+        /// Sets the summary: purpose and look, in one or two sentences.
+        summary(summary: &'static str) { summary }
 
-    /// Sets other names by which people search for it.
-    #[must_use]
-    pub const fn synonyms(self, synonyms: &'static [&'static str]) -> Self {
-        Self { synonyms, ..self }
-    }
+        /// Sets other names by which people search for it.
+        synonyms(synonyms: &'static [&'static str]) { synonyms }
 
-    /// Sets the equation.
-    #[must_use]
-    pub const fn equation(self, equation: &'static [EquationPart]) -> Self {
-        Self { equation, ..self }
-    }
+        /// Sets the equation.
+        equation(equation: &'static [EquationPart]) { equation }
 
-    /// Sets the quantities of the equation.
-    #[must_use]
-    pub const fn quantities(self, quantities: &'static [Quantity]) -> Self {
-        Self { quantities, ..self }
+        /// Sets the quantities of the equation.
+        quantities(quantities: &'static [Quantity]) { quantities }
+
+        /// Makes the directional albedo the response to uniform light: the model has no ambient function.
+        ambient_by_albedo() { ambient: Ambient::Albedo }
+
+        /// Makes the response depend on the tangent.
+        anisotropic() { anisotropic: true }
+
+        /// Makes a cosine its lobe for sampling light with extent.
+        matte() { matte: true }
     }
 
     /// Claims reciprocity: the path of light may be reversed.
@@ -102,18 +90,6 @@ impl Declaration {
     #[must_use]
     pub const fn non_negative(self) -> Self {
         Self { laws: Laws { non_negative: true, ..self.laws }, ..self }
-    }
-
-    /// Makes the directional albedo the response to uniform light: the model has no ambient function.
-    #[must_use]
-    pub const fn ambient_by_albedo(self) -> Self {
-        Self { ambient: Ambient::Albedo, ..self }
-    }
-
-    /// Makes the response depend on the tangent.
-    #[must_use]
-    pub const fn anisotropic(self) -> Self {
-        Self { anisotropic: true, ..self }
     }
 }
 

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Declaration, ReflectionModel, built_in};
 use crate::{
-    optics::{Frame, Terms, diffuse::burley, geometry::half_vector, lobes::Lobes},
+    optics::{Frame, Terms, diffuse::burley, geometry::half_vector},
     parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
     parameters,
 };
@@ -40,18 +40,11 @@ parameters! {
 
 impl ReflectionModel for BurleyDiffuse {
     const DECLARATION: Declaration =
-        built_in!("burley_diffuse", "Burley diffuse", Diffuse).ambient_by_albedo();
+        built_in!("burley_diffuse", "Burley diffuse", Diffuse).matte().ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_l <= 0.0 || cos_v <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_l, cos_v)) = frame.cosines(l, v) else { return Terms::default() };
         let factor = burley(cos_l, cos_v, l.dot(half_vector(l, v)), self.roughness);
         Terms { diffuse: cos_l * factor * self.base_colour, ..Terms::default() }
-    }
-
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
     }
 }

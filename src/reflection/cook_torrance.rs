@@ -93,11 +93,9 @@ impl ReflectionModel for CookTorrance {
         let d = beckmann(local, Vec2::splat(self.slope));
         let visibility = v_cavity(cos_l, cos_v, local.z, cos_d);
         let f = conductor_rgb(self.ior, self.extinction, cos_d);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: (1.0 - self.specular_weight) * cos_l * self.base_colour,
-            specular: self.specular_weight * PI * d * (visibility * cos_l) * f,
-        }
+        let diffuse = (1.0 - self.specular_weight) * cos_l * self.base_colour;
+        let specular = self.specular_weight * PI * d * (visibility * cos_l) * f;
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {
@@ -110,13 +108,11 @@ impl ReflectionModel for CookTorrance {
     }
 
     fn factor(&self, factor: Factor) -> Option<Vec3> {
-        Some(match factor {
-            Factor::Fresnel { cos_d } => conductor_rgb(self.ior, self.extinction, cos_d),
-            Factor::Distribution { h } => Vec3::splat(beckmann(h, Vec2::splat(self.slope))),
-            Factor::Masking { l, v } => {
-                Factor::of_visibility(v_cavity(l.z, v.z, half_vector(l, v).z, 0.5 * (l + v).length()), l, v)
-            }
-        })
+        factor.by(
+            |cos_d| conductor_rgb(self.ior, self.extinction, cos_d),
+            |h| beckmann(h, Vec2::splat(self.slope)),
+            |l, v| v_cavity(l.z, v.z, half_vector(l, v).z, 0.5 * (l + v).length()),
+        )
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

@@ -1,7 +1,7 @@
 //! The declaration of a reflection model: name, source, equation, laws.
 
 use super::quantity::Quantity;
-use crate::{optics::TermSelection, shader::Source};
+use crate::{declared::texts, optics::TermSelection, shader::Source};
 
 /// The name, source and claims of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,8 @@ pub struct Declaration {
     pub ambient: Ambient,
     /// True if the response depends on the tangent: rotating the surface about its normal changes it.
     pub anisotropic: bool,
+    /// True for a model without a highlight.
+    pub matte: bool,
     /// The twin in WGSL: `fn response` over a struct `Parameters`, and `fn ambient_response` for models
     /// that declare [`Ambient::Formula`].
     pub wgsl: Source,
@@ -56,83 +58,52 @@ pub struct EquationPart {
     pub text: &'static str,
 }
 
-/// A term of the equation of a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Term {
-    /// The sum of the others.
-    Total,
-    /// `I_a`.
-    Ambient,
-    /// `I_d`.
-    Diffuse,
-    /// `I_s`.
-    Specular,
+texts! {
+    /// A term of the equation of a model.
+    Term(
+        /// The word in files, JSON and web pages.
+        id,
+        /// The symbol in equations: `I_d`.
+        symbol
+    ) {
+        /// The sum of the others.
+        Total = "total" "I",
+        /// `I_a`.
+        Ambient = "ambient" "I_a",
+        /// `I_d`.
+        Diffuse = "diffuse" "I_d",
+        /// `I_s`.
+        Specular = "specular" "I_s",
+    }
 }
 
 impl Term {
-    /// The word in files, JSON and web pages.
-    #[must_use]
-    pub const fn id(self) -> &'static str {
-        match self {
-            Self::Total => "total",
-            Self::Ambient => "ambient",
-            Self::Diffuse => "diffuse",
-            Self::Specular => "specular",
-        }
-    }
-
-    /// The symbol in equations: `I_d`.
-    #[must_use]
-    pub const fn symbol(self) -> &'static str {
-        match self {
-            Self::Total => "I",
-            Self::Ambient => "I_a",
-            Self::Diffuse => "I_d",
-            Self::Specular => "I_s",
-        }
-    }
-
     /// The selection that shows only this term; `None` for the sum.
     #[must_use]
     pub fn alone(self) -> Option<TermSelection> {
-        match self {
-            Self::Total => None,
-            Self::Ambient => Some(TermSelection::Ambient),
-            Self::Diffuse => Some(TermSelection::Diffuse),
-            Self::Specular => Some(TermSelection::Specular),
-        }
+        // They have the order of the selections, where the sum is `All`.
+        (self != Self::Total).then_some(TermSelection::ALL[self as usize])
     }
 }
 
-/// A family of models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Family {
-    /// The four models of the *Commonality Analysis*.
-    Basic,
-    /// Other classical models.
-    Classical,
-    /// Diffuse reflection of rough surfaces.
-    Diffuse,
-    /// Microfacet theory.
-    Microfacet,
-    /// The practical standard.
-    Standard,
-    /// Models written by users.
-    Custom,
-}
-
-impl Family {
-    /// The heading in lists of models.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Basic => "Basic",
-            Self::Classical => "Classical",
-            Self::Diffuse => "Rough diffuse",
-            Self::Microfacet => "Microfacet",
-            Self::Standard => "Standard",
-            Self::Custom => "Custom models",
-        }
+texts! {
+    /// A family of models.
+    Family(
+        /// The heading in lists of models.
+        name
+    ) {
+        /// The four models of the *Commonality Analysis*.
+        Basic = "Basic",
+        /// Other classical models.
+        Classical = "Classical",
+        /// Diffuse reflection of rough surfaces.
+        Diffuse = "Rough diffuse",
+        /// Microfacet theory.
+        Microfacet = "Microfacet",
+        /// The practical standard.
+        Standard = "Standard",
+        /// Models written by users.
+        Custom = "Custom models",
     }
 }
 

@@ -187,11 +187,10 @@ impl ReflectionModel for Disney {
         let main = lobe(ggx(h, alpha), alpha) * (f0 + (Vec3::ONE - f0) * fresnel);
         let coat =
             lobe(gtr(h, Vec2::splat(self.coat_width()), 1.0), Vec2::splat(0.25)) * (0.04 + 0.96 * fresnel);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: PI * cos_l * (1.0 - self.metallic) * body,
-            specular: PI * cos_l * (main + 0.25 * self.clearcoat * coat),
-        }
+        Terms::of(
+            PI * cos_l * (1.0 - self.metallic) * body,
+            PI * cos_l * (main + 0.25 * self.clearcoat * coat),
+        )
     }
 
     fn lobes(&self) -> Lobes {
@@ -213,13 +212,11 @@ impl ReflectionModel for Disney {
     /// The factors of the main lobe, without the clear coat.
     fn factor(&self, factor: Factor) -> Option<Vec3> {
         let alpha = self.alpha();
-        Some(match factor {
-            Factor::Fresnel { cos_d } => schlick(self.f0(), cos_d),
-            Factor::Distribution { h } => Vec3::splat(ggx(h, alpha)),
-            Factor::Masking { l, v } => {
-                Factor::of_visibility(separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha)), l, v)
-            }
-        })
+        factor.by(
+            |cos_d| schlick(self.f0(), cos_d),
+            |h| ggx(h, alpha),
+            |l, v| separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha)),
+        )
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

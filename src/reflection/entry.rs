@@ -2,7 +2,6 @@
 
 use std::{
     collections::HashMap,
-    fmt,
     hash::{DefaultHasher, Hash as _, Hasher as _},
     sync::{
         Arc, Mutex, OnceLock,
@@ -22,6 +21,7 @@ use super::{
 };
 use crate::{
     caught::lock,
+    declared::entry,
     optics::{
         albedo::{AlbedoCurve, LobeAlbedo, NODES, NamedCurve},
         colour::Encoding,
@@ -103,20 +103,16 @@ impl ModelEntry {
     /// The entry of a model type.
     #[must_use]
     pub fn of<M: ReflectionModel>() -> Self {
+        let lobe = if M::LOBE || !M::CURVES.is_empty() { Lobe::Own } else { Lobe::None };
+        let instantiate = Arc::new(|values: &Values, encoding| {
+            Arc::new(Instance { model: M::from_values(values, encoding), curve: OnceLock::new() })
+                as Arc<dyn Surface>
+        });
         Self {
-            declaration: const { &M::DECLARATION },
-            parameters: M::PARAMETERS,
             groups: M::GROUPS,
             preset: M::preset,
-            lobe: if M::LOBE || !M::CURVES.is_empty() { Lobe::Own } else { Lobe::None },
-            curves: M::CURVES,
-            instantiate: Arc::new(|values, encoding| {
-                Arc::new(Instance { model: M::from_values(values, encoding), curve: OnceLock::new() })
-            }),
             on_pages: M::ON_PAGES,
-            on_cpu: None,
-            identity: Identity::new(&M::DECLARATION, M::PARAMETERS),
-            kept: Arc::default(),
+            ..Self::custom(const { &M::DECLARATION }, M::PARAMETERS, lobe, M::CURVES, instantiate, None)
         }
     }
 
@@ -129,20 +125,17 @@ impl ModelEntry {
         instantiate: Instantiate,
         on_cpu: Option<Arc<dyn Interpreted>>,
     ) -> Self {
-        let preset = preset::by_names(parameters);
-        let identity = Identity::new(declaration, parameters);
-        let groups = &[];
         Self {
             declaration,
             parameters,
-            groups,
-            preset,
+            groups: &[],
+            preset: preset::by_names(parameters),
             lobe,
             curves,
             instantiate,
             on_pages: None,
             on_cpu,
-            identity,
+            identity: Identity::new(declaration, parameters),
             kept: Arc::default(),
         }
     }
@@ -277,12 +270,6 @@ impl ModelEntry {
         values.resize(self.curve_length() - self.harmonics() * NODES, Vec4::ZERO);
         values
     }
-
-    /// The parameter with this name, if the model uses it.
-    #[must_use]
-    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
-        self.parameters.iter().find(|p| p.name == name)
-    }
 }
 
 /// Writes a curve after the parameters of a row.
@@ -306,11 +293,7 @@ pub(crate) fn append_curve(
     row.extend([lobe.average(), 0.0, 0.0, 0.0].into_iter().flat_map(f32::to_le_bytes));
 }
 
-impl fmt::Debug for ModelEntry {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("ModelEntry").field(&self.declaration.id).finish()
-    }
-}
+entry!(ModelEntry);
 
 #[cfg(test)]
 mod tests {

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Declaration, ReflectionModel, built_in};
 use crate::{
-    optics::{Frame, Terms, diffuse::eon, lobes::Lobes},
+    optics::{Frame, Terms, diffuse::eon},
     parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
     parameters,
 };
@@ -43,18 +43,11 @@ parameters! {
 }
 
 impl ReflectionModel for Eon {
-    const DECLARATION: Declaration = built_in!("eon", "EON", Diffuse).ambient_by_albedo();
+    const DECLARATION: Declaration = built_in!("eon", "EON", Diffuse).matte().ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_l <= 0.0 || cos_v <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_l, cos_v)) = frame.cosines(l, v) else { return Terms::default() };
         let factor = eon(cos_l, cos_v, l.dot(v), self.roughness, self.base_colour);
         Terms { diffuse: cos_l * factor * self.base_colour, ..Terms::default() }
-    }
-
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
     }
 }

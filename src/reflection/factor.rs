@@ -29,9 +29,19 @@ pub enum Factor {
 }
 
 impl Factor {
-    /// `G` from the quotient `G / (4 (N·L)(N·V))` used by models.
+    /// The factor from the functions of a model: `F(cos_d)`, `D(h)`, and the quotient `G / (4 (N·L)(N·V))` of `l` and
+    /// `v`.
     #[must_use]
-    pub fn of_visibility(visibility: f32, l: Vec3, v: Vec3) -> Vec3 {
-        Vec3::splat(4.0 * l.z * v.z * visibility)
+    pub fn by(
+        self,
+        fresnel: impl Fn(f32) -> Vec3,
+        distribution: impl Fn(Vec3) -> f32,
+        visibility: impl Fn(Vec3, Vec3) -> f32,
+    ) -> Option<Vec3> {
+        Some(match self {
+            Self::Fresnel { cos_d } => fresnel(cos_d),
+            Self::Distribution { h } => Vec3::splat(distribution(h)),
+            Self::Masking { l, v } => Vec3::splat(4.0 * l.z * v.z * visibility(l, v)),
+        })
     }
 }

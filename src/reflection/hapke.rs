@@ -177,10 +177,7 @@ impl ReflectionModel for Hapke {
     const DECLARATION: Declaration = built_in!("hapke", "Hapke", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let cos_i = frame.n.dot(l);
-        if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_i, _)) = frame.cosines(l, v) else { return Terms::default() };
         let (mu_a, mu_b, shadow) = roughen(l, v, frame.n, self.mean_slope.to_radians().tan());
 
         // Twice the sine and the cosine of half the phase angle: 1 ∓ 2b cos g + b² without cancellation.

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Declaration, ReflectionModel, built_in};
 use crate::{
-    optics::{Frame, Terms, lobes::Lobes},
+    optics::{Frame, Terms},
     parameter::BASE_COLOUR,
     parameters,
 };
@@ -27,14 +27,10 @@ parameters! {
 }
 
 impl ReflectionModel for Lambert {
-    const DECLARATION: Declaration = built_in!("lambert", "Lambert", Basic);
+    const DECLARATION: Declaration = built_in!("lambert", "Lambert", Basic).matte();
 
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         Terms { diffuse: frame.n.dot(l).max(0.0) * self.base_colour, ..Terms::default() }
-    }
-
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
     }
 
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {

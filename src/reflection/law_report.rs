@@ -74,20 +74,6 @@ pub struct LawVerdict {
     pub at: Vec<String>,
 }
 
-impl LawVerdict {
-    /// The verdict. If some responses are not finite, no law counts as obeyed, but a violation remains a
-    /// violation.
-    fn verdict(&self, finite: bool) -> &'static str {
-        match (self.claimed, self.kept) {
-            (_, true) if !finite => "cannot be judged: some values are NaN or infinite",
-            (true, true) => "claimed and kept",
-            (true, false) => "claimed and BROKEN",
-            (false, true) => "not claimed, but no violation found: claim it?",
-            (false, false) => "not claimed and broken",
-        }
-    }
-}
-
 impl LawReport {
     /// The findings of an examination.
     #[must_use]
@@ -139,10 +125,17 @@ impl LawReport {
         self.laws.iter().filter(|law| law.claimed && !law.kept).map(|law| law.law.as_str()).collect()
     }
 
-    /// The verdict on a law.
+    /// The verdict on a law. If some responses are not finite, no law counts as obeyed, but a violation remains a
+    /// violation.
     #[must_use]
     pub fn verdict(&self, law: &LawVerdict) -> &'static str {
-        law.verdict(self.is_finite())
+        match (law.claimed, law.kept) {
+            (_, true) if !self.is_finite() => "cannot be judged: some values are NaN or infinite",
+            (true, true) => "claimed and kept",
+            (true, false) => "claimed and BROKEN",
+            (false, true) => "not claimed, but no violation found: claim it?",
+            (false, false) => "not claimed and broken",
+        }
     }
 }
 

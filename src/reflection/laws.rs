@@ -78,21 +78,15 @@ impl Random {
 
     /// Legal values of all parameters of a model.
     pub fn values(&mut self, model: &ModelEntry) -> Values {
-        let mut values = Values::default();
-        for parameter in model.parameters {
-            values.set(parameter.name, self.value(parameter));
-        }
-        values
+        Values::each(model.parameters, |parameter| self.value(parameter))
     }
 
     /// Every number at one end of its range, colours white or black.
     pub fn corner(&mut self, model: &ModelEntry) -> Values {
-        let mut values = Values::default();
-        for parameter in model.parameters {
+        Values::each(model.parameters, |parameter| {
             let high = self.unit() < 0.5;
-            values.set(parameter.name, end(parameter, high, self));
-        }
-        values
+            end(parameter, high, self)
+        })
     }
 }
 
@@ -110,19 +104,9 @@ pub fn least(model: &ModelEntry) -> Values {
     ends(model, false)
 }
 
-/// White, and every number at its maximum.
-fn most(model: &ModelEntry) -> Values {
-    ends(model, true)
-}
-
 fn ends(model: &ModelEntry, high: bool) -> Values {
-    let mut values = Values::default();
-    for parameter in model.parameters {
-        if parameter.kind.is_number() {
-            values.set(parameter.name, end(parameter, high, &mut Random(1)));
-        }
-    }
-    values
+    let numbers = model.parameters.iter().filter(|parameter| parameter.kind.is_number());
+    Values::each(numbers, |parameter| end(parameter, high, &mut Random(1)))
 }
 
 /// The difference of a BRDF with light and view exchanged, relative to the larger value; differences of dark
@@ -302,7 +286,7 @@ pub fn examine<E>(
         let values = match set {
             0 => Values::default(),
             1 => least(model),
-            2 => most(model),
+            2 => ends(model, true),
             3..40 if set % 2 == 1 => random.corner(model),
             _ => random.values(model),
         };

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Declaration, ReflectionModel, built_in};
 use crate::{
-    optics::{Frame, Terms, lobes::Lobes},
+    optics::{Frame, Terms},
     parameter::BASE_COLOUR,
     parameters,
 };
@@ -38,17 +38,10 @@ parameters! {
 
 impl ReflectionModel for LommelSeeliger {
     const DECLARATION: Declaration =
-        built_in!("lommel_seeliger", "Lommel–Seeliger", Classical).ambient_by_albedo();
+        built_in!("lommel_seeliger", "Lommel–Seeliger", Classical).matte().ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_i <= 0.0 || cos_o <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_i, cos_o)) = frame.cosines(l, v) else { return Terms::default() };
         Terms { diffuse: self.base_colour * (0.5 * cos_i / (cos_i + cos_o)), ..Terms::default() }
-    }
-
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
     }
 }

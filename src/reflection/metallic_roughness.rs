@@ -95,11 +95,9 @@ impl ReflectionModel for MetallicRoughness {
         let (lambda_l, lambda_v) = (smith_ggx(leaning(cos_l), alpha), smith_ggx(leaning(cos_v), alpha));
         let visibility = height_correlated(cos_l, cos_v, lambda_l, lambda_v);
         let f = schlick(self.f0(), cos_d);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: (Vec3::ONE - f) * ((1.0 - self.metallic) * cos_l) * self.base_colour,
-            specular: PI * d * (visibility * cos_l) * f,
-        }
+        let diffuse = (Vec3::ONE - f) * ((1.0 - self.metallic) * cos_l) * self.base_colour;
+        let specular = PI * d * (visibility * cos_l) * f;
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {
@@ -113,14 +111,11 @@ impl ReflectionModel for MetallicRoughness {
 
     fn factor(&self, factor: Factor) -> Option<Vec3> {
         let alpha = Vec2::splat(self.alpha());
-        Some(match factor {
-            Factor::Fresnel { cos_d } => schlick(self.f0(), cos_d),
-            Factor::Distribution { h } => Vec3::splat(ggx(h, alpha)),
-            Factor::Masking { l, v } => {
-                let visibility = height_correlated(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha));
-                Factor::of_visibility(visibility, l, v)
-            }
-        })
+        factor.by(
+            |cos_d| schlick(self.f0(), cos_d),
+            |h| ggx(h, alpha),
+            |l, v| height_correlated(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha)),
+        )
     }
 
     fn preset(material: &Measured) -> Vec<(&'static str, Value)> {

@@ -286,7 +286,7 @@ impl ReflectionModel for Microfacet {
         }
         let entering = (Vec3::ONE - self.f(l.z)) * (Vec3::ONE - self.f(v.z));
         let diffuse = self.base_colour * entering * (self.body(l, v, cos_d) * l.z);
-        Terms { ambient: Vec3::ZERO, diffuse, specular }
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {
@@ -308,11 +308,7 @@ impl ReflectionModel for Microfacet {
     }
 
     fn factor(&self, factor: Factor) -> Option<Vec3> {
-        Some(match factor {
-            Factor::Fresnel { cos_d } => self.f(cos_d),
-            Factor::Distribution { h } => Vec3::splat(self.d(h)),
-            Factor::Masking { l, v } => Factor::of_visibility(self.visibility(l, v, half_vector(l, v)), l, v),
-        })
+        factor.by(|cos_d| self.f(cos_d), |h| self.d(h), |l, v| self.visibility(l, v, half_vector(l, v)))
     }
 
     fn quantity(&self, symbol: &str, arguments: &[f32]) -> Option<Vec3> {

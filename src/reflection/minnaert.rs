@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Declaration, ReflectionModel, built_in};
 use crate::{
-    optics::{Frame, Terms, lobes::Lobes},
+    optics::{Frame, Terms},
     parameter::{BASE_COLOUR, Parameter},
     parameters,
 };
@@ -48,20 +48,13 @@ parameters! {
 }
 
 impl ReflectionModel for Minnaert {
-    const DECLARATION: Declaration = built_in!("minnaert", "Minnaert", Classical).ambient_by_albedo();
+    const DECLARATION: Declaration = built_in!("minnaert", "Minnaert", Classical).matte().ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_i <= 0.0 || cos_o <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_i, cos_o)) = frame.cosines(l, v) else { return Terms::default() };
         let k = self.limb_darkening;
         let raised = (cos_i.max(RIM) * cos_o.max(RIM)).powf(k - 1.0);
         let diffuse = self.base_colour * (0.5 * (k + 1.0) * cos_i * raised);
         Terms { diffuse, ..Terms::default() }
-    }
-
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
     }
 }

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{Declaration, ReflectionModel, built_in};
 use crate::{
-    optics::{Frame, Terms, lobes::Lobes},
+    optics::{Frame, Terms},
     parameter::{BASE_COLOUR, K_D, Parameter},
     parameters,
 };
@@ -41,15 +41,11 @@ parameters! {
 }
 
 impl ReflectionModel for ModLambert {
-    const DECLARATION: Declaration = built_in!("mod_lambert", "Modified Lambert", Basic);
+    const DECLARATION: Declaration = built_in!("mod_lambert", "Modified Lambert", Basic).matte();
 
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         let wrapped = frame.n.dot(l) * self.k_d + (1.0 - self.k_d);
         Terms { diffuse: wrapped.max(0.0).powf(self.wrap_exponent) * self.base_colour, ..Terms::default() }
-    }
-
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
     }
 
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {

@@ -69,9 +69,9 @@ pub trait ReflectionModel: ParameterSet + Copy {
     }
 
     /// The directions in which the model reflects most, for sampling light with extent. Any lobes give the
-    /// same picture eventually, good ones sooner.
+    /// same picture eventually, good ones sooner. A matte model has a cosine alone.
     fn lobes(&self) -> Lobes {
-        Lobes::default()
+        if Self::DECLARATION.matte { Lobes::cosine() } else { Lobes::default() }
     }
 
     /// Derived values that help interpret the parameters: the reflectance at normal incidence, the roughness

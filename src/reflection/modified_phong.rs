@@ -53,17 +53,12 @@ impl ReflectionModel for ModifiedPhong {
         built_in!("modified_phong", "Modified Phong", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let cos_i = frame.n.dot(l);
-        if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_i, _)) = frame.cosines(l, v) else { return Terms::default() };
         let mirrored = self.k_s * self.specular_colour;
         let lobe = power_of_cosine(mirror_tangent_squared(l, v, frame.n), self.alpha);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: (1.0 - mirrored) * self.base_colour * cos_i,
-            specular: mirrored * (0.5 * (self.alpha + 2.0) * lobe * cos_i),
-        }
+        let diffuse = (1.0 - mirrored) * self.base_colour * cos_i;
+        let specular = mirrored * (0.5 * (self.alpha + 2.0) * lobe * cos_i);
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {

@@ -540,7 +540,7 @@ impl ReflectionModel for OpenPbr {
             diffuse *= below;
             specular = specular * below + self.fuzz_weight * lobe * l.z * self.fuzz_colour;
         }
-        Terms { ambient: Vec3::ZERO, diffuse, specular }
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {
@@ -580,13 +580,11 @@ impl ReflectionModel for OpenPbr {
     /// The factors of the base, without coat and fuzz.
     fn factor(&self, factor: Factor) -> Option<Vec3> {
         let alpha = self.prepared.base;
-        Some(match factor {
-            Factor::Fresnel { cos_d } => self.fresnel(cos_d),
-            Factor::Distribution { h } => Vec3::splat(ggx(h, alpha)),
-            Factor::Masking { l, v } => {
-                Factor::of_visibility(separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha)), l, v)
-            }
-        })
+        factor.by(
+            |cos_d| self.fresnel(cos_d),
+            |h| ggx(h, alpha),
+            |l, v| separable(l.z, v.z, smith_ggx(l, alpha), smith_ggx(v, alpha)),
+        )
     }
 
     /// Sets a metal by its reflectances at normal incidence and at 82°, a dielectric by its refractive index.

@@ -5,7 +5,6 @@ use crate::{
     optics::{
         Frame, Terms,
         diffuse::{oren_nayar_full, oren_nayar_qualitative},
-        lobes::Lobes,
     },
     parameter::{BASE_COLOUR, Parameter, SIGMA},
     parameters,
@@ -58,22 +57,16 @@ parameters! {
 }
 
 impl ReflectionModel for OrenNayar {
-    const DECLARATION: Declaration = built_in!("oren_nayar", "Oren–Nayar", Diffuse).ambient_by_albedo();
+    const DECLARATION: Declaration =
+        built_in!("oren_nayar", "Oren–Nayar", Diffuse).matte().ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_l <= 0.0 || cos_v <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_l, cos_v)) = frame.cosines(l, v) else { return Terms::default() };
         let sigma = self.sigma.to_radians();
         let factor = match self.oren_nayar_form {
             0 => oren_nayar_full(cos_l, cos_v, l.dot(v), sigma, self.base_colour),
             _ => Vec3::splat(oren_nayar_qualitative(cos_l, cos_v, l.dot(v), sigma)),
         };
         Terms { diffuse: cos_l * factor * self.base_colour, ..Terms::default() }
-    }
-
-    fn lobes(&self) -> Lobes {
-        Lobes::cosine()
     }
 }

@@ -1,5 +1,7 @@
 //! The quantities of an equation, each with its definition.
 
+use crate::declared::setters;
+
 /// A quantity used in the equation of a model: explanations substitute its value, and show its derivation.
 ///
 /// ```
@@ -32,17 +34,13 @@ impl Quantity {
         Self { text, label, source: "", when: &[] }
     }
 
-    /// Sets author and year.
-    #[must_use]
-    pub const fn source(self, source: &'static str) -> Self {
-        Self { source, ..self }
-    }
+    setters! {
+        /// Sets author and year.
+        source(source: &'static str) { source }
 
-    /// Restricts the quantity to certain choices: names of parameters, each with the ids for which it is
-    /// valid.
-    #[must_use]
-    pub const fn when(self, when: &'static [(&'static str, &'static [&'static str])]) -> Self {
-        Self { when, ..self }
+        /// Restricts the quantity to certain choices: names of parameters, each with the ids for which it is
+        /// valid.
+        when(when: &'static [(&'static str, &'static [&'static str])]) { when }
     }
 
     /// The symbol, without the arguments of a function: `H` for `H(μ) = …`.

@@ -108,10 +108,7 @@ impl ReflectionModel for Strauss {
     const DECLARATION: Declaration = built_in!("strauss", "Strauss", Classical).ambient_by_albedo();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_i, cos_o) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_i <= 0.0 || cos_o <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_i, cos_o)) = frame.cosines(l, v) else { return Terms::default() };
         let (s, m) = (self.smoothness, self.metallic);
         let diffuse = (1.0 - s * s * s) * (1.0 - self.transparency);
         let straight = s * s * s * (1.0 - self.transparency);
@@ -121,11 +118,7 @@ impl ReflectionModel for Strauss {
             (straight + (straight + K_J) * f * strauss_masking(up_l) * strauss_masking(up_v)).min(1.0);
         let lobe = power_of_cosine(mirror_tangent_squared(l, v, frame.n), self.exponent());
         let tint = Vec3::ONE + m * (1.0 - f) * (self.base_colour - 1.0);
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: self.base_colour * (diffuse * (1.0 - m * s) * cos_i),
-            specular: tint * (mirrored * lobe),
-        }
+        Terms::of(self.base_colour * (diffuse * (1.0 - m * s) * cos_i), tint * (mirrored * lobe))
     }
 
     fn lobes(&self) -> Lobes {

@@ -5,11 +5,14 @@ use std::sync::OnceLock;
 use glam::{Vec3, Vec4};
 
 use super::{declaration::Ambient, factor::Factor, model::ReflectionModel, readout::Readout};
-use crate::optics::{
-    Frame, TermSelection, Terms,
-    albedo::{self, AlbedoCurve, LobeAlbedo},
-    lobes::Lobes,
-    radiometry::Arriving,
+use crate::{
+    declared::forwards,
+    optics::{
+        Frame, TermSelection, Terms,
+        albedo::{self, AlbedoCurve, LobeAlbedo},
+        lobes::Lobes,
+        radiometry::Arriving,
+    },
 };
 
 /// A model with its parameters set: the object-safe half of [`ReflectionModel`].
@@ -21,7 +24,9 @@ pub trait Surface: Send + Sync {
     /// The directional albedo over the view, for models that declare [`Ambient::Albedo`].
     fn curve(&self) -> Option<AlbedoCurve>;
     /// See [`ReflectionModel::lobe`].
-    fn lobe(&self) -> Option<LobeAlbedo>;
+    fn lobe(&self) -> Option<LobeAlbedo> {
+        None
+    }
     /// See [`ReflectionModel::curves`].
     fn curves(&self) -> Vec<Vec4> {
         Vec::new()
@@ -31,7 +36,9 @@ pub trait Surface: Send + Sync {
         Lobes::default()
     }
     /// See [`ReflectionModel::readouts`].
-    fn readouts(&self) -> Vec<Readout>;
+    fn readouts(&self) -> Vec<Readout> {
+        Vec::new()
+    }
     /// See [`ReflectionModel::factor`].
     fn factor(&self, _factor: Factor) -> Option<Vec3> {
         None
@@ -70,8 +77,14 @@ fn sum(lights: &[Arriving], response: impl Fn(Vec3) -> Vec3) -> Vec3 {
 
 /// A model on its own: it recalculates its albedo at every call, to [`albedo::ACCURACY`].
 impl<M: ReflectionModel> Surface for M {
-    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        ReflectionModel::response(self, l, v, frame)
+    forwards! {
+        |this| this => ReflectionModel:
+        fn response(l: Vec3, v: Vec3, frame: &Frame) -> Terms;
+        fn lobe() -> Option<LobeAlbedo>;
+        fn curves() -> Vec<Vec4>;
+        fn lobes() -> Lobes;
+        fn readouts() -> Vec<Readout>;
+        fn factor(factor: Factor) -> Option<Vec3>;
     }
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
@@ -92,26 +105,6 @@ impl<M: ReflectionModel> Surface for M {
         })
     }
 
-    fn lobe(&self) -> Option<LobeAlbedo> {
-        ReflectionModel::lobe(self)
-    }
-
-    fn curves(&self) -> Vec<Vec4> {
-        ReflectionModel::curves(self)
-    }
-
-    fn lobes(&self) -> Lobes {
-        ReflectionModel::lobes(self)
-    }
-
-    fn readouts(&self) -> Vec<Readout> {
-        ReflectionModel::readouts(self)
-    }
-
-    fn factor(&self, factor: Factor) -> Option<Vec3> {
-        ReflectionModel::factor(self, factor)
-    }
-
     fn quantity(&self, symbol: &str, arguments: &[f32], _: Vec3, _: Vec3, _: &Frame) -> Option<Vec3> {
         ReflectionModel::quantity(self, symbol, arguments)
     }
@@ -124,8 +117,14 @@ pub(super) struct Instance<M> {
 }
 
 impl<M: ReflectionModel> Surface for Instance<M> {
-    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        ReflectionModel::response(&self.model, l, v, frame)
+    forwards! {
+        |this| &this.model => ReflectionModel:
+        fn response(l: Vec3, v: Vec3, frame: &Frame) -> Terms;
+        fn lobe() -> Option<LobeAlbedo>;
+        fn curves() -> Vec<Vec4>;
+        fn lobes() -> Lobes;
+        fn readouts() -> Vec<Readout>;
+        fn factor(factor: Factor) -> Option<Vec3>;
     }
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
@@ -137,26 +136,6 @@ impl<M: ReflectionModel> Surface for Instance<M> {
 
     fn curve(&self) -> Option<AlbedoCurve> {
         *self.curve.get_or_init(|| self.model.curve())
-    }
-
-    fn lobe(&self) -> Option<LobeAlbedo> {
-        ReflectionModel::lobe(&self.model)
-    }
-
-    fn curves(&self) -> Vec<Vec4> {
-        ReflectionModel::curves(&self.model)
-    }
-
-    fn lobes(&self) -> Lobes {
-        ReflectionModel::lobes(&self.model)
-    }
-
-    fn readouts(&self) -> Vec<Readout> {
-        ReflectionModel::readouts(&self.model)
-    }
-
-    fn factor(&self, factor: Factor) -> Option<Vec3> {
-        ReflectionModel::factor(&self.model, factor)
     }
 
     fn quantity(&self, symbol: &str, arguments: &[f32], _: Vec3, _: Vec3, _: &Frame) -> Option<Vec3> {
@@ -174,9 +153,6 @@ pub fn brdf(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
 /// The BRDF `f_r` in sr⁻¹ of a response; see [`brdf`].
 #[must_use]
 pub fn brdf_of(response: Terms, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
-    let cos_i = frame.n.dot(l);
-    if cos_i <= 0.0 || frame.n.dot(v) <= 0.0 {
-        return Vec3::ZERO;
-    }
+    let Some((cos_i, _)) = frame.cosines(l, v) else { return Vec3::ZERO };
     (response.diffuse + response.specular) / (std::f32::consts::PI * cos_i)
 }

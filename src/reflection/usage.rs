@@ -48,7 +48,7 @@ pub fn unused(parameters: &[Parameter], parameter: &Parameter, values: &Values) 
         .filter(|(id, _)| condition.choices.contains(id))
         .map(|(_, name)| quoted(name))
         .collect();
-    if other.is_flag() {
+    if other.kind.is_flag() {
         return Some(format!("Not used while “{}” is {chosen}", other.label));
     }
     if users.len() > FEW || parameter.used_when != Some(condition) {

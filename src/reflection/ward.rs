@@ -69,10 +69,7 @@ impl ReflectionModel for Ward {
     const DECLARATION: Declaration = built_in!("ward", "Ward", Classical).ambient_by_albedo().anisotropic();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (cos_l, cos_v) = (frame.n.dot(l), frame.n.dot(v));
-        if cos_l <= 0.0 || cos_v <= 0.0 {
-            return Terms::default();
-        }
+        let Some((cos_l, cos_v)) = frame.cosines(l, v) else { return Terms::default() };
         let slope = half_slope(l, v, frame);
         let lobe = (-(slope.x / self.alpha_x).powi(2) - (slope.y / self.alpha_y).powi(2)).exp()
             / (4.0 * self.alpha_x * self.alpha_y);
@@ -81,11 +78,9 @@ impl ReflectionModel for Ward {
             0 => (cos_l / cos_v.max(1e-12)).sqrt(),
             _ => 1.0 / cos_v.max(1e-12),
         };
-        Terms {
-            ambient: Vec3::ZERO,
-            diffuse: (1.0 - self.k_s) * cos_l * self.base_colour,
-            specular: self.k_s * lobe * cosines * self.specular_colour,
-        }
+        let diffuse = (1.0 - self.k_s) * cos_l * self.base_colour;
+        let specular = self.k_s * lobe * cosines * self.specular_colour;
+        Terms::of(diffuse, specular)
     }
 
     fn lobes(&self) -> Lobes {

@@ -96,8 +96,8 @@ fn values(parameters: &[Parameter], word: impl Fn(usize, &str) -> String) -> Str
     };
     let fields: Vec<_> = parameters
         .iter()
-        .map(|p| match lanes(p.wgsl_type()) {
-            1 => next(p.wgsl_type()),
+        .map(|p| match lanes(p.kind.wgsl()) {
+            1 => next(p.kind.wgsl()),
             n => format!("vec{n}({})", (0..n).map(|_| next("f32")).collect::<Vec<_>>().join(", ")),
         })
         .collect();

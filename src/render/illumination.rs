@@ -201,7 +201,7 @@ pub fn illumination_bytes(
     bytes[SAMPLES_AT..][..SAMPLE_BYTES].copy_from_slice(&sample_bytes(Err(samples)));
     let mut put = |at: usize, value: [u8; 4]| bytes[at..at + 4].copy_from_slice(&value);
     put(0, (lights.len() as u32).to_le_bytes());
-    put(4, terms.code().to_le_bytes());
+    put(4, (terms as u32).to_le_bytes());
     put(8, exposure_factor(display.exposure).to_le_bytes());
     put(12, u32::from(display.encoding == Encoding::Off).to_le_bytes());
     put(SAMPLES_AT + SAMPLE_BYTES, u32::from(display.backdrop().is_some()).to_le_bytes());

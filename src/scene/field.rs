@@ -7,6 +7,7 @@ use super::{
     ids::one_of,
 };
 use crate::{
+    declared::setters,
     parameter::{
         ABOVE_ZERO, Value,
         kind::{RGB, colour},
@@ -136,16 +137,27 @@ impl Field {
         Self { key, help, subject, name, unit, kind, absent, always: false, by_type: false, instead: None }
     }
 
-    /// Sets the name for people.
-    #[must_use]
-    pub const fn called(self, name: &'static str) -> Self {
-        Self { name, ..self }
-    }
+    setters! {
+        /// Sets the name for people.
+        called(name: &'static str) { name }
 
-    /// Sets the unit.
-    #[must_use]
-    pub const fn unit(self, unit: &'static str) -> Self {
-        Self { unit, ..self }
+        /// Sets the unit.
+        unit(unit: &'static str) { unit }
+
+        /// Writes the field even with its default.
+        always() { always: true }
+
+        /// Requires the field, and asks where it is missing.
+        asked() { absent: Absent::Asked, always: true }
+
+        /// Requires the field, for this reason.
+        required(why: &'static str) { absent: Absent::Error(why), always: true }
+
+        /// Leaves the default, and whether there is one, to the type of the part; it is always written.
+        by_type() { by_type: true, always: true }
+
+        /// Allows another field instead.
+        or(other: &'static str) { instead: Some(other), always: true }
     }
 
     /// Sets the ends of the slider.
@@ -157,36 +169,6 @@ impl Field {
             }
             _ => self,
         }
-    }
-
-    /// Writes the field even with its default.
-    #[must_use]
-    pub const fn always(self) -> Self {
-        Self { always: true, ..self }
-    }
-
-    /// Requires the field, and asks where it is missing.
-    #[must_use]
-    pub const fn asked(self) -> Self {
-        Self { absent: Absent::Asked, always: true, ..self }
-    }
-
-    /// Requires the field, for this reason.
-    #[must_use]
-    pub const fn required(self, why: &'static str) -> Self {
-        Self { absent: Absent::Error(why), always: true, ..self }
-    }
-
-    /// Leaves the default, and whether there is one, to the type of the part; it is always written.
-    #[must_use]
-    pub const fn by_type(self) -> Self {
-        Self { by_type: true, always: true, ..self }
-    }
-
-    /// Allows another field instead.
-    #[must_use]
-    pub const fn or(self, other: &'static str) -> Self {
-        Self { instead: Some(other), always: true, ..self }
     }
 
     /// The name for people: "field of view".

@@ -111,7 +111,7 @@ impl<'de> DeserializeSeed<'de> for &Parameter {
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
         use serde_json::Value as Json;
         let json = Json::deserialize(deserializer)?;
-        let (is_flag, is_text) = (self.is_flag(), self.kind.is_text());
+        let (is_flag, is_text) = (self.kind.is_flag(), self.kind.is_text());
         let written = match &json {
             Json::String(text) if is_text => Some(text.clone()),
             Json::Bool(_) if is_flag => Some(json.to_string()),

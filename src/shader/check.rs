@@ -61,12 +61,13 @@ pub(crate) fn reason(error: &dyn std::error::Error) -> String {
     message
 }
 
-/// The byte offsets of the members of a struct in a module, by name; `None` if there is no such struct.
+/// The byte offsets of the members of a struct in a module, by name, and its size; `None` if there is no such struct.
 #[must_use]
-pub fn struct_layout(module: &Module, name: &str) -> Option<Vec<(String, usize)>> {
+pub fn struct_layout(module: &Module, name: &str) -> Option<(Vec<(String, usize)>, usize)> {
     module.types.iter().find_map(|(_, ty)| match &ty.inner {
-        naga::TypeInner::Struct { members, .. } if ty.name.as_deref() == Some(name) => {
-            Some(members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize)).collect())
+        naga::TypeInner::Struct { members, span } if ty.name.as_deref() == Some(name) => {
+            let all = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize));
+            Some((all.collect(), *span as usize))
         }
         _ => None,
     })
@@ -77,7 +78,8 @@ mod tests {
     use super::*;
     use crate::{
         light::Twin,
-        parameter::{self, stride},
+        optics::colour::Encoding,
+        parameter::{self, Values, stride},
         registry::{
             Registry,
             compose::{compose, compose_evaluation},
@@ -85,6 +87,10 @@ mod tests {
         render::illumination::layout,
         shader::compose::{LIGHTS, OPTICS, Sources},
     };
+
+    fn members(module: &Module, name: &str) -> Option<Vec<(String, usize)>> {
+        struct_layout(module, name).map(|(members, _)| members)
+    }
 
     #[test]
     fn every_model_is_valid_and_its_parameters_lie_where_rust_puts_them() {
@@ -94,7 +100,7 @@ mod tests {
                 .into_iter()
                 .map(|(n, _, at)| (n.to_owned(), at))
                 .collect();
-            assert_eq!(struct_layout(&module, "Parameters"), Some(rust), "{}", model.declaration.id);
+            assert_eq!(members(&module, "Parameters"), Some(rust), "{}", model.declaration.id);
             let size = module.types.iter().find_map(|(_, t)| match t.inner {
                 naga::TypeInner::Struct { span, .. } if t.name.as_deref() == Some("Parameters") => {
                     Some(span as usize)
@@ -111,12 +117,12 @@ mod tests {
         let owned = |layout: &[(&str, usize)]| {
             layout.iter().map(|(n, at)| ((*n).to_owned(), *at)).collect::<Vec<_>>()
         };
-        assert_eq!(struct_layout(&module, "Light"), Some(owned(&layout::LIGHT)));
-        assert_eq!(struct_layout(&module, "Illumination"), Some(owned(&layout::ILLUMINATION)));
+        assert_eq!(members(&module, "Light"), Some(owned(&layout::LIGHT)));
+        assert_eq!(members(&module, "Illumination"), Some(owned(&layout::ILLUMINATION)));
         // The wrong twin: without the padding required by vec3, the layouts differ.
         let packed = wgsl::parse_str("struct Light { position: vec3<f32>, light_type: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, first_word: u32 }")
             .expect("valid WGSL");
-        assert_ne!(struct_layout(&packed, "Light"), Some(owned(&layout::LIGHT)));
+        assert_ne!(members(&packed, "Light"), Some(owned(&layout::LIGHT)));
     }
 
     #[test]
@@ -128,9 +134,10 @@ mod tests {
             for twin in Twin::all(light.declaration.extent) {
                 let call = format!("{{ return {}(", twin.of(light));
                 let line = composed.text.lines().find(|line| line.contains(&call)).expect("it is dispatched");
-                for word in 0..=light.word_count() {
+                let words = light.words(&Values::default(), Encoding::default()).len();
+                for word in 0..=words {
                     let read = line.contains(&format!("(light, {word}u)"));
-                    assert_eq!(read, word < light.word_count(), "{call} word {word} in {line}");
+                    assert_eq!(read, word < words, "{call} word {word} in {line}");
                 }
             }
         }

@@ -21,24 +21,27 @@ pub(crate) fn block_comment(text: &str, start: usize) -> Option<usize> {
     None
 }
 
+/// The end of the comment that begins at a byte; the line break after `//` does not belong to it.
+pub(crate) fn comment(text: &str, at: usize) -> Option<usize> {
+    let rest = &text[at..];
+    if rest.starts_with("//") {
+        return Some(at + rest.find('\n').unwrap_or(rest.len()));
+    }
+    rest.starts_with("/*").then(|| block_comment(text, at).unwrap_or(text.len()))
+}
+
 /// The text with spaces instead of comments.
 pub(super) fn without_comments(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut at = 0;
     while let Some(slash) = text[at..].find('/').map(|i| at + i) {
         out.push_str(&text[at..slash]);
-        let rest = &text[slash..];
-        let end = if rest.starts_with("//") {
-            slash + rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with("/*") {
-            block_comment(text, slash).unwrap_or(text.len())
-        } else {
+        let Some(end) = comment(text, slash) else {
             out.push('/');
             at = slash + 1;
             continue;
         };
-        at = slash;
-        out.extend(text[at..end].bytes().map(|b| if b == b'\n' { '\n' } else { ' ' }));
+        out.extend(text[slash..end].bytes().map(|b| if b == b'\n' { '\n' } else { ' ' }));
         at = end;
     }
     out.push_str(&text[at..]);

@@ -4,6 +4,10 @@
 //! Comments are skipped as naga and the preprocessor skip them, and characters on which the two disagree are
 //! refused, so nothing visible to them is hidden here.
 
+use std::fmt::Display;
+
+use super::definitions;
+
 /// A token of the text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token<'a> {
@@ -42,6 +46,20 @@ const LONGEST_WORD: usize = 256;
 
 /// A problem at a byte.
 pub(super) type Finding = (usize, String);
+
+/// Refuses a place with more of something than allowed.
+pub(super) fn at_most<N: PartialOrd + Display, P>(
+    found: N,
+    most: N,
+    at: P,
+    advice: &str,
+    what: impl FnOnce() -> String,
+) -> Result<(), (P, String)> {
+    if found <= most {
+        return Ok(());
+    }
+    Err((at, format!("{}; at most {most} are allowed{advice}", what())))
+}
 
 /// The tokens of a text.
 pub(super) struct Tokens<'a> {
@@ -111,11 +129,10 @@ impl<'a> Scanner<'a> {
         let what = "this invisible character separates lines or words; use a space or an ordinary line end";
         let kind = self.advance().ok_or_else(|| (start, what.to_owned()))?;
         let length = self.at - start;
-        if !self.directive && matches!(kind, Kind::Word | Kind::Number) && length > LONGEST_WORD {
-            let what = format!("this word has {length} bytes; at most {LONGEST_WORD} are allowed");
-            return Err((start, what));
-        }
         if !self.directive {
+            if matches!(kind, Kind::Word | Kind::Number) {
+                at_most(length, LONGEST_WORD, start, "", || format!("this word has {length} bytes"))?;
+            }
             self.push(kind, start);
         }
         Ok(())
@@ -239,26 +256,13 @@ impl<'a> Scanner<'a> {
 
     /// Skips a comment. Comments nest; one that is not closed hides the rest.
     fn block_comment(&mut self) {
-        let bytes = self.text.as_bytes();
-        let start = self.at;
-        let mut depth = 1;
-        self.at += 2;
-        while depth > 0 {
-            match bytes.get(self.at..self.at + 2) {
-                None => {
-                    self.open_comment = Some(start);
-                    self.at = bytes.len();
-                    return;
-                }
-                Some(b"/*") => (depth, self.at) = (depth + 1, self.at + 2),
-                Some(b"*/") => (depth, self.at) = (depth - 1, self.at + 2),
-                Some(pair) => {
-                    if pair[0] == b'\n' {
-                        self.begin_line();
-                    }
-                    self.at += 1;
-                }
-            }
+        let (text, start) = (self.text, self.at);
+        self.at = definitions::block_comment(text, start).unwrap_or_else(|| {
+            self.open_comment = Some(start);
+            text.len()
+        });
+        if text[start..self.at].contains('\n') {
+            self.begin_line();
         }
     }
 

@@ -2,7 +2,7 @@
 //! existing declarations.
 
 use super::{Declaration, Stage};
-use crate::shader::Source;
+use crate::{declared::setters, shader::Source};
 
 impl Declaration {
     /// A shading model with an id and a name, the stage that evaluates the reflection model, the key that selects it in
@@ -20,15 +20,11 @@ impl Declaration {
         Self { id, name, author: "", source: "", summary: "", stage, key, wgsl }
     }
 
-    /// Sets author and year, in short, and the publication.
-    #[must_use]
-    pub const fn published(self, author: &'static str, source: &'static str) -> Self {
-        Self { author, source, ..self }
-    }
+    setters! {
+        /// Sets author and year, in short, and the publication.
+        published(author: &'static str, source: &'static str) { author, source }
 
-    /// Sets the summary: the method and what to look for, in one or two sentences.
-    #[must_use]
-    pub const fn summary(self, summary: &'static str) -> Self {
-        Self { summary, ..self }
+        /// Sets the summary: the method and what to look for, in one or two sentences.
+        summary(summary: &'static str) { summary }
     }
 }

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
+use super::{Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::{parameters, shader::wgsl};
 
 parameters! {
@@ -24,15 +24,6 @@ impl ShadingModel for Derivative {
         key: 'D',
         wgsl: wgsl!("shading/derivative.wgsl"),
     };
-
-    fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
-        Varying {
-            position: corner.position,
-            normal: corner.normal,
-            tangent: corner.tangent,
-            colour: Vec3::ZERO,
-        }
-    }
 
     fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
         lighting.colour(varying.position, face_normal, varying.tangent)

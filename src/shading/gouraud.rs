@@ -18,12 +18,7 @@ impl ShadingModel for Gouraud {
         .summary("Colour calculated at the vertices, interpolated between them. Misses highlights that fall between vertices.");
 
     fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
-        Varying {
-            position: corner.position,
-            normal: corner.normal,
-            tangent: corner.tangent,
-            colour: lighting.colour(corner.position, corner.normal, corner.tangent),
-        }
+        corner.varying(lighting.colour(corner.position, corner.normal, corner.tangent))
     }
 
     fn pixel(&self, _lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {

@@ -3,12 +3,10 @@
 //! **To add one**: write `shading/x.rs` and `assets/shaders/shading/x.wgsl`, and add its name to
 //! [`register_builtin`].
 
-use std::fmt;
-
 use glam::Vec3;
 
 use crate::{
-    declared::take_each,
+    declared::{entry, forwards, take_each, texts},
     optics::colour::Encoding,
     parameter::{self, Parameter, ParameterSet, Values},
     shader::{Source, wgsl},
@@ -41,26 +39,18 @@ pub fn register_builtin(to: &mut impl Take) {
     take_each!(to: Flat Gouraud PhongShading Derivative);
 }
 
-/// The stage that evaluates the reflection model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Stage {
-    /// Once per polygon.
-    Polygon,
-    /// Once per vertex.
-    Vertex,
-    /// Once per pixel.
-    Pixel,
-}
-
-impl Stage {
-    /// The stage in words: "per polygon", "per vertex" or "per pixel".
-    #[must_use]
-    pub fn phrase(self) -> &'static str {
-        match self {
-            Self::Polygon => "per polygon",
-            Self::Vertex => "per vertex",
-            Self::Pixel => "per pixel",
-        }
+texts! {
+    /// The stage that evaluates the reflection model.
+    Stage(
+        /// The stage in words: "per polygon", "per vertex" or "per pixel".
+        phrase
+    ) {
+        /// Once per polygon.
+        Polygon = "per polygon",
+        /// Once per vertex.
+        Vertex = "per vertex",
+        /// Once per pixel.
+        Pixel = "per pixel",
     }
 }
 
@@ -117,6 +107,15 @@ pub struct Corner {
     pub face_centre: Vec3,
 }
 
+impl Corner {
+    /// The values of the vertex, with a colour.
+    #[must_use]
+    #[inline]
+    pub fn varying(&self, colour: Vec3) -> Varying {
+        Varying { position: self.position, normal: self.normal, tangent: self.tangent, colour }
+    }
+}
+
 /// The values passed from the corners to the pixels, interpolated with perspective correction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Varying {
@@ -137,8 +136,10 @@ pub trait ShadingModel: ParameterSet {
     const DECLARATION: Declaration;
 
     /// The values calculated at a corner of a polygon. For [`Stage::Polygon`] they must be equal at all
-    /// corners of a polygon except for `position`.
-    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying;
+    /// corners of a polygon except for `position`. By default those of the vertex, without a colour.
+    fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
+        corner.varying(Vec3::ZERO)
+    }
 
     /// The colour of a pixel; `face_normal` is the exact normal of the **triangle** that covers it.
     fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3;
@@ -154,12 +155,10 @@ pub trait Shading: Send + Sync {
 }
 
 impl<S: ShadingModel> Shading for S {
-    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
-        ShadingModel::vertex(self, lighting, corner)
-    }
-
-    fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
-        ShadingModel::pixel(self, lighting, varying, face_normal)
+    forwards! {
+        |this| this => ShadingModel:
+        fn vertex(lighting: &dyn Lighting, corner: &Corner) -> Varying;
+        fn pixel(lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3;
     }
 }
 
@@ -190,12 +189,6 @@ impl ShadingEntry {
         }
     }
 
-    /// The parameter with this name, if the shading model has it.
-    #[must_use]
-    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
-        self.parameters.iter().find(|p| p.name == name)
-    }
-
     /// The parameters of one object as [`PARAMETER_WORDS`] numbers, the end of its row in the table that shaders read.
     #[must_use]
     pub fn row(&self, values: &Values, encoding: Encoding) -> Vec<u8> {
@@ -205,8 +198,4 @@ impl ShadingEntry {
     }
 }
 
-impl fmt::Debug for ShadingEntry {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("ShadingEntry").field(&self.declaration.id).finish()
-    }
-}
+entry!(ShadingEntry);

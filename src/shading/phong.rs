@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Corner, Declaration, Lighting, ShadingModel, Stage, Varying};
+use super::{Declaration, Lighting, ShadingModel, Stage, Varying};
 use crate::{parameters, shader::wgsl};
 
 parameters! {
@@ -16,15 +16,6 @@ impl ShadingModel for PhongShading {
     const DECLARATION: Declaration = Declaration::new("phong", "Phong", Stage::Pixel, 'P', wgsl!("shading/phong.wgsl"))
         .published("B. T. Phong 1975", "B. T. Phong (1975), Illumination for Computer Generated Pictures, Communications of the ACM 18(6), 311–317")
         .summary("Normals interpolated between the vertices and renormalised; colour calculated at every pixel.");
-
-    fn vertex(&self, _lighting: &dyn Lighting, corner: &Corner) -> Varying {
-        Varying {
-            position: corner.position,
-            normal: corner.normal,
-            tangent: corner.tangent,
-            colour: Vec3::ZERO,
-        }
-    }
 
     fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, _face_normal: Vec3) -> Vec3 {
         lighting.colour(varying.position, varying.normal.normalize_or_zero(), varying.tangent)

@@ -4,6 +4,7 @@
 use std::ops::RangeInclusive;
 
 use super::Declaration;
+use crate::declared::setters;
 
 impl Declaration {
     /// An object type with an id, a name, and a single tessellation.
@@ -27,21 +28,14 @@ impl Declaration {
         }
     }
 
-    /// Sets a one-sentence summary of the shape and its use.
-    #[must_use]
-    pub const fn summary(self, summary: &'static str) -> Self {
-        Self { summary, ..self }
-    }
+    setters! {
+        /// Sets a one-sentence summary of the shape and its use.
+        summary(summary: &'static str) { summary }
 
-    /// Sets the glyph for lists.
-    #[must_use]
-    pub const fn glyph(self, glyph: &'static str) -> Self {
-        Self { glyph, ..self }
-    }
+        /// Sets the glyph for lists.
+        glyph(glyph: &'static str) { glyph }
 
-    /// Sets the range of tessellations, and the meaning of the number.
-    #[must_use]
-    pub const fn tessellation(self, range: RangeInclusive<u32>, default: u32, help: &'static str) -> Self {
-        Self { tessellation: range, default_tessellation: default, tessellation_help: help, ..self }
+        /// Sets the range of tessellations, and the meaning of the number.
+        tessellation(range: RangeInclusive<u32>, default: u32, help: &'static str) { tessellation: range, default_tessellation: default, tessellation_help: help }
     }
 }

@@ -2,7 +2,6 @@
 
 use std::{
     collections::HashMap,
-    fmt,
     sync::{Arc, Mutex},
 };
 
@@ -11,6 +10,7 @@ use glam::Vec3;
 use super::{Declaration, ObjectType, PolygonMesh};
 use crate::{
     caught::lock,
+    declared::entry,
     optics::colour::Encoding,
     parameter::{Parameter, TypeComponent, Value, Values, words},
 };
@@ -62,12 +62,6 @@ impl ShapeEntry {
             mesh: |values, tessellation| T::from_values(values, Encoding::Srgb).mesh(tessellation),
             bounds: Arc::default(),
         }
-    }
-
-    /// The parameter with this name, if the type has it.
-    #[must_use]
-    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
-        self.parameters.iter().find(|p| p.name == name)
     }
 
     /// The tessellation of an object: the requested one, clamped to the legal range, or the default.
@@ -122,11 +116,7 @@ impl ShapeEntry {
     }
 }
 
-impl fmt::Debug for ShapeEntry {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("ShapeEntry").field(&self.declaration.id).finish()
-    }
-}
+entry!(ShapeEntry);
 
 #[cfg(test)]
 mod tests {

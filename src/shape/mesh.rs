@@ -2,8 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::shading::normals::{
-    polygon_centre, polygon_normal, polygon_tangent, vertex_normals, vertex_tangents,
+use crate::{
+    declared::setters,
+    shading::normals::{polygon_centre, polygon_normal, polygon_tangent, vertex_normals, vertex_tangents},
 };
 
 /// Vertices and convex polygons of three or four corners, with the normals and tangents that shading models need.
@@ -49,18 +50,14 @@ impl Polygon {
         Self { corners, count: count as u8, brushed: Vec3::ZERO, normals: [Vec3::ZERO; 4] }
     }
 
-    /// The polygon with a brush direction, for anisotropic models. Without one, it is brushed horizontally.
-    #[must_use]
-    pub const fn brushed(self, direction: Vec3) -> Self {
-        Self { brushed: direction, ..self }
-    }
+    setters! {
+        /// The polygon with a brush direction, for anisotropic models. Without one, it is brushed horizontally.
+        brushed(direction: Vec3) { brushed: direction }
 
-    /// The polygon with the unit normals of the surface at its corners, for shapes that know them better than
-    /// their polygons do. Zero stands for none. Polygons that share a vertex should agree on its normal,
-    /// which is their mean.
-    #[must_use]
-    pub const fn with_normals(self, normals: [Vec3; 4]) -> Self {
-        Self { normals, ..self }
+        /// The polygon with the unit normals of the surface at its corners, for shapes that know them better than
+        /// their polygons do. Zero stands for none. Polygons that share a vertex should agree on its normal,
+        /// which is their mean.
+        with_normals(normals: [Vec3; 4]) { normals }
     }
 
     /// The indices of the corners.
@@ -108,25 +105,21 @@ impl PolygonMesh {
     /// The normal of every polygon: the normalised cross product of two of its sides (CA DD8).
     #[must_use]
     pub fn polygon_normals(&self) -> Vec<Vec3> {
-        self.polygons
-            .iter()
-            .map(|p| {
-                let (corners, n) = self.corner_positions(p);
-                polygon_normal(&corners[..n])
-            })
-            .collect()
+        self.of_polygons(polygon_normal)
     }
 
     /// The centre of every polygon.
     #[must_use]
     pub fn polygon_centres(&self) -> Vec<Vec3> {
-        self.polygons
-            .iter()
-            .map(|p| {
-                let (corners, n) = self.corner_positions(p);
-                polygon_centre(&corners[..n])
-            })
-            .collect()
+        self.of_polygons(polygon_centre)
+    }
+
+    fn of_polygons(&self, of: impl Fn(&[Vec3]) -> Vec3) -> Vec<Vec3> {
+        let of = |polygon| {
+            let (corners, n) = self.corner_positions(polygon);
+            of(&corners[..n])
+        };
+        self.polygons.iter().map(of).collect()
     }
 
     /// The normal of every vertex, CA DD9; that of the surface where polygons [have

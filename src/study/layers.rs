@@ -5,16 +5,12 @@ use maud::{Markup, html};
 use rayon::prelude::*;
 
 use super::{
-    Chapter, Lab, StudyError, Table, albedo_at, at, cells, ends, fixed, furnace::verdict, grid, image,
-    pictures, plot, series, set, text::values,
+    Chapter, Lab, StudyError, Table, albedo_at, at, cells, directional, ends, fixed, furnace::verdict, grid,
+    image, pictures, plot, series, set, text::values,
 };
 use crate::{
     curves::draw::{Axis, Line, Mark},
-    optics::{
-        Frame, albedo,
-        colour::{Encoding, luminance},
-        geometry::direction,
-    },
+    optics::colour::{Encoding, luminance},
     parameter::Values,
     reference::encode8,
     reflection::{Factor, Surface, preset},
@@ -42,13 +38,6 @@ fn shares(lab: &Lab, degrees: f64) -> Result<[f64; 4], StudyError> {
     let (fuzz, coat) = (albedo_at(&*fuzz, degrees).0, albedo_at(&*coat, degrees).0);
     let (all, specular) = albedo_at(&*all, degrees);
     Ok([fuzz, coat - fuzz, specular - coat, all - specular])
-}
-
-/// The albedo in red, green and blue for a viewer at an angle.
-fn colour_at(surface: &dyn Surface, degrees: f64) -> Vec3 {
-    let v = direction(degrees, 0.0);
-    let frame = &Frame::LOCAL;
-    albedo::directional(|l| surface.response(l, v, frame), v, frame).as_vec3()
 }
 
 /// One minus the smallest channel over the largest: 0 for greys.
@@ -177,7 +166,8 @@ fn coated_metal(lab: &Lab, angles: &[f64]) -> Result<(Markup, Markup, Table, [f6
     let size = lab.size(960, 48);
     let (mut bands, mut rows, mut normal) = (Vec::new(), Vec::new(), Vec::new());
     for (name, surface) in coppers(lab)? {
-        let colours: Vec<_> = angles.iter().map(|a| (*a, colour_at(&*surface, *a))).collect();
+        let colours: Vec<_> =
+            angles.iter().map(|a| (*a, directional(&*surface, *a, |terms| terms).as_vec3())).collect();
         for (a, rgb) in &colours {
             raw.row(&[name], &[*a, f64::from(rgb.x), f64::from(rgb.y), f64::from(rgb.z), saturation(*rgb)]);
         }

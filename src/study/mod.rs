@@ -9,13 +9,14 @@
 
 use std::{fmt::Write as _, fs, io, iter, path::Path, sync::Arc};
 
+use glam::DVec3;
 use maud::{Markup, PreEscaped, html};
 use thiserror::Error;
 
 use crate::{
     curves::draw::{Axis, Line, Mark, Plot, Series},
     files::{self, Before, FolderDraft},
-    optics::{Frame, TermSelection, albedo, colour::Encoding, geometry::direction},
+    optics::{Frame, TermSelection, Terms, albedo, colour::Encoding, geometry::direction},
     parameter::Values,
     reference::{self, Picture},
     reflection::{ModelEntry, Surface},
@@ -328,18 +329,14 @@ fn ends(curve: &[(f64, f64)]) -> (f64, f64) {
 /// The directional albedo of a surface by term, for a viewer at an angle from the normal: diffuse and
 /// specular together, and the specular one alone, green channel.
 fn albedo_at(surface: &dyn Surface, degrees: f64) -> (f64, f64) {
-    let v = direction(degrees, 0.0);
-    let frame = &Frame::LOCAL;
-    let all = albedo::directional(|l| surface.response(l, v, frame), v, frame);
-    let specular = albedo::directional(
-        |l| {
-            let terms = surface.response(l, v, frame);
-            crate::optics::Terms { specular: terms.specular, ..Default::default() }
-        },
-        v,
-        frame,
-    );
-    (all.y, specular.y)
+    let specular = |terms: Terms| Terms { specular: terms.specular, ..Terms::default() };
+    (directional(surface, degrees, |terms| terms).y, directional(surface, degrees, specular).y)
+}
+
+/// The directional albedo of terms of a surface.
+fn directional(surface: &dyn Surface, degrees: f64, of: impl Fn(Terms) -> Terms) -> DVec3 {
+    let (v, frame) = (direction(degrees, 0.0), &Frame::LOCAL);
+    albedo::directional(|l| of(surface.response(l, v, frame)), v, frame)
 }
 
 /// A number with a given number of decimals and a true minus sign.

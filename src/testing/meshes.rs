@@ -111,8 +111,7 @@ fn combinations(parameters: &[Parameter]) -> Vec<Values> {
         values.set(p.name, value);
         values
     };
-    let mut defaults = Values::default();
-    parameters.iter().for_each(|p| defaults.set(p.name, p.default_value()));
+    let defaults = Values::each(parameters, Parameter::default_value);
     if parameters.iter().map(|p| p.ends().len()).product::<usize>() > MOST {
         let ends = parameters.iter().flat_map(|p| p.ends().into_iter().map(move |end| (p, end)));
         return ends.map(|(p, end)| with(&defaults, p, end)).collect();

@@ -64,8 +64,10 @@ macro_rules! registered {
     }};
 }
 
-fn registered_model<M: ReflectionModel>() -> Outcome {
-    registered!(M, model, try_add_reflection_model, replace_reflection_model)
+#[track_caller]
+fn assert_model<M: ReflectionModel>(check: impl FnOnce(&ModelEntry) -> Outcome) {
+    let registered = registered!(M, model, try_add_reflection_model, replace_reflection_model);
+    assert(M::DECLARATION.id, registered.and_then(|()| check(&ModelEntry::of::<M>())));
 }
 
 /// Asserts that a reflection model returns finite numbers, obeys the laws that it declares, and violates the
@@ -75,7 +77,7 @@ fn registered_model<M: ReflectionModel>() -> Outcome {
 /// Panics if it does not.
 #[track_caller]
 pub fn assert_laws<M: ReflectionModel>() {
-    assert(M::DECLARATION.id, registered_model::<M>().and_then(|()| laws::all(&ModelEntry::of::<M>())));
+    assert_model::<M>(laws::all);
 }
 
 /// Asserts that the equation of a reflection model can be followed by hand: every line of an explanation
@@ -85,8 +87,7 @@ pub fn assert_laws<M: ReflectionModel>() {
 /// Panics if a line does not.
 #[track_caller]
 pub fn assert_equation<M: ReflectionModel>() {
-    let followed = || equations::followed(&ModelEntry::of::<M>());
-    assert(M::DECLARATION.id, registered_model::<M>().and_then(|()| followed()));
+    assert_model::<M>(equations::followed);
 }
 
 /// Asserts that a reflection model is equal in Rust and in WGSL, which the CPU interprets: to 1e-4, for many
@@ -96,8 +97,7 @@ pub fn assert_equation<M: ReflectionModel>() {
 /// Panics if it is not.
 #[track_caller]
 pub fn assert_parity<M: ReflectionModel>() {
-    let both = || parity::all(&ModelEntry::of::<M>(), &Sources::default());
-    assert(M::DECLARATION.id, registered_model::<M>().and_then(|()| both()));
+    assert_model::<M>(|model| parity::all(model, &Sources::default()));
 }
 
 /// Asserts that a reflection model is equal in Rust and in WGSL on the GPU, including at the ends of all
@@ -107,13 +107,11 @@ pub fn assert_parity<M: ReflectionModel>() {
 /// Panics if it is not, or without a driver.
 #[track_caller]
 pub fn assert_parity_on_gpu<M: ReflectionModel>() {
-    let (model, sources) = (ModelEntry::of::<M>(), Sources::default());
-    let both = || {
-        registered_model::<M>()?;
-        parity::on_gpu(&model, &sources)?;
-        parity::at_the_ends_on_gpu(&model, &sources, &mut { parity::SEED_OF_ENDS })
-    };
-    assert(M::DECLARATION.id, both());
+    let sources = Sources::default();
+    assert_model::<M>(|model| {
+        parity::on_gpu(model, &sources)?;
+        parity::at_the_ends_on_gpu(model, &sources, &mut { parity::SEED_OF_ENDS })
+    });
 }
 
 /// Asserts that a light type is equal in Rust and in WGSL, that its light is finite, not negative,

@@ -1,7 +1,6 @@
 //! Compares reflection models in Rust and in WGSL.
 
 use glam::Vec3;
-use naga::Module;
 
 use super::{
     Outcome, noticed,
@@ -36,12 +35,9 @@ pub fn all(model: &ModelEntry, sources: &Sources) -> Outcome {
     under_uniform_light(model, sources)
 }
 
-fn module(model: &ModelEntry, sources: &Sources) -> Result<Module, String> {
-    check::wgsl::model(sources, model).map_err(|problem| problem.to_string())
-}
-
-fn program(module: &Module, function: &str) -> Result<Program, String> {
-    Program::with_table(module, function, "parameter_table").map_err(|e| format!("{function}: {e}"))
+fn program(model: &ModelEntry, sources: &Sources, function: &str) -> Result<Program, String> {
+    let module = check::wgsl::model(sources, model).map_err(|problem| problem.to_string())?;
+    Program::with_table(&module, function, "parameter_table").map_err(|e| format!("{function}: {e}"))
 }
 
 /// The parameters of a model in the layout of its WGSL, where a struct has at least one field.
@@ -91,24 +87,20 @@ pub fn difference(a: Terms, b: Terms) -> f32 {
 }
 
 /// A comparison, which records whether a slightly wrong twin would have been detected.
+#[derive(Default)]
 struct Comparison {
-    tolerance: f32,
     sensitive: bool,
 }
 
 impl Comparison {
-    fn new(tolerance: f32) -> Self {
-        Self { tolerance, sensitive: false }
-    }
-
     fn compare(&mut self, wgsl: Terms, rust: Terms, case: impl FnOnce() -> String) -> Outcome {
         let error = difference(wgsl, rust);
-        if error > self.tolerance {
+        if error > TOLERANCE {
             return Err(format!("{}: WGSL gives {wgsl:?}, Rust {rust:?}: {error:.1e} apart", case()));
         }
         // 0.05 % more where the tolerance is 1e-4.
-        let wrong = rust.each().map(|term| (1.0 + 5.0 * self.tolerance) * term);
-        self.sensitive |= difference(wgsl, wrong.into()) > self.tolerance;
+        let wrong = rust.each().map(|term| (1.0 + 5.0 * TOLERANCE) * term);
+        self.sensitive |= difference(wgsl, wrong.into()) > TOLERANCE;
         Ok(())
     }
 
@@ -122,10 +114,9 @@ impl Comparison {
 /// # Errors
 /// Returns the first difference.
 pub fn interpreted(model: &ModelEntry, sources: &Sources) -> Outcome {
-    let module = module(model, sources)?;
-    let program = program(&module, "response")?;
+    let program = program(model, sources, "response")?;
     let mut seed = 21;
-    let mut comparison = Comparison::new(TOLERANCE);
+    let mut comparison = Comparison::default();
     for _ in 0..40 {
         let values = random_values(model, &mut seed);
         let twin = Twin::new(&program, model, &values);
@@ -145,8 +136,7 @@ pub fn interpreted(model: &ModelEntry, sources: &Sources) -> Outcome {
 /// # Errors
 /// Returns the first difference.
 pub fn in_any_frame(model: &ModelEntry, sources: &Sources) -> Outcome {
-    let module = module(model, sources)?;
-    let program = program(&module, "response")?;
+    let program = program(model, sources, "response")?;
     let mut seed = 23;
     let values = random_values(model, &mut seed);
     let twin = Twin::new(&program, model, &values);
@@ -169,8 +159,7 @@ pub fn in_any_frame(model: &ModelEntry, sources: &Sources) -> Outcome {
 /// # Errors
 /// Returns the first difference.
 pub fn under_uniform_light(model: &ModelEntry, sources: &Sources) -> Outcome {
-    let module = module(model, sources)?;
-    let program = program(&module, "ambient_response")?;
+    let program = program(model, sources, "ambient_response")?;
     let mut seed = 24;
     for _ in 0..5 {
         let values = random_values(model, &mut seed);
@@ -204,7 +193,7 @@ pub fn on_gpu(model: &ModelEntry, sources: &Sources) -> Outcome {
     let mut seed = 7;
     // Every choice should occur.
     let choices = model.parameters.iter().filter(|p| !p.kind.options().is_empty()).count();
-    let mut comparison = Comparison::new(TOLERANCE);
+    let mut comparison = Comparison::default();
     for _ in 0..8 * (1 + choices) {
         let values = random_values(model, &mut seed);
         let pairs: Vec<_> = (0..2000).map(|_| (direction(&mut seed), direction(&mut seed))).collect();
@@ -235,17 +224,15 @@ pub fn at_the_ends_on_gpu(model: &ModelEntry, sources: &Sources, seed: &mut u64)
     let mut sensitive = false;
     // All at the minimum, all at the maximum, then each at either.
     for set in 0..10 {
-        let mut values = Values::default();
-        for p in model.parameters {
+        let values = Values::each(model.parameters, |p| {
             let high = if set < 2 { set == 1 } else { random(seed) < 0.5 };
             let ends = p.kind.ends();
             let i = match p.kind.limits() {
                 Some(_) => usize::from(high),
                 None => (random(seed) * ends.len() as f32) as usize,
             };
-            let value = ends.into_iter().nth(i).unwrap_or_else(|| p.default_value());
-            values.set(p.name, value);
-        }
+            ends.into_iter().nth(i).unwrap_or_else(|| p.default_value())
+        });
         let answers = evaluate(sources, model, &values, Encoding::Srgb, &pairs).map_err(|e| e.to_string())?;
         let surface = model.instantiate(&values, Encoding::Srgb);
         for ((l, v), gpu) in pairs.iter().zip(answers) {

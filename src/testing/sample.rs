@@ -45,9 +45,7 @@ pub fn random_values(model: &ModelEntry, seed: &mut u64) -> Values {
 
 /// Legal values of parameters.
 pub(super) fn values_of(parameters: &[Parameter], seed: &mut u64) -> Values {
-    let mut values = Values::default();
-    parameters.iter().for_each(|p| values.set(p.name, random_value(p, seed)));
-    values
+    Values::each(parameters, |p| random_value(p, seed))
 }
 
 /// A point in the default room.

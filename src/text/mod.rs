@@ -14,7 +14,7 @@ pub mod xml;
 pub use list::items;
 pub use words::{
     capitalised, detailed, did_you_mean, listed, nearest, number, one_of, per_cent, plural, quoted, sentence,
-    shortened, superscript, with_article,
+    shortened, superscript, trimmed, with_article, wrapped,
 };
 
 /// The bytes of a UTF-8 text without the byte order mark that some programs write first.

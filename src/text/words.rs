@@ -1,5 +1,7 @@
 //! Words for messages: lists, numbers, quotations, the nearest spelling.
 
+use std::mem;
+
 use serde_json::Value as Json;
 
 /// "a", "a or b", "a, b or c".
@@ -13,6 +15,22 @@ pub fn listed(items: &[impl AsRef<str>], conjunction: &str) -> String {
             format!("{} {conjunction} {}", first.join(", "), last.as_ref())
         }
     }
+}
+
+/// A text in lines of at most so many characters, broken at spaces; at least one line. Longer words stay whole.
+#[must_use]
+pub fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let (mut lines, mut line) = (Vec::new(), String::new());
+    for word in text.split_whitespace() {
+        if line.chars().count() + 1 + word.chars().count() > width && !line.is_empty() {
+            lines.push(mem::take(&mut line));
+        } else if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    lines.push(line);
+    lines
 }
 
 /// The target with the spelling nearest to the given one, if it is near enough. Each candidate is a spelling
@@ -49,6 +67,12 @@ pub fn detailed(message: &str, detail: &str) -> String {
     let question = message.rfind("; did you mean").filter(|_| message.ends_with('?'));
     let (said, question) = message.split_at(question.unwrap_or(message.len()));
     format!("{said}; {detail}{question}")
+}
+
+/// A decimal fraction without trailing zeros.
+#[must_use]
+pub fn trimmed(text: String) -> String {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// A fraction in per cent, with two digits: "12 %", "1.2 %", "0.12 %", "< 0.01 %".

@@ -19,7 +19,13 @@ pub fn legal(text: &str) -> String {
 /// A text with XML's special characters escaped, for texts and attributes.
 #[must_use]
 pub fn escaped(text: &str) -> String {
-    legal(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    marked(&legal(text))
+}
+
+/// A text with the special characters that XML and HTML share escaped.
+#[must_use]
+pub fn marked(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// A text for a comment, which must neither contain `--` nor end with `-`.

@@ -30,7 +30,7 @@ pub(super) static DRAWING: Drawing = Drawing {
     },
     compose: |comparison, size, shown| {
         let views: Vec<_> = (0..shown.len()).collect();
-        let mut canvas = Canvas::new(size, DARK);
+        let mut canvas = Canvas { size, rgb8: DARK.repeat(size[0] as usize * size[1] as usize) };
         for (cell, shown) in cells(&views, size).unwrap_or_default().into_iter().zip(shown) {
             let Cell { left, top, width, height, .. } = cell;
             if shown.size() != [width, height] {

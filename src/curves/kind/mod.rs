@@ -38,42 +38,6 @@ impl Kind {
         self.declaration().name
     }
 
-    /// The quantity with its unit, for an axis.
-    #[must_use]
-    pub fn quantity(self) -> &'static str {
-        self.declaration().quantity
-    }
-
-    /// The angle of the horizontal axis, with its unit.
-    #[must_use]
-    pub fn angle(self) -> &'static str {
-        self.declaration().horizontal.name
-    }
-
-    /// True if the quantity depends on the angle of the light.
-    #[must_use]
-    pub fn has_light(self) -> bool {
-        self.declaration().has_light
-    }
-
-    /// True if it depends on the azimuth.
-    #[must_use]
-    pub fn has_azimuth(self) -> bool {
-        self.declaration().has_azimuth
-    }
-
-    /// True if the quantity has no colour channels.
-    #[must_use]
-    pub fn is_scalar(self) -> bool {
-        self.declaration().is_scalar
-    }
-
-    /// The shape of its figure.
-    #[must_use]
-    pub fn form(self) -> Form {
-        self.declaration().form
-    }
-
     /// Every quantity in words, for the help of the command line: neighbours with the same remark share it.
     #[must_use]
     pub fn listed() -> String {

@@ -3,7 +3,11 @@
 use glam::{Vec2, Vec3};
 
 use super::{Above, DISCS, Disc, Hemisphere};
-use crate::{explain::rounded, lettering::Lettering, optics::colour::srgb_encode8};
+use crate::{
+    explain::rounded,
+    lettering::{Lettering, pixel},
+    optics::colour::srgb_encode8,
+};
 
 /// A picture with its description.
 #[derive(Clone, Debug)]
@@ -150,9 +154,8 @@ struct Canvas {
 
 impl Canvas {
     fn dot(&mut self, [x, y]: [u32; 2], colour: [u8; 3]) {
-        if x < self.size[0] && y < self.size[1] {
-            let at = 3 * (y * self.size[0] + x) as usize;
-            self.rgb8[at..at + 3].copy_from_slice(&colour);
+        if let Some(pixel) = pixel(&mut self.rgb8, self.size, [x, y].map(i64::from)) {
+            *pixel = colour;
         }
     }
 
@@ -165,11 +168,9 @@ impl Canvas {
             for column in range(x, self.size[0]) {
                 let from = Vec2::new(column as f32 + 0.5 - x, row as f32 + 0.5 - y).length();
                 let part = (0.5 * width + 0.5 - (from - radius).abs()).clamp(0.0, 1.0);
-                if part > 0.0 {
-                    let at = 3 * (row * self.size[0] + column) as usize;
-                    let old: [u8; 3] = std::array::from_fn(|c| self.rgb8[at + c]);
-                    let mix = |c: usize| f32::from(old[c]) * (1.0 - part) + f32::from(colour[c]) * part;
-                    self.dot([column, row], std::array::from_fn(|c| mix(c).round() as u8));
+                let pixel = pixel(&mut self.rgb8, self.size, [column, row].map(i64::from));
+                for (old, new) in pixel.into_iter().flatten().zip(colour) {
+                    *old = (f32::from(*old) * (1.0 - part) + f32::from(new) * part).round() as u8;
                 }
             }
         }

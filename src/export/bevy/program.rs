@@ -11,7 +11,7 @@ use super::words::{camel, comment, field as field_name, kind, number, snake, str
 use crate::{
     export::{
         Request,
-        lights::{LightField, size},
+        lights::LightField,
         lit::{Lit, Material, MeshData, Program},
         names::Names,
     },
@@ -19,14 +19,17 @@ use crate::{
         albedo::NODES,
         colour::{BACKGROUND, Encoding},
         lobes::MAX_LOBES,
-        tone::ToneMapping,
     },
-    parameter::Parameter,
+    parameter::{Parameter, lanes},
+    render::camera::tonemapping,
     scene::{
         Background,
         observer::{NEAR, orientation},
     },
-    text::template::{chosen, filled},
+    text::{
+        template::{chosen, filled},
+        wrapped,
+    },
 };
 
 /// The program for a scene; `package` is its name.
@@ -79,7 +82,7 @@ pub(super) fn text(lit: &Lit, package: &str) -> String {
             ("package", &package),
             ("window", &string(title)),
             ("plugins", &all(&plugin)),
-            ("tone_mapping", &tonemapping(scene.display.tone_mapping)),
+            ("tone_mapping", &format!("{:?}", tonemapping(scene.display.tone_mapping))),
             ("up", &up(observer.direction)),
             ("meshes", &meshes.iter().map(|name| format!("    {name}: Handle<Mesh>,\n")).collect::<String>()),
             ("shaders", &shaders(lit)),
@@ -97,21 +100,9 @@ fn attributes(polygons: bool) -> &'static str {
 
 /// A comment above a declaration, wrapped to the line width.
 fn doc(out: &mut String, text: &str, indent: &str, mark: &str) {
-    const WIDTH: usize = 100;
-    let mut line = String::new();
-    for word in comment(text).split_whitespace() {
-        if !line.is_empty()
-            && indent.len() + mark.len() + 2 + line.chars().count() + word.chars().count() > WIDTH
-        {
-            let _ = writeln!(out, "{indent}{mark} {line}");
-            line.clear();
-        }
-        if !line.is_empty() {
-            line.push(' ');
-        }
-        line.push_str(word);
-    }
-    if !line.is_empty() {
+    const WIDTH: usize = 99;
+    let lines = wrapped(&comment(text), WIDTH - indent.len() - mark.len());
+    for line in lines.iter().filter(|line| !line.is_empty()) {
         let _ = writeln!(out, "{indent}{mark} {line}");
     }
 }
@@ -147,7 +138,7 @@ fn lights(lit: &Lit) -> String {
         light(&mut out, &|field| row.words(field));
     }
     if lit.lights.rows.is_empty() {
-        light(&mut out, &|field| vec![0; size(field.kind)]);
+        light(&mut out, &|field| vec![0; lanes(field.kind)]);
     }
     out
 }
@@ -248,7 +239,7 @@ fn fields(all: &[Parameter]) -> String {
         let own = p.symbol.is_empty() || p.symbol == p.label;
         let symbol = if own { String::new() } else { format!("{}: ", p.symbol) };
         doc(&mut out, &format!("{symbol}{}{unit}.", p.label), "    ", "///");
-        let _ = writeln!(out, "    {}: {},", field_name(p.name), kind(p.wgsl_type()));
+        let _ = writeln!(out, "    {}: {},", field_name(p.name), kind(p.kind.wgsl()));
     }
     if all.is_empty() {
         out.push_str("    unused: f32,\n");
@@ -300,20 +291,6 @@ fn curve_type(length: usize) -> String {
         format!("AlbedoCurve{}", length / NODES)
     } else {
         format!("AlbedoCurveOf{length}")
-    }
-}
-
-/// The name of a tone mapping in Bevy.
-fn tonemapping(tone: ToneMapping) -> &'static str {
-    match tone {
-        ToneMapping::None => "None",
-        ToneMapping::Reinhard => "Reinhard",
-        ToneMapping::ReinhardLuminance => "ReinhardLuminance",
-        ToneMapping::Aces => "AcesFitted",
-        ToneMapping::AgX => "AgX",
-        ToneMapping::TonyMcMapface => "TonyMcMapface",
-        ToneMapping::BlenderFilmic => "BlenderFilmic",
-        ToneMapping::KhronosPbrNeutral => "KhronosPbrNeutral",
     }
 }
 

@@ -5,6 +5,7 @@ use glam::Vec3;
 use crate::{
     optics::colour::Encoding,
     parameter::{Parameter, Value, Values, lanes},
+    text::capitalised,
 };
 
 /// The name of a package: lower-case letters, digits and underscores, beginning with a letter.
@@ -46,13 +47,8 @@ pub(super) fn snake(text: &str) -> String {
 
 /// Converts a lower-case name to a type name.
 pub(super) fn camel(snake: &str) -> String {
-    let capital = |word: &str| {
-        let mut letters = word.chars();
-        // Two underscores in a row distinguish names that would look alike.
-        letters
-            .next()
-            .map_or_else(|| "_".to_owned(), |c| c.to_ascii_uppercase().to_string() + letters.as_str())
-    };
+    // Two underscores in a row distinguish names that would look alike.
+    let capital = |word: &str| if word.is_empty() { "_".to_owned() } else { capitalised(word) };
     snake.split('_').map(capital).collect()
 }
 
@@ -88,7 +84,7 @@ pub(super) fn value(p: &Parameter, values: &Values, encoding: Encoding) -> (Stri
     }
     p.kind.words(&given, encoding, &mut words);
     let all: Vec<_> = words.iter().map(|word| f32::from_bits(*word)).collect();
-    match (p.wgsl_type(), &all[..]) {
+    match (p.kind.wgsl(), &all[..]) {
         ("u32", _) => {
             let name = p.kind.options().get(words[0] as usize).map(|(_, name)| (*name).to_owned());
             (words[0].to_string(), name)
@@ -107,21 +103,20 @@ pub(super) fn field(name: &str) -> String {
     if is_reserved(name) { format!("{name}_") } else { name.to_owned() }
 }
 
+/// True for characters that change the text direction.
+fn turns(c: char) -> bool {
+    matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
 /// A text for comments: one line, without control characters of terminals or editors.
 pub(super) fn comment(text: &str) -> String {
-    let acts = |c: char| {
-        c.is_control()
-            || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-    };
-    text.chars().map(|c| if acts(c) { ' ' } else { c }).collect()
+    text.replace(|c: char| c.is_control() || turns(c), " ")
 }
 
 /// A text as a Rust string.
 pub(super) fn string(text: &str) -> String {
-    // Debug escapes control characters; those that change the text direction must be escaped too.
-    let turns = |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let plain: String = text.chars().filter(|c| !turns(*c)).collect();
-    format!("{plain:?}")
+    // Debug escapes control characters.
+    format!("{:?}", text.replace(turns, ""))
 }
 
 #[cfg(test)]

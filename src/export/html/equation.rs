@@ -1,22 +1,8 @@
 //! Equations and symbols as HTML: italic letters, upright words, subscripts and superscripts.
 
-use crate::text::mathematics::{Atom, parse, parse_symbol};
+pub use crate::text::xml::marked as escaped;
 
-/// A text with HTML's special characters escaped.
-#[must_use]
-pub fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            c => escaped.push(c),
-        }
-    }
-    escaped
-}
+use crate::text::mathematics::{Atom, parse, parse_symbol};
 
 /// An equation.
 #[must_use]

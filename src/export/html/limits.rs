@@ -1,8 +1,6 @@
 //! Limits of browsers: the minimum that WebGPU guarantees by default, and that of WebGL 2 on nearly every
 //! device. A page beyond these limits would only fail for its readers.
 
-use serde_json::Value as Json;
-
 use crate::{export::ExportError, shape::PolygonMesh};
 
 /// Bytes in one uniform buffer.
@@ -51,15 +49,6 @@ fn vertices(corners: usize) -> Result<(), ExportError> {
     Err(ExportError::refused(format!(
         "its mesh has {corners} corners of polygons, and browsers take {most}; a coarser mesh has fewer"
     )))
-}
-
-/// Checks the uniforms listed in the data of the page.
-///
-/// # Errors
-/// See [`uniforms`].
-pub fn listed(all: &[Json]) -> Result<(), ExportError> {
-    let size = |json: &Json| json["size"].as_u64().unwrap_or(u64::MAX) as usize;
-    uniforms(all.iter().map(|json| (json["name"].as_str().unwrap_or_default(), size(json))))
 }
 
 #[cfg(test)]

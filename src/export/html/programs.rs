@@ -37,16 +37,17 @@ pub fn program(
     let text = &program.shader.text;
     let (checked, info) = module(text)?;
     let mut all = Vec::new();
-    for (binding, name, bytes) in uniforms(&checked, lit, drawn, 1.0) {
+    let given = uniforms(&checked, lit, drawn, 1.0);
+    for (binding, name, bytes) in &given {
         let own = OF_OBJECTS.contains(&name.as_str());
         all.push(json!({
             "binding": binding,
             "name": name,
             "size": bytes.len(),
-            "block": (!own).then(|| blocks.add(&bytes)),
+            "block": (!own).then(|| blocks.add(bytes)),
         }));
     }
-    limits::listed(&all)?;
+    limits::uniforms(given.iter().map(|(_, name, bytes)| (name.as_str(), bytes.len())))?;
     let mut stages = Vec::new();
     for entry in ENTRY_POINTS {
         stages.push(stage(&glsl(&checked, &info, WEBGL, entry)?, texts));

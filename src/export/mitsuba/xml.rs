@@ -25,11 +25,6 @@ impl Xml {
         Self { open: open.into(), within: Vec::new() }
     }
 
-    /// A comment.
-    fn comment(text: &str) -> Self {
-        Self { open: format!("!-- {} --", harmless(text)), within: Vec::new() }
-    }
-
     /// The element with a child added.
     pub(super) fn with(mut self, child: Self) -> Self {
         self.within.push(child);
@@ -38,7 +33,7 @@ impl Xml {
 
     /// The element with a comment added.
     pub(super) fn says(self, text: &str) -> Self {
-        self.with(Self::comment(text))
+        self.with(Self { open: format!("!-- {} --", harmless(text)), within: Vec::new() })
     }
 
     /// The element with a property added: `<float name="fov" value="45"/>`.

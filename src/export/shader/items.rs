@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::shader::definitions::block_comment;
+use crate::shader::definitions::{block_comment, comment};
 
 /// A top-level declaration in a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,12 +64,8 @@ fn end_of(text: &str) -> usize {
     let mut at = 0;
     while let Some(c) = text[at..].chars().next() {
         let rest = &text[at..];
-        if rest.starts_with("//") {
-            at += rest.find('\n').unwrap_or(rest.len());
-            continue;
-        }
-        if rest.starts_with("/*") {
-            at = block_comment(text, at).unwrap_or(text.len());
+        if let Some(end) = comment(text, at) {
+            at = end;
             continue;
         }
         if rest.starts_with("#{") {
@@ -112,10 +108,8 @@ fn words(text: &str) -> Vec<(&str, bool)> {
     let mut field = false;
     while let Some(c) = text[at..].chars().next() {
         let rest = &text[at..];
-        if rest.starts_with("//") {
-            at += rest.find('\n').unwrap_or(rest.len());
-        } else if rest.starts_with("/*") {
-            at = block_comment(text, at).unwrap_or(text.len());
+        if let Some(end) = comment(text, at) {
+            at = end;
         } else if c.is_alphanumeric() || c == '_' {
             let length = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
             found.push((&rest[..length], field));

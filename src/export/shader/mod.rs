@@ -32,7 +32,10 @@ use crate::{
         },
     },
     shading::{self, ShadingEntry, Stage},
-    text::template::{chosen, filled},
+    text::{
+        self,
+        template::{chosen, filled},
+    },
 };
 
 pub mod items;
@@ -380,20 +383,8 @@ fn wrapped(line: &str) -> Vec<String> {
     /// Characters in a line.
     const WIDTH: usize = 96;
     let indent = &line[..line.len() - line.trim_start().len()];
-    let mut lines = vec![indent.to_owned()];
-    for word in line.split_whitespace() {
-        let last = lines.last_mut().map(|last| last.chars().count()).unwrap_or_default();
-        if last > indent.len() && last + 1 + word.chars().count() > WIDTH {
-            lines.push(indent.to_owned());
-        }
-        if let Some(last) = lines.last_mut() {
-            if last.len() > indent.len() {
-                last.push(' ');
-            }
-            last.push_str(word);
-        }
-    }
-    lines
+    let lines = text::wrapped(line, WIDTH.saturating_sub(indent.chars().count()));
+    lines.into_iter().map(|line| format!("{indent}{line}")).collect()
 }
 
 /// The validated module of a self-contained shader.

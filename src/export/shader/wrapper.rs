@@ -26,7 +26,7 @@ pub(super) fn group(host: Host) -> &'static str {
 /// with `samples`, pixels have a seed.
 pub(super) fn text(host: Host, faces: bool, samples: bool) -> String {
     let (name, tone, exposure) = match host {
-        Host::Alone { tone, .. } => ("alone", tone_function(tone), 1.0),
+        Host::Alone { tone, .. } => ("alone", format!("tone_{}", tone.id()), 1.0),
         Host::Bevy { exposure, .. } => ("bevy", String::new(), exposure),
     };
     // From light to the colour of the pixel.
@@ -44,9 +44,4 @@ pub(super) fn text(host: Host, faces: bool, samples: bool) -> String {
     };
     let text = chosen(include_str!("wrapper.wgsl"), wanted);
     filled(&text, &[("tone", &tone), ("exposure", &format!("{exposure:?}"))])
-}
-
-/// The function of a tone mapping in `tone.wgsl`.
-pub(super) fn tone_function(tone: ToneMapping) -> String {
-    format!("tone_{}", tone.id())
 }

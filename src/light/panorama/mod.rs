@@ -84,7 +84,7 @@ impl<'a> Panorama<'a> {
     #[must_use]
     pub fn seen(&self, direction: Vec3) -> (Vec3, f32) {
         let radiance = self.radiance(direction);
-        (radiance, self.pdf_of(radiance))
+        (radiance, if self.total == 0.0 { 0.5 / TAU } else { luminance(radiance) / self.total })
     }
 
     /// The probability density of a direction in [`sample`](Self::sample), sr⁻¹: proportional to its
@@ -92,10 +92,6 @@ impl<'a> Panorama<'a> {
     #[must_use]
     pub fn pdf(&self, direction: Vec3) -> f32 {
         self.seen(direction).1
-    }
-
-    fn pdf_of(&self, radiance: Vec3) -> f32 {
-        if self.total == 0.0 { 0.5 / TAU } else { luminance(radiance) / self.total }
     }
 
     /// A direction for a point of the unit square, with its light and probability density.

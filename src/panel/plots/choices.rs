@@ -21,7 +21,7 @@ pub(super) fn row(ui: &mut Ui, context: &mut PanelContext<'_>) {
             ask(PlotCommand::Kind(kind));
         }
         ui.add_space(8.0);
-        let light = plots.kind.has_light();
+        let light = plots.kind.declaration().has_light;
         let limits = Limits::between(0.0, MOST_LIGHT);
         let help = "The angle between light and normal, 0° to 89°. The handle in the plot changes it, too.";
         let name = "Angle of the light θ_i in degrees";
@@ -31,7 +31,7 @@ pub(super) fn row(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let limits = Limits::between(-360.0, 360.0).slider(0.0, 360.0);
         let help = "The azimuth of the plane from the tangent. It matters to anisotropic models: brushed metal, hair.";
         let name = "Azimuth φ in degrees";
-        let turns = plots.kind.has_azimuth();
+        let turns = plots.kind.declaration().has_azimuth;
         if let Some(angle) = angle(ui, ["φ", name, help], plots.phi_i, &limits, turns) {
             ask(PlotCommand::Azimuth(angle));
         }
@@ -42,8 +42,8 @@ pub(super) fn row(ui: &mut Ui, context: &mut PanelContext<'_>) {
             ask(PlotCommand::Log(log));
         }
         ui.add_space(8.0);
-        if !plots.kind.is_scalar() {
-            let plain = match plots.kind.form() {
+        if !plots.kind.declaration().is_scalar {
+            let plain = match plots.kind.declaration().form {
                 Form::Slices => (None, "in colour", "Red, green and blue at once."),
                 Form::Plot | Form::Polar => (None, "luminance", "The brightness, after ITU-R BT.709."),
             };

@@ -27,7 +27,7 @@ pub(in crate::panel) fn offer(dialog: &mut FileDialog) {
     let config = std::mem::take(dialog.config_mut());
     let mut config = Format::ALL
         .into_iter()
-        .fold(config, |config, format| config.add_save_extension(name(format), format.extension()));
+        .fold(config, |config, format| config.add_save_extension(name(format), format.id()));
     config.default_save_extension = Some(name(Format::Svg).to_owned());
     *dialog.config_mut() = config;
 }
@@ -36,7 +36,7 @@ pub(in crate::panel) fn offer(dialog: &mut FileDialog) {
 #[must_use]
 pub fn file_of(typed: &Path) -> PathBuf {
     match (typed.extension(), typed.file_stem().map(Path::new)) {
-        (None, _) => typed.with_extension(Format::Svg.extension()),
+        (None, _) => typed.with_extension(Format::Svg.id()),
         // The dialog adds an extension to whatever is typed.
         (Some(_), Some(stem)) if Format::of(typed).is_ok() && Format::of(stem).is_ok() => {
             typed.with_file_name(stem)

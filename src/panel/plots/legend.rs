@@ -49,7 +49,7 @@ pub(super) fn show(
     context: &mut PanelContext<'_>,
 ) -> Option<Slot> {
     buttons(ui, context);
-    let quantity = request.setup.kind.quantity();
+    let quantity = request.setup.kind.declaration().quantity;
     let heading = panel.reading.map_or_else(String::new, |at| format!("{quantity} {}", at.name()));
     // The line is there before it says something: nothing moves under the pointer.
     ui.label(theme::small(ui, if heading.is_empty() { " " } else { &heading }));
@@ -211,7 +211,7 @@ fn style(
     kind: Kind,
     context: &mut PanelContext<'_>,
 ) {
-    if kind.form() == Form::Slices {
+    if kind.declaration().form == Form::Slices {
         return;
     }
     let built = panel.figure.as_ref().and_then(|built| built.series(entry.slot));

@@ -120,7 +120,7 @@ impl Recipe {
                 return Err(NoCurve::Because(format!("There is no reflection model “{id}”")));
             }
         };
-        let made = match setup.kind.form() {
+        let made = match setup.kind.declaration().form {
             Form::Slices => slice(&subject, setup, detail, progress).map(Drawn::Slice),
             Form::Plot | Form::Polar => curve(&subject, setup, detail, progress).map(Drawn::Curve),
         };
@@ -191,8 +191,8 @@ impl Request {
         let Setup { kind, theta_i, phi_i } = self.setup;
         Setup {
             kind,
-            theta_i: if kind.has_light() { theta_i } else { 0.0 },
-            phi_i: if kind.has_azimuth() { phi_i } else { 0.0 },
+            theta_i: if kind.declaration().has_light { theta_i } else { 0.0 },
+            phi_i: if kind.declaration().has_azimuth { phi_i } else { 0.0 },
         }
     }
 

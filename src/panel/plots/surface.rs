@@ -53,7 +53,7 @@ impl PlotPanel {
             response.request_focus();
         }
         theme::says(&response, WidgetType::Image, says);
-        if request.setup.kind.has_light() {
+        if request.setup.kind.declaration().has_light {
             handle::show(ui, &screen, &ground, unit, context);
         }
         match (empty, self.reading) {
@@ -172,7 +172,7 @@ fn walked(
     [from, to]: [f64; 2],
 ) -> Option<Reading> {
     let [step, _] = focus::steps(ui, response, [true, false]);
-    let start = if request.setup.kind.has_light() { request.setup.theta_i } else { 0.0 };
+    let start = if request.setup.kind.declaration().has_light { request.setup.theta_i } else { 0.0 };
     let angle = match now {
         Some(Reading::Angle(angle)) => angle,
         Some(other) => return Some(other),

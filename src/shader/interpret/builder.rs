@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use super::{
-    Unsupported,
+    Result, Unsupported,
     instruction::{Instruction, Operation, REGISTERS},
+    unsupported,
 };
 
 /// The most instructions, calls and expressions of a program with all calls inlined.
@@ -18,8 +19,6 @@ pub(super) enum Operand {
     Constant(u32),
     Register(u16),
 }
-
-type Result<T> = std::result::Result<T, Unsupported>;
 
 fn too_large() -> Unsupported {
     Unsupported { what: "it is too large with all calls inlined".to_owned() }
@@ -55,7 +54,7 @@ impl Builder {
     pub(super) fn enter(&mut self) -> Result<()> {
         self.depth += 1;
         if self.depth > DEPTH {
-            return Err(Unsupported { what: "its blocks and calls are nested too deeply".to_owned() });
+            return unsupported("its blocks and calls are nested too deeply");
         }
         Ok(())
     }
@@ -141,20 +140,13 @@ impl Builder {
             return Ok(Operand::Constant(operation.evaluate([a, b, c])));
         }
         let settled = words.iter().all(|w| self.settled(*w));
-        if settled && let Some(&register) = self.known.get(&(operation, words)) {
-            return Ok(Operand::Register(register));
-        }
-        let mut registers = [0; 3];
-        for (register, word) in registers.iter_mut().zip(words).take(operation.arity()) {
-            *register = self.register(word)?;
-        }
-        let d = self.allocate(1, false)?;
-        self.push(Instruction::new(operation, d, registers))?;
-        if settled {
-            self.known.insert((operation, words), d);
-            self.log.push((operation, words));
-        }
-        Ok(Operand::Register(d))
+        self.once((operation, words), settled, |this| {
+            let mut registers = [0; 3];
+            for (register, word) in registers.iter_mut().zip(words).take(operation.arity()) {
+                *register = this.register(word)?;
+            }
+            Ok(registers)
+        })
     }
 
     /// The product of two vectors of three words, in one instruction if each is in consecutive registers.
@@ -166,16 +158,27 @@ impl Builder {
         let settled = a.iter().chain(b).all(|w| self.settled(*w));
         let key =
             (Operation::Dot, [Operand::Register(first), Operand::Register(second), Operand::Constant(0)]);
+        self.once(key, settled, |_| Ok([first, second, 0])).map(Some)
+    }
+
+    /// The result of an operation, which is calculated once if the operands are settled.
+    fn once(
+        &mut self,
+        key: (Operation, [Operand; 3]),
+        settled: bool,
+        registers: impl FnOnce(&mut Self) -> Result<[u16; 3]>,
+    ) -> Result<Operand> {
         if settled && let Some(&register) = self.known.get(&key) {
-            return Ok(Some(Operand::Register(register)));
+            return Ok(Operand::Register(register));
         }
+        let registers = registers(self)?;
         let d = self.allocate(1, false)?;
-        self.push(Instruction::new(Operation::Dot, d, [first, second, 0]))?;
+        self.push(Instruction::new(key.0, d, registers))?;
         if settled {
             self.known.insert(key, d);
             self.log.push(key);
         }
-        Ok(Some(Operand::Register(d)))
+        Ok(Operand::Register(d))
     }
 
     /// Assigns a value to a variable.

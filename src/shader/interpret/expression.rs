@@ -5,10 +5,12 @@ use std::rc::Rc;
 use naga::{BinaryOperator, Expression, RelationalFunction, ScalarKind, TypeInner, UnaryOperator};
 
 use super::{
+    Result,
     builder::Operand,
     instruction::Operation as O,
-    lower::{Frame, Lowering, Place, Result, Value, literal, unsupported},
+    lower::{Frame, Lowering, Place, Value, literal},
     shape::{self, Layout},
+    unsupported,
 };
 use crate::shader::blocks::Expr;
 

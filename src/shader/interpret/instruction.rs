@@ -71,17 +71,14 @@ fn arity<Types, F: Pure<Types>>(_: F) -> usize {
 }
 
 macro_rules! operations {
-    (
-        { $($name:ident = $function:expr;)* }
-        // In each of the following pairs, the second applies the first to three words.
-        { $($single:ident $triple:ident = $part:expr;)* }
-    ) => {
+    // In a pair, the second applies the first to three words.
+    ($($name:ident $($triple:ident)? = $function:expr;)*) => {
         /// The operation of an instruction. Pure ones write a function of registers `a`, `b`, `c` to `d`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u8)]
         pub(super) enum Operation {
             $($name,)*
-            $($triple,)*
+            $($($triple,)?)*
             /// Multiplies three words from `a` on by three from `b` on, and writes the sum to `d`.
             Dot,
             /// Jumps to the target.
@@ -112,7 +109,7 @@ macro_rules! operations {
             /// The operation that applies this one to three words.
             pub(super) fn triple(self) -> Option<Self> {
                 match self {
-                    $(Self::$single => Some(Self::$triple),)*
+                    $($(Self::$name => Some(Self::$triple),)?)*
                     _ => None,
                 }
             }
@@ -141,10 +138,10 @@ macro_rules! operations {
                         let value = Pure::apply($function, |k| registers[usize::from([i.a, i.b, i.c][k])]);
                         registers[d] = value;
                     })*
-                    $(Operation::$triple => for k in 0..3 {
-                        let value = Pure::apply($part, |n| registers[usize::from(i.word(n, k))]);
+                    $($(Operation::$triple => for k in 0..3 {
+                        let value = Pure::apply($function, |n| registers[usize::from(i.word(n, k))]);
                         registers[usize::from(i.d.wrapping_add(k))] = value;
-                    })*
+                    })?)*
                     Operation::Dot => {
                         let product = |k: u16| {
                             registers[usize::from(i.a.wrapping_add(k))] * registers[usize::from(i.b.wrapping_add(k))]
@@ -188,20 +185,19 @@ macro_rules! operations {
 }
 
 operations! {
-{
-    Copy = |a: u32| a;
+    Copy Copy3 = |a: u32| a;
     // The offset of an element: indices beyond the end refer to the last element, as on the GPU.
     Index = |i: u32, last: u32, stride: u32| i.min(last).wrapping_mul(stride);
-    Select = |condition: bool, a: u32, b: u32| if condition { a } else { b };
+    Select Select3 = |condition: bool, a: u32, b: u32| if condition { a } else { b };
 
-    AddF = |a: f32, b: f32| a + b;
-    SubF = |a: f32, b: f32| a - b;
-    MulF = |a: f32, b: f32| a * b;
-    DivF = |a: f32, b: f32| a / b;
+    AddF AddF3 = |a: f32, b: f32| a + b;
+    SubF SubF3 = |a: f32, b: f32| a - b;
+    MulF MulF3 = |a: f32, b: f32| a * b;
+    DivF DivF3 = |a: f32, b: f32| a / b;
     RemF = |a: f32, b: f32| a % b;
     NegF = |a: f32| -a;
     // Rounded twice, as by separate instructions.
-    MulAddF = |a: f32, b: f32, c: f32| a * b + c;
+    MulAddF MulAddF3 = |a: f32, b: f32, c: f32| a * b + c;
     EqualF = |a: f32, b: f32| a == b;
     NotEqualF = |a: f32, b: f32| a != b;
     LessF = |a: f32, b: f32| a < b;
@@ -242,8 +238,8 @@ operations! {
     AbsF = f32::abs;
     SignF = |a: f32| if a > 0.0 { 1.0f32 } else if a < 0.0 { -1.0 } else { 0.0 };
     MinF = f32::min;
-    MaxF = f32::max;
-    ClampF = clamp;
+    MaxF MaxF3 = f32::max;
+    ClampF ClampF3 = clamp;
     Ceil = f32::ceil;
     Floor = f32::floor;
     Round = f32::round_ties_even;
@@ -272,7 +268,7 @@ operations! {
     Radians = |a: f32| a * (PI / 180.0);
     Degrees = |a: f32| a * (180.0 / PI);
     Step = |edge: f32, x: f32| if edge <= x { 1.0f32 } else { 0.0 };
-    Mix = |a: f32, b: f32, t: f32| a * (1.0 - t) + b * t;
+    Mix Mix3 = |a: f32, b: f32, t: f32| a * (1.0 - t) + b * t;
     SmoothStep = smooth_step;
     Ldexp = |a: f32, e: i32| (f64::from(a) * f64::from(e.clamp(-300, 300)).exp2()) as f32;
     FrexpFraction = |a: f32| frexp(a).0;
@@ -304,19 +300,6 @@ operations! {
         (_, 0) => 0,
         (offset, count) => u32::MAX >> (32 - count) << offset,
     };
-}
-{
-    Copy Copy3 = |a: u32| a;
-    Select Select3 = |condition: bool, a: u32, b: u32| if condition { a } else { b };
-    AddF AddF3 = |a: f32, b: f32| a + b;
-    SubF SubF3 = |a: f32, b: f32| a - b;
-    MulF MulF3 = |a: f32, b: f32| a * b;
-    DivF DivF3 = |a: f32, b: f32| a / b;
-    MulAddF MulAddF3 = |a: f32, b: f32, c: f32| a * b + c;
-    Mix Mix3 = |a: f32, b: f32, t: f32| a * (1.0 - t) + b * t;
-    MaxF MaxF3 = f32::max;
-    ClampF ClampF3 = clamp;
-}
 }
 
 /// A number within bounds; the upper bound if they are swapped; the lower bound for NaN.
@@ -410,10 +393,5 @@ impl Instruction {
     /// The register written by the instruction, if any, and if its number is known.
     pub(super) fn writes(self) -> Option<u16> {
         (!self.jumps() && self.operation != Operation::StoreAt).then_some(self.d)
-    }
-
-    /// True if it reads or writes registers with numbers known only at run time.
-    pub(super) fn wanders(self) -> bool {
-        matches!(self.operation, Operation::LoadAt | Operation::StoreAt)
     }
 }

@@ -11,17 +11,12 @@ use naga::{
 };
 
 use super::{
-    Unsupported,
+    Result,
     builder::{Builder, Operand},
     shape::{self, Layout},
+    unsupported,
 };
 use crate::shader::blocks::{Expr, blocks};
-
-pub(super) type Result<T> = std::result::Result<T, Unsupported>;
-
-pub(super) fn unsupported<T>(what: impl Into<String>) -> Result<T> {
-    Err(Unsupported { what: what.into() })
-}
 
 /// The value of an expression.
 #[derive(Clone, Debug)]

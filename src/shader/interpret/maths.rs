@@ -4,11 +4,7 @@ use std::rc::Rc;
 
 use naga::{MathFunction as M, ScalarKind, TypeInner};
 
-use super::{
-    builder::Operand,
-    instruction::Operation as O,
-    lower::{Lowering, Result, unsupported},
-};
+use super::{Result, builder::Operand, instruction::Operation as O, lower::Lowering, unsupported};
 
 type Words = Rc<[Operand]>;
 

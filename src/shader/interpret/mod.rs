@@ -28,7 +28,7 @@ mod tests;
 
 use builder::Operand;
 use instruction::{Instruction, REGISTERS, Registers, execute};
-use lower::{Lowering, Value, unsupported};
+use lower::{Lowering, Value};
 
 /// Maximum number of instructions in the loops of one run, counting the body in every iteration; a few
 /// milliseconds. A finite loop may need more.
@@ -40,6 +40,12 @@ pub const STEPS: usize = 1 << 17;
 pub struct Unsupported {
     /// A sentence about the function, e.g. "it samples a texture".
     pub what: String,
+}
+
+type Result<T, E = Unsupported> = std::result::Result<T, E>;
+
+fn unsupported<T>(what: impl Into<String>) -> Result<T> {
+    Err(Unsupported { what: what.into() })
 }
 
 /// The names of `let`s, each with its number of words.
@@ -64,6 +70,7 @@ pub struct Program {
     /// The initial values of private variables.
     initial: Box<[(u16, u32)]>,
     argument_words: usize,
+    /// The number of words in a row of the table, including padding; 0 without a table.
     row_words: usize,
     results: Box<[u16]>,
     /// Identifies the program.
@@ -95,7 +102,7 @@ impl Program {
     ///
     /// # Errors
     /// Returns an error if the function does not exist, or uses something that only a GPU has.
-    pub fn new(module: &Module, function: &str) -> Result<Self, Unsupported> {
+    pub fn new(module: &Module, function: &str) -> Result<Self> {
         Self::lets(module, function, None, |_| false).map(|(program, _)| program)
     }
 
@@ -104,7 +111,7 @@ impl Program {
     ///
     /// # Errors
     /// Returns the errors of [`new`](Self::new).
-    pub fn with_table(module: &Module, function: &str, table: &str) -> Result<Self, Unsupported> {
+    pub fn with_table(module: &Module, function: &str, table: &str) -> Result<Self> {
         Self::lets(module, function, Some(table), |_| false).map(|(program, _)| program)
     }
 
@@ -119,7 +126,7 @@ impl Program {
         name: &str,
         table: Option<&str>,
         wanted: impl Fn(&str) -> bool,
-    ) -> Result<(Self, Lets), Unsupported> {
+    ) -> Result<(Self, Lets)> {
         let found = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(name));
         let Some((handle, function)) = found else {
             return unsupported(format!("there is no function {name}"));
@@ -183,12 +190,6 @@ impl Program {
     #[must_use]
     pub fn result_words(&self) -> usize {
         self.results.len()
-    }
-
-    /// The number of words in a row of the table, including padding; 0 without a table.
-    #[must_use]
-    pub fn row_words(&self) -> usize {
-        self.row_words
     }
 
     /// Runs the function. Missing arguments are zero; results are written as far as there is space.

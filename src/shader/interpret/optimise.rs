@@ -147,7 +147,9 @@ impl Optimiser<'_> {
                 continue;
             }
             let untouched = |i: Instruction| {
-                !i.wanders() && i.writes() != Some(copy.d) && i.reads().all(|register| register != copy.d)
+                // These two use registers with numbers known only at run time.
+                let wanders = matches!(i.operation, O::LoadAt | O::StoreAt);
+                !wanders && i.writes() != Some(copy.d) && i.reads().all(|register| register != copy.d)
             };
             let Some(origin) = self.origin(copy.a, at, untouched) else { continue };
             if let Some(instruction) = &mut self.code[origin] {

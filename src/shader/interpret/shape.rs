@@ -2,9 +2,7 @@
 
 use naga::{ArraySize, Handle, Module, Scalar, ScalarKind, Type, TypeInner};
 
-use super::Unsupported;
-
-type Result<T> = std::result::Result<T, Unsupported>;
+use super::{Result, Unsupported, unsupported};
 
 /// The positions of the words of a composite value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +24,7 @@ fn too_large() -> Unsupported {
 fn check(scalar: Scalar) -> Result<()> {
     match (scalar.kind, scalar.width) {
         (ScalarKind::Bool, _) | (ScalarKind::AbstractInt | ScalarKind::AbstractFloat, _) | (_, 4) => Ok(()),
-        (_, width) => Err(Unsupported { what: format!("it uses numbers of {} bits", 8 * u32::from(width)) }),
+        (_, width) => unsupported(format!("it uses numbers of {} bits", 8 * u32::from(width))),
     }
 }
 
@@ -35,9 +33,7 @@ fn length(size: ArraySize) -> Result<usize> {
     match size {
         ArraySize::Constant(n) => Ok(n.get() as usize),
         ArraySize::Dynamic => Ok(1),
-        ArraySize::Pending(_) => {
-            Err(Unsupported { what: "it has an array of overridable length".to_owned() })
-        }
+        ArraySize::Pending(_) => unsupported("it has an array of overridable length"),
     }
 }
 
@@ -69,7 +65,7 @@ pub(super) fn elements(module: &Module, inner: &TypeInner, layout: Layout) -> Re
             let stride = if layout == Layout::Buffer { stride as usize / 4 } else { words };
             Ok(Elements { count: length(size)?, words, stride })
         }
-        _ => Err(Unsupported { what: "it indexes a value without elements".to_owned() }),
+        _ => unsupported("it indexes a value without elements"),
     }
 }
 
@@ -114,16 +110,14 @@ pub(super) fn words(module: &Module, inner: &TypeInner) -> Result<usize> {
             sum
         }
         TypeInner::Pointer { base, .. } => of(base)?,
-        TypeInner::Atomic(_) => return Err(Unsupported { what: "it uses atomics".to_owned() }),
+        TypeInner::Atomic(_) => return unsupported("it uses atomics"),
         TypeInner::Image { .. } | TypeInner::Sampler { .. } | TypeInner::BindingArray { .. } => {
-            return Err(Unsupported { what: "it uses a texture or a sampler".to_owned() });
+            return unsupported("it uses a texture or a sampler");
         }
         TypeInner::AccelerationStructure { .. } | TypeInner::RayQuery { .. } => {
-            return Err(Unsupported { what: "it traces rays".to_owned() });
+            return unsupported("it traces rays");
         }
-        TypeInner::CooperativeMatrix { .. } => {
-            return Err(Unsupported { what: "it uses cooperative matrices".to_owned() });
-        }
+        TypeInner::CooperativeMatrix { .. } => return unsupported("it uses cooperative matrices"),
     };
     if count > LARGEST { Err(too_large()) } else { Ok(count) }
 }

@@ -5,10 +5,12 @@ use std::rc::Rc;
 use naga::{Block, Statement, SwitchValue};
 
 use super::{
+    Result,
     builder::Operand,
     instruction::Operation as O,
-    lower::{Around, Frame, Lowering, Result, Value, unsupported},
+    lower::{Around, Frame, Lowering, Value},
     shape::Layout,
+    unsupported,
 };
 use crate::shader::blocks::Expr;
 

@@ -537,7 +537,7 @@ fn a_row_of_a_table_is_read_where_the_layout_has_it() {
         fn curve(i: u32) -> vec2<f32> { return table[3].curve[i]; }
         fn f(i: u32) -> vec4<f32> { let m = table[i].m; let inner = table[0].inner; return vec4(curve(i), inner.k, m[1].y + table[0].m[i].x); }";
     let program = Program::with_table(&module(text), "f", "table").expect("supported");
-    assert_eq!(program.row_words(), 20);
+    assert_eq!(program.row_words, 20);
     let row: Vec<u32> = (0..20u8).map(|i| f32::from(i).to_bits()).collect();
     let mut results = [0; 4];
     program.run_with(&row, &[1], &mut results).expect("it ends");

@@ -6,7 +6,7 @@ use std::{cell::Cell, collections::HashMap};
 
 use super::{
     Limits, Refusal, limited,
-    token::{Finding, Kind, Token},
+    token::{Finding, Kind, Token, at_most},
 };
 
 /// A declaration of the module.
@@ -157,10 +157,9 @@ impl<'a> Search<'a> {
             let middle = (0..self.limits.chain / 2).fold(i, |at, _| self.next.get(at).copied().unwrap_or(at));
             return Err(self.chain(middle, chain));
         }
-        if expands && words > self.limits.expansion {
-            let what =
-                format!("this expands to {words} words; at most {} are allowed", self.limits.expansion);
-            return Err((at, what));
+        if expands {
+            let what = || format!("this expands to {words} words");
+            at_most(words, self.limits.expansion, at, "", what)?;
         }
         self.states[i] = State::Known(words, chain);
         self.path.pop();

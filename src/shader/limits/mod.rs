@@ -17,7 +17,7 @@ use super::{
     compose::{Composed, EVALUATE, LIGHT_ALONE, SEEN, SHADING_ALONE, WRAPPER},
     place::locate,
     problem::ShaderProblem,
-    token::{self, Finding},
+    token::{self, Finding, at_most},
 };
 
 mod closed;
@@ -49,10 +49,8 @@ const STACK: usize = 4 << 20;
 
 /// Refuses a shader with too many of something.
 fn limited(found: usize, most: usize, what: &str) -> Result<(), Refusal> {
-    if found <= most {
-        return Ok(());
-    }
-    Err(Refusal::Whole(format!("the composed shader has {found} {what}; at most {most} are allowed")))
+    at_most(found, most, (), "", || format!("the composed shader has {found} {what}"))
+        .map_err(|((), what)| Refusal::Whole(what))
 }
 
 /// Checks a composed text before it is parsed.

@@ -6,7 +6,7 @@ use naga::{
     proc::ResolveContext,
 };
 
-use super::Limits;
+use super::{Limits, token::at_most};
 
 type Finding = (Span, String);
 type Result<T> = std::result::Result<T, Finding>;
@@ -38,10 +38,7 @@ pub(super) fn check(module: &Module, limits: &Limits) -> Result<()> {
 }
 
 fn within(found: u64, most: u64, span: Span, what: &str) -> Result<()> {
-    if found > most {
-        return Err((span, format!("this makes {found} {what}; at most {most} are allowed")));
-    }
-    Ok(())
+    at_most(found, most, span, "", || format!("this makes {found} {what}"))
 }
 
 /// The size of a type in bytes, if a value may have it.
@@ -75,12 +72,8 @@ fn constants(module: &Module, limits: &Limits) -> Result<()> {
         }
         let span = module.global_expressions.get_span(handle);
         // One word of the text may produce three expressions.
-        let most = 4 * limits.chain;
-        if depth + 1 > most {
-            let what =
-                format!("this constant depends on a chain of {depth} others; at most {most} are allowed");
-            return Err((span, what));
-        }
+        let what = || format!("this constant depends on a chain of {depth} others");
+        at_most(depth + 1, 4 * limits.chain, span, "", what)?;
         depths.push(depth + 1);
         if let Expression::Compose { ty, .. } | Expression::ZeroValue(ty) = *expression {
             size(module, limits, ty, span, "this value")?;
@@ -160,14 +153,13 @@ impl<'a> Walk<'a> {
         for (handle, expression) in function.expressions.iter() {
             let mut depth = 0;
             operands(expression, |h| depth = depth.max(depths.get(h.index()).copied().unwrap_or(0)));
-            if depth >= limits.values {
-                let what = format!(
-                    "this ends a chain of {depth} values, each calculated from the one before; at most {} are allowed; \
-                     a variable in between starts a new chain",
-                    limits.values
-                );
-                return Err((span(handle), what));
-            }
+            at_most(
+                depth + 1,
+                limits.values,
+                span(handle),
+                "; a variable in between starts a new chain",
+                || format!("this ends a chain of {depth} values, each calculated from the one before"),
+            )?;
             depths.push(depth + 1);
             if let Expression::Compose { ty, .. } | Expression::ZeroValue(ty) = *expression {
                 large |= size(module, limits, ty, span(handle), "this value")? > LARGE;
@@ -189,14 +181,12 @@ impl<'a> Walk<'a> {
     }
 
     fn check_steps(&self, span: Span) -> Result<()> {
-        if self.cost.steps <= self.limits.steps {
-            return Ok(());
-        }
-        let what = format!(
-            "up to here the function takes {} steps with all calls inlined, as graphics drivers do; at most {} are allowed",
-            self.cost.steps, self.limits.steps
-        );
-        Err((span, what))
+        let steps = self.cost.steps;
+        at_most(steps, self.limits.steps, span, "", || {
+            format!(
+                "up to here the function takes {steps} steps with all calls inlined, as graphics drivers do"
+            )
+        })
     }
 
     fn block(&mut self, block: &Block, loops: usize) -> Result<()> {
@@ -210,10 +200,8 @@ impl<'a> Walk<'a> {
                 }
                 Statement::Switch { cases, .. } => {
                     let (count, most) = (cases.len(), self.limits.cases);
-                    if count > most + 1 {
-                        let what = format!("this switch has {count} cases; at most {most} are allowed");
-                        return Err((*span, what));
-                    }
+                    let what = || format!("this switch has {count} cases");
+                    at_most(count.saturating_sub(1), most, *span, "", what)?;
                     for case in cases {
                         self.cost.steps += 1;
                         self.block(&case.body, loops)?;

@@ -1,62 +1,52 @@
 //! The numbers.
 
-/// Limits on a shader.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// The longest composed text, bytes. The preprocessor has 21 bits for a place in it.
-    pub bytes: usize,
-    /// The most tokens of a composed text.
-    pub tokens: usize,
-    /// The most statements of a composed text.
-    pub statements: usize,
-    /// The most declarations of a composed text: functions, constants, types, variables.
-    pub declarations: usize,
-    /// The deepest nesting of brackets, including template lists.
-    pub nesting: usize,
-    /// The most operators, calls and brackets on one path through an expression.
-    pub depth: usize,
-    /// The deepest nesting of blocks; each `else if` counts as nested in the one before.
-    pub blocks: usize,
-    /// The most values of `case` in a switch.
-    pub cases: usize,
-    /// The longest chain of declarations that use each other.
-    pub chain: usize,
-    /// The most elements of an array.
-    pub elements: u64,
-    /// The most words of a constant or a type when everything in it is expanded.
-    pub expansion: u64,
-    /// The largest value or variable, bytes. Software Vulkan takes quadratic time: ten seconds for this much.
-    pub value_bytes: u32,
-    /// The most bytes of variables of a function, including the functions it calls, and of a module; and the same for
-    /// constants.
-    pub variable_bytes: u64,
-    /// The most expressions of a function.
-    pub expressions: usize,
-    /// The longest chain of expressions that use each other, through `let` as well.
-    pub values: usize,
-    /// The most steps of a function with all calls inlined, as drivers do.
-    pub steps: u64,
-    /// The deepest nesting of loops.
-    pub loops: usize,
+macro_rules! limits {
+    ($($(#[$doc:meta])* $name:ident: $Type:ty = $most:expr,)*) => {
+        /// Limits on a shader.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Limits {
+            $($(#[$doc])* pub $name: $Type,)*
+        }
+
+        /// The limits for models and other shaders of the laboratory.
+        pub const LIMITS: Limits = Limits { $($name: $most,)* };
+    };
 }
 
-/// The limits for models and other shaders of the laboratory.
-pub const LIMITS: Limits = Limits {
-    bytes: 1 << 20,
-    tokens: 100_000,
-    statements: 8_192,
-    declarations: 2_048,
-    nesting: 100,
-    depth: 256,
-    blocks: 64,
-    cases: 256,
-    chain: 64,
-    elements: 4_096,
-    expansion: 65_536,
-    value_bytes: 4 << 10,
-    variable_bytes: 16 << 10,
-    expressions: 32_768,
-    values: 1_024,
-    steps: 196_608,
-    loops: 16,
-};
+limits! {
+    /// The longest composed text, bytes. The preprocessor has 21 bits for a place in it.
+    bytes: usize = 1 << 20,
+    /// The most tokens of a composed text.
+    tokens: usize = 100_000,
+    /// The most statements of a composed text.
+    statements: usize = 8_192,
+    /// The most declarations of a composed text: functions, constants, types, variables.
+    declarations: usize = 2_048,
+    /// The deepest nesting of brackets, including template lists.
+    nesting: usize = 100,
+    /// The most operators, calls and brackets on one path through an expression.
+    depth: usize = 256,
+    /// The deepest nesting of blocks; each `else if` counts as nested in the one before.
+    blocks: usize = 64,
+    /// The most values of `case` in a switch.
+    cases: usize = 256,
+    /// The longest chain of declarations that use each other.
+    chain: usize = 64,
+    /// The most elements of an array.
+    elements: u64 = 4_096,
+    /// The most words of a constant or a type when everything in it is expanded.
+    expansion: u64 = 65_536,
+    /// The largest value or variable, bytes. Software Vulkan takes quadratic time: ten seconds for this much.
+    value_bytes: u32 = 4 << 10,
+    /// The most bytes of variables of a function, including the functions it calls, and of a module; and the same for
+    /// constants.
+    variable_bytes: u64 = 16 << 10,
+    /// The most expressions of a function.
+    expressions: usize = 32_768,
+    /// The longest chain of expressions that use each other, through `let` as well.
+    values: usize = 1_024,
+    /// The most steps of a function with all calls inlined, as drivers do.
+    steps: u64 = 196_608,
+    /// The deepest nesting of loops.
+    loops: usize = 16,
+}

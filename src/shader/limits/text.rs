@@ -4,7 +4,7 @@
 
 use super::{
     Limits, Refusal, expansion, limited,
-    token::{Finding, Kind, Token, tokens},
+    token::{Finding, Kind, Token, at_most, tokens},
 };
 
 /// Finds anything beyond a limit. `binds` is true for bytes at which bindings may be declared.
@@ -109,12 +109,10 @@ impl Walk<'_> {
                 let group = self.innermost();
                 group.chain = if follows { group.chain + 1 } else { 0 };
                 let blocks = group.nesting + group.chain + 1;
-                let most = self.limits.blocks;
-                if follows && blocks > most {
-                    let what = format!(
-                        "this `else if` is {blocks} blocks deep, each in the one before; at most {most} are allowed; a switch is not nested"
-                    );
-                    return Err((token.at, what));
+                if follows {
+                    at_most(blocks, self.limits.blocks, token.at, "; a switch is not nested", || {
+                        format!("this `else if` is {blocks} blocks deep, each in the one before")
+                    })?;
                 }
             }
             _ => {}
@@ -144,11 +142,8 @@ impl Walk<'_> {
         let above = group.above + group.operators;
         let nesting = if group.open == b'{' { 1 } else { group.nesting + 1 };
         self.check_depth(token, above)?;
-        let most = self.limits.nesting;
-        if nesting > most {
-            let what = format!("this is nested {nesting} brackets deep; at most {most} are allowed");
-            return Err((token.at, what));
-        }
+        let what = || format!("this is nested {nesting} brackets deep");
+        at_most(nesting, self.limits.nesting, token.at, "", what)?;
         self.groups.push(Group::new(token.text.as_bytes()[0], above, nesting));
         Ok(())
     }
@@ -174,11 +169,8 @@ impl Walk<'_> {
         group.next();
         group.selectors = false;
         let blocks = group.nesting + group.chain + 1;
-        let most = self.limits.blocks;
-        if blocks > most {
-            let what = format!("this block is nested {blocks} deep; at most {most} are allowed");
-            return Err((token.at, what));
-        }
+        let what = || format!("this block is nested {blocks} deep");
+        at_most(blocks, self.limits.blocks, token.at, "", what)?;
         self.groups.push(Group::new(b'{', 0, blocks));
         Ok(())
     }
@@ -229,22 +221,15 @@ impl Walk<'_> {
 
     fn check_cases(&mut self, token: Token) -> Result<(), Finding> {
         let most = self.limits.cases;
-        if self.innermost().cases > most {
-            let what = format!("this switch has more than {most} cases; at most {most} are allowed");
-            return Err((token.at, what));
-        }
-        Ok(())
+        at_most(self.innermost().cases, most, token.at, "", || {
+            format!("this switch has more than {most} cases")
+        })
     }
 
     fn check_depth(&self, token: Token, depth: usize) -> Result<(), Finding> {
-        let most = self.limits.depth;
-        if depth <= most {
-            return Ok(());
-        }
-        let what = format!(
-            "this expression has {depth} operators and brackets on one path; at most {most} are allowed; put parts of it into variables"
-        );
-        Err((token.at, what))
+        at_most(depth, self.limits.depth, token.at, "; put parts of it into variables", || {
+            format!("this expression has {depth} operators and brackets on one path")
+        })
     }
 }
 

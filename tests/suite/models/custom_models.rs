@@ -357,7 +357,7 @@ fn a_flag_is_declared_by_its_type_or_its_default() {
     let model = custom::read(&path("lamp"), &text, &Registry::builtin()).expect("valid").entry;
     let [on, off, _] = model.parameters else { panic!("{:?}", model.parameters) };
     assert_eq!((&on.kind, &off.kind), (&ParameterKind::flag(true), &ParameterKind::flag(false)));
-    assert_eq!((on.wgsl_type(), on.rule().as_str()), ("u32", "true or false"));
+    assert_eq!((on.kind.wgsl(), on.rule().as_str()), ("u32", "true or false"));
 }
 
 #[test]
