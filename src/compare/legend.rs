@@ -150,7 +150,7 @@ pub fn legend_alone(
     amplification: f32,
     names: &[String; 2],
 ) -> Vec<u8> {
-    let mut canvas = Canvas::new(size, ground);
+    let mut canvas = Canvas { size, rgb8: ground.repeat(size[0] as usize * size[1] as usize) };
     let legend = legend_between(comparison, amplification, names.each_ref().map(String::as_str));
     if let Some(plate) = Plate::new(&canvas, size, &legend, 1) {
         let [width, height] = plate.size;
