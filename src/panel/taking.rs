@@ -59,25 +59,35 @@ fn is_gone(session: &Session, of: Taken) -> bool {
 
 fn ask(ui: &mut Ui, draft: &TakeDraft, context: &mut PanelContext<'_>) {
     let mut next = draft.clone();
-    let right = match draft.of {
-        Taken::Picture(view) => picture(ui, view, &mut next, context.session()),
-        Taken::Sheet(row) => sheet(ui, row, &mut next, context),
-    };
+    let mut typed = Typed::default();
+    match draft.of {
+        Taken::Picture(view) => picture(ui, view, &mut next, (&mut typed, context.session())),
+        Taken::Sheet(row) => sheet(ui, row, &mut next, (&mut typed, context)),
+    }
     ui.add_space(10.0);
-    let [choose, cancel] = draft::buttons(ui, "Choose a file…", right);
+    let [choose, cancel] = draft::buttons(ui, "Choose a file…", !typed.is_wrong);
     if draft::is_new(ui, DRAFT) {
         choose.request_focus();
     }
     let choose = choose.on_hover_text("Keeps these options for the next time, and asks for the file");
     let choose = choose.on_disabled_hover_text("Correct the number in the field with the red rim first.");
     let cancel = cancel.on_hover_text("Closes the window; the options stay as they were");
-    context.on_click(&choose, || Action::Take(TakeCommand::Choose));
-    context.on_click(&cancel, || Action::Take(TakeCommand::Close));
     if next != *draft {
-        // Before the click, whose options these are.
-        let at = context.actions.len() - usize::from(choose.clicked() || cancel.clicked());
-        context.actions.insert(at, Action::Take(TakeCommand::Change(Box::new(next))));
+        context.act(Action::Take(TakeCommand::Change(Box::new(next))));
     }
+    if choose.clicked() || typed.is_entered && !typed.is_wrong {
+        context.act(Action::Take(TakeCommand::Choose));
+    }
+    context.on_click(&cancel, || Action::Take(TakeCommand::Close));
+}
+
+/// What was typed into the fields of the window.
+#[derive(Default)]
+struct Typed {
+    /// True if a number is wrong.
+    is_wrong: bool,
+    /// True if Enter was pressed in a field.
+    is_entered: bool,
 }
 
 /// A line that begins with a name and its tooltip.
@@ -105,35 +115,33 @@ fn check(ui: &mut Ui, on: &mut bool, name: &str, tip: &str, why_not: Option<&str
     }
 }
 
-/// Width and height. False while a number is wrong.
-fn sides(ui: &mut Ui, size: &mut [u32; 2]) -> bool {
+/// Width and height.
+fn sides(ui: &mut Ui, [width, height]: &mut [u32; 2], typed: &mut Typed) {
     let limits = Limits::between(1.0, f64::from(MAX_SIDE)).whole();
-    let [width, height] = size;
-    let right = number(ui, ["Width in pixels", "Width, from 1 to 16384 pixels"], width, &limits);
+    number(ui, ["Width in pixels", "Width, from 1 to 16384 pixels"], (width, &limits), typed);
     ui.label("×");
-    let also = number(ui, ["Height in pixels", "Height, from 1 to 16384 pixels"], height, &limits);
+    number(ui, ["Height in pixels", "Height, from 1 to 16384 pixels"], (height, &limits), typed);
     ui.label(theme::small(ui, "pixels"));
-    right && also
 }
 
-/// A field for a whole number. False while it is wrong; then the tooltip says why.
-fn number(ui: &mut Ui, [name, tip]: [&str; 2], value: &mut u32, limits: &Limits) -> bool {
+/// A field for a whole number. While it is wrong, the tooltip says why.
+fn number(ui: &mut Ui, [name, tip]: [&str; 2], (value, limits): (&mut u32, &Limits), typed: &mut Typed) {
     let id = ui.make_persistent_id(("take", name));
     let field = knob::field(ui, id, name, f64::from(*value), limits, FIELD);
-    let (response, right) = (field.response.on_hover_text(tip), field.error.is_none());
+    let response = field.response.on_hover_text(tip);
+    typed.is_wrong |= field.error.is_some();
+    typed.is_entered |= response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     if let Some(error) = field.error {
         response.on_hover_text(format!("{name} {error}"));
     }
     if let Some(new) = field.value {
         *value = new as u32;
     }
-    right
 }
 
-/// The options of a picture. False while one is wrong.
-fn picture(ui: &mut Ui, view: Option<usize>, next: &mut TakeDraft, session: &Session) -> bool {
+/// The options of a picture.
+fn picture(ui: &mut Ui, view: Option<usize>, next: &mut TakeDraft, (typed, session): (&mut Typed, &Session)) {
     let TakeDraft { picture: options, caption, .. } = next;
-    let mut right = true;
     let tip = "Width and height of the picture, without its caption. Pictures of another size than the view are drawn \
                anew, in the background.";
     line(ui, "Size", tip, |ui| {
@@ -147,7 +155,7 @@ fn picture(ui: &mut Ui, view: Option<usize>, next: &mut TakeDraft, session: &Ses
         button.on_hover_text(options.size.summary());
         options.size = picked.map_or(options.size, |i| PictureSize::ALL[i]);
         if options.size == PictureSize::Own {
-            right = sides(ui, &mut options.own);
+            sides(ui, &mut options.own, typed);
         }
     });
     let as_view = options.pixels().is_none().then_some("Pictures as the view have the edges of the view.");
@@ -174,7 +182,6 @@ fn picture(ui: &mut Ui, view: Option<usize>, next: &mut TakeDraft, session: &Ses
     check(ui, &mut options.legend, "Legend", tip, why);
     ui.separator();
     layers(ui, &mut options.layers);
-    right
 }
 
 /// True if the picture as it is shown has several views. Views that alternate are taken one at a time.
@@ -201,7 +208,7 @@ fn background(ui: &mut Ui, colour: &mut Option<[u8; 3]>) {
     }
     if let Some(rgb) = colour {
         let caption =
-            knob::Caption::new("background of the picture", "", "What the picture shows behind objects.");
+            knob::Caption::new("background of the picture", "", "The colour behind objects.");
         *rgb = knob::colour_knob(ui, "take background", &caption, *rgb, Some(WHITE)).unwrap_or(*rgb);
     }
 }
@@ -224,29 +231,29 @@ fn layers(ui: &mut Ui, chosen: &mut Vec<String>) {
     });
 }
 
-/// The options of a sheet. False while one is wrong.
-fn sheet(ui: &mut Ui, row: Option<usize>, next: &mut TakeDraft, context: &PanelContext<'_>) -> bool {
+/// The options of a sheet.
+fn sheet(
+    ui: &mut Ui,
+    row: Option<usize>,
+    next: &mut TakeDraft,
+    (typed, context): (&mut Typed, &PanelContext<'_>),
+) {
     next.of = Taken::Sheet(subject(ui, row, context));
     let options = &mut next.sheet;
-    let mut right = true;
     line(ui, "Each picture", "Width and height of each picture of the sheet", |ui| {
-        right = sides(ui, &mut options.size);
+        sides(ui, &mut options.size, typed);
     });
     line(ui, "Columns", "Number of pictures beside each other; further ones begin a new row", |ui| {
         let limits = Limits::between(0.0, f64::from(SheetOptions::MAX_COLUMNS)).whole();
-        let tip = "From 1 to 100; 0 chooses it by the number of pictures";
-        right &= number(ui, ["Columns", tip], &mut options.columns, &limits);
-        ui.label(theme::small(
-            ui,
-            if options.columns == 0 { "chosen by the number of pictures" } else { "" },
-        ));
+        let tip = "From 1 to 100; 0 leaves it to the program";
+        number(ui, ["Columns", tip], (&mut options.columns, &limits), typed);
+        ui.label(theme::small(ui, if options.columns == 0 { "as many as suit" } else { "" }));
     });
     let tip = "The name or the values of each picture above it, and a caption below all";
     check(ui, &mut options.labels, "Labels and caption", tip, None);
     let tip = "Below each picture its difference from the first, as a map with numbers";
     check(ui, &mut options.differences, "Differences from the first picture", tip, None);
     check(ui, &mut options.smooth, "Smooth edges", "Four samples per pixel instead of one", None);
-    right
 }
 
 /// The list of what a sheet can show: the views, and the rows. Returns an object of the row that is chosen.
@@ -261,7 +268,7 @@ fn subject(ui: &mut Ui, row: Option<usize>, context: &PanelContext<'_>) -> Optio
     let first = row.and_then(|object| scene.row(object)).map(|row| row.first);
     let now = all.iter().position(|(one, _)| *one == first);
     let mut chosen = row;
-    line(ui, "Pictures of", "What differs from picture to picture", |ui| {
+    line(ui, "Pictures of", "The views, or the copies of a row: one for each picture", |ui| {
         let names: Vec<_> = all.iter().map(|(_, name)| name.as_str()).collect();
         let combo = ComboBox::from_id_salt("take subject").width(240.0);
         let tip = |ui: &mut Ui, i: usize| {
@@ -272,7 +279,7 @@ fn subject(ui: &mut Ui, row: Option<usize>, context: &PanelContext<'_>) -> Optio
             ui.label(tip);
         };
         let (button, picked) = menu::list(ui, combo, "Pictures of", &names, now, tip);
-        button.on_hover_text("What differs from picture to picture");
+        button.on_hover_text("The views, or the copies of a row: one for each picture");
         chosen = picked.and_then(|i| all.get(i)).map_or(row, |(one, _)| *one);
     });
     chosen

@@ -76,7 +76,8 @@ impl OffScreen<'_> {
         models.find_map(|model| model.not_on_cpu())
     }
 
-    fn needs_gpu(&self) -> bool {
+    /// True if the CPU would draw it otherwise than the window, or not at all.
+    pub(super) fn needs_gpu(&self) -> bool {
         self.not_on_cpu().is_some() || !ignored_edits(self.registry, self.seen).is_empty()
     }
 

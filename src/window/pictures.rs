@@ -10,13 +10,14 @@ use std::{
 };
 
 use arboard::{Clipboard, ImageData};
-use bevy::{prelude::*, window::RequestRedraw};
+use bevy::{prelude::*, window::RequestRedraw, winit::EventLoopProxyWrapper};
 
 use super::{
     background::Background as Work,
     offscreen::{OffScreen, Undrawn},
     readback::{Reading, SeenViews},
     views::ShownViews,
+    watching,
 };
 use crate::{
     caption::{self, Sampled},
@@ -84,7 +85,7 @@ fn take(
     mut effects: MessageReader<Effect>,
     mut session: ResMut<Session>,
     mut pictures: ResMut<Pictures>,
-    mut requests: MessageWriter<RequestRedraw>,
+    (mut requests, proxy): (MessageWriter<RequestRedraw>, Option<Res<EventLoopProxyWrapper>>),
     mut commands: Commands,
 ) {
     for effect in effects.read() {
@@ -108,59 +109,59 @@ fn take(
     if let Some(end) = pictures.work.take() {
         session.pictured(end);
     }
-    if let Err(why) = pictures.begin(&views, &session, &registry, &mut commands) {
-        return session.pictured(PictureEnd::Failed(why));
+    let wake = || watching::wake(proxy.as_deref());
+    match pictures.begin(&views, &session, &registry, &mut commands) {
+        Ok(Some(job)) => pictures.start(job, Vec::new(), wake()),
+        Ok(None) => {}
+        Err(why) => return session.pictured(PictureEnd::Failed(why)),
     }
     let Pictures { reading, job, .. } = &mut *pictures;
     if let Some(read) = job.as_ref().and_then(|_| Reading::end(reading, &mut commands))
         && let Some(job) = job.take()
     {
-        pictures.start(job, read);
+        pictures.start(job, read, wake());
     }
-    let running = pictures.work.running();
-    if !pictures.wanted.is_empty() || pictures.job.is_some() || running.is_some() {
+    if !pictures.wanted.is_empty() || pictures.job.is_some() {
         requests.write(RequestRedraw);
     }
     // What the window shows already is written at once.
+    let running = pictures.work.running();
     session.bypass_change_detection().facts.picture = running.filter(|running| !running.step.is_empty());
 }
 
 impl Pictures {
-    /// Begins the first picture that is wanted. One that is drawn off screen begins at once; otherwise the views are read
-    /// back once they are idle. Returns why there cannot be such a picture.
+    /// Begins the first picture that is wanted. Returns one that is drawn off screen at once; otherwise reads the views back
+    /// once they are idle.
+    ///
+    /// # Errors
+    /// Returns why there cannot be such a picture.
     fn begin(
         &mut self,
         views: &ShownViews,
         session: &Session,
         registry: &Registry,
         commands: &mut Commands,
-    ) -> Result<(), String> {
+    ) -> Result<Option<Job>, String> {
         let busy = self.job.is_some() || self.work.running().is_some();
         let wanted = self.wanted.front().cloned().filter(|_| !busy);
-        let Some(wanted) = wanted else { return Ok(()) };
+        let Some(wanted) = wanted else { return Ok(None) };
         let numbers = shown(session, views.cells().iter().map(|cell| cell.view).collect(), wanted.view);
         let found: Option<Vec<_>> = numbers.iter().map(|number| views.find(*number)).collect();
         let begun = Begun { wanted: &wanted, numbers: &numbers, session, registry };
-        if let Some(whole) = wanted.options(session).pixels() {
-            self.wanted.pop_front();
-            let job = begun.job(Some(whole), cell_of(session, &numbers, whole)?);
-            self.start(job, Vec::new());
-            return Ok(());
-        }
-        let Some(found) = found else {
-            self.wanted.pop_front();
-            let letter = wanted.view.and_then(|view| LETTERS.get(view)).copied().unwrap_or_default();
-            return Err(format!(
-                "No picture was taken: view {letter} is not on screen. Choose a layout with it, or a size for the picture."
-            ));
+        let whole = wanted.options(session).pixels();
+        let of_view = found.as_ref().and_then(|found| found.first()).map(|view| view.view.size);
+        let size = match whole {
+            Some(whole) => cell_of(session, &numbers, whole),
+            None => of_view.ok_or_else(|| not_on_screen(wanted.view)),
         };
-        let Some(size) = found.first().map(|view| view.view.size) else { return Ok(()) };
-        let job = begun.job(None, size);
-        if job.is_off_screen() {
+        if begun.is_off_screen() || size.is_err() {
             self.wanted.pop_front();
-            self.start(job, Vec::new());
-            return Ok(());
         }
+        let size = size?;
+        if begun.is_off_screen() {
+            return Ok(Some(begun.job(whole, size)));
+        }
+        let found = found.unwrap_or_default();
         // A converging view becomes idle eventually; one that keeps restarting does not.
         let converges = |drawing: &Drawing| drawing.converged().done > 1 && !drawing.is_done();
         let waits = found.iter().any(|view| converges(view.drawing));
@@ -170,16 +171,16 @@ impl Pictures {
             found.iter().map(|view| view.texture().filter(|_| rest).cloned()).collect();
         if let Some(textures) = textures {
             self.reading = Some(Reading::begin(&textures, commands));
-            self.job = Some(job);
+            self.job = Some(begun.job(whole, size));
             self.wanted.pop_front();
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Starts to draw and write a picture, with the pixels that were read back.
-    fn start(&self, job: Job, read: Vec<Vec<u8>>) {
+    fn start(&self, job: Job, read: Vec<Vec<u8>>, wake: impl Fn() + Send + 'static) {
         let broken = PictureEnd::Failed("The picture was not taken: an internal error.".to_owned());
-        self.work.begin((), || {}, broken, move |progress| job.run(&read, progress));
+        self.work.begin((), wake, broken, move |progress| job.run(&read, progress));
     }
 }
 
@@ -200,6 +201,17 @@ struct Begun<'a> {
 }
 
 impl Begun<'_> {
+    /// True if it is not what the window shows, so that its views are drawn off screen. Lines over a channel are drawn by
+    /// the panels, and are no part of the views.
+    fn is_off_screen(&self) -> bool {
+        let Self { wanted, numbers, session, .. } = self;
+        let options = wanted.options(session);
+        let channels = numbers.iter().filter_map(|view| session.channel_of(*view));
+        let is_linear = wanted.file.as_deref().is_some_and(|file| Format::of(file).is_some());
+        let is_other = options.pixels().is_some() || options.background.is_some();
+        is_other || is_linear || channels.into_iter().any(DebugChannel::has_wires)
+    }
+
     /// The picture with all its inputs; `whole` is its size, if not that of the views, and `size` that of each view.
     fn job(&self, whole: Option<[u32; 2]>, size: UVec2) -> Job {
         let Self { wanted, numbers, session, registry } = *self;
@@ -207,15 +219,28 @@ impl Begun<'_> {
             views: SeenViews::of(session, numbers, size, registry),
             channels: numbers.iter().map(|view| session.channel_of(*view)).collect(),
             light: session.channel_light(),
+            is_off_screen: self.is_off_screen(),
             whole,
             camera_is_free: session.facts.camera_is_free,
             caption: session.settings.picture_caption,
-            options: wanted.options(session),
+            options: PictureOptions {
+                // Different channels are not compared.
+                numbers: session.settings.picture.numbers && session.incomparable().is_none(),
+                ..wanted.options(session)
+            },
             // A layout that shows a single view also means that view alone.
             alone: wanted.view.is_some() || matches!(*numbers, [shown] if shown > 0),
             file: wanted.file.clone(),
         }
     }
+}
+
+/// The reason why a view cannot be taken as it is shown.
+fn not_on_screen(view: Option<usize>) -> String {
+    let letter = view.and_then(|view| LETTERS.get(view)).copied().unwrap_or_default();
+    format!(
+        "No picture was taken: view {letter} is not on screen. Choose a layout with it, or a size for the picture."
+    )
 }
 
 /// The size of each view in a picture of a size.
@@ -284,6 +309,8 @@ struct Job {
     channels: Vec<Option<DebugChannel>>,
     /// The light of channels, if one is chosen.
     light: Option<usize>,
+    /// True if its views are drawn off screen.
+    is_off_screen: bool,
     /// The size of the picture, if not that of the views.
     whole: Option<[u32; 2]>,
     /// True if the camera is not at the observer of the scene.
@@ -293,6 +320,23 @@ struct Job {
     /// True for a picture of a single view, even if the scene has others.
     alone: bool,
     file: Option<PathBuf>,
+}
+
+/// A picture as drawn.
+struct Drawn {
+    /// The RGB pixels.
+    rgb8: Vec<u8>,
+    size: [u32; 2],
+    /// How lights with extent were sampled, in words; empty without them.
+    light: String,
+    renderer: &'static str,
+}
+
+/// The pictures of the views, and how they were drawn.
+struct Views {
+    pictures: Vec<Shown>,
+    sampled: Vec<Sampled>,
+    renderer: &'static str,
 }
 
 /// A view of a picture: its number, its scene, and its visible terms.
@@ -309,7 +353,7 @@ impl Job {
 
     fn end(&self, read: &[Vec<u8>], progress: &Progress) -> Result<PictureEnd, Undrawn> {
         let Some(file) = &self.file else {
-            let (rgb8, size) = self.draw(read, progress)?;
+            let Drawn { rgb8, size, .. } = self.draw(read, progress)?;
             return copy(&rgb8, size).map(|()| PictureEnd::Copied(size)).map_err(Undrawn::Failed);
         };
         let unsaved = |why| match why {
@@ -321,19 +365,11 @@ impl Job {
         match Format::of(file) {
             Some(format) => self.save_linear(file, format, progress).map_err(unsaved)?,
             None => {
-                let (rgb8, size) = self.draw(read, progress).map_err(unsaved)?;
-                self.save(file, &rgb8, size).map_err(Undrawn::Failed)?;
+                let drawn = self.draw(read, progress).map_err(unsaved)?;
+                self.save(file, &drawn).map_err(Undrawn::Failed)?;
             }
         }
         Ok(PictureEnd::Saved(file.clone()))
-    }
-
-    /// True if it is not what the window shows, so that its views are drawn off screen. Lines over a channel are drawn by
-    /// the panels, and are no part of the views.
-    fn is_off_screen(&self) -> bool {
-        let has_wires = self.channels.iter().flatten().any(|channel| channel.has_wires());
-        let is_linear = self.file.as_deref().is_some_and(|file| Format::of(file).is_some());
-        self.whole.is_some() || self.options.background.is_some() || has_wires || is_linear
     }
 
     /// The arrangement of the views.
@@ -361,8 +397,7 @@ impl Job {
         Some(Setting::new(channel, scene, registry, camera.position, self.light))
     }
 
-    /// The RGB pixels of the picture, and its size.
-    fn draw(&self, read: &[Vec<u8>], progress: &Progress) -> Result<(Vec<u8>, [u32; 2]), Undrawn> {
+    fn draw(&self, read: &[Vec<u8>], progress: &Progress) -> Result<Drawn, Undrawn> {
         let SeenViews { scene, registry, shown, size, .. } = &self.views;
         let comparison = self.comparison();
         let has_numbers = self.caption && self.options.numbers && shown.len() > 1;
@@ -372,9 +407,12 @@ impl Job {
             Some((*view, self.with_background(self.views.seen(*view)?), *terms))
         };
         let seen: Vec<Seen> = shown.iter().filter_map(seen).collect();
-        let (pictures, sampled) = match self.is_off_screen() {
+        let Views { pictures, sampled, renderer } = match self.is_off_screen {
             true => self.off_screen(&seen, (lit, is_map), progress)?,
-            false => (self.views.pictures(read, lit, is_map).map_err(Undrawn::Failed)?, Vec::new()),
+            false => {
+                let pictures = self.views.pictures(read, lit, is_map).map_err(Undrawn::Failed)?;
+                Views { pictures, sampled: Vec::new(), renderer: "GPU" }
+            }
         };
         let size = match (self.whole, comparison.layout) {
             (Some(whole), _) => whole,
@@ -382,8 +420,9 @@ impl Job {
             (None, _) => size_around(&comparison, scene.variants.len(), size.to_array()),
         };
         let rgb8 = self.composed(&comparison, size, &pictures, &seen)?;
+        let light = caption::line(&caption::sampled(&sampled));
         if !self.caption {
-            return Ok((rgb8, size));
+            return Ok(Drawn { rgb8, size, light, renderer });
         }
         let of_views: Vec<_> = seen.iter().map(|(view, seen, terms)| (*view, seen, *terms)).collect();
         let mut caption = caption::of_picture(scene, &of_views, registry).resting_on(&sampled);
@@ -392,19 +431,19 @@ impl Job {
             let views: Vec<_> = shown.iter().map(|(view, _)| *view).collect();
             caption.facts.extend(compare::numbers(&views, &pictures));
         }
-        Ok(caption::draw(&caption, rgb8, size))
+        let (rgb8, size) = caption::draw(&caption, rgb8, size);
+        Ok(Drawn { rgb8, size, light, renderer })
     }
 
-    /// The views, drawn off screen: lit, and for a map with the outlines of the objects of the first. Returns also how
-    /// lights with extent were sampled.
+    /// The views, drawn off screen: lit, and for a map with the outlines of the objects of the first.
     fn off_screen(
         &self,
         seen: &[Seen],
         (lit, is_map): (bool, bool),
         progress: &Progress,
-    ) -> Result<(Vec<Shown>, Vec<Sampled>), Undrawn> {
+    ) -> Result<Views, Undrawn> {
         let SeenViews { registry, size, .. } = &self.views;
-        let (mut pictures, mut all) = (Vec::new(), Vec::new());
+        let mut all = Views { pictures: Vec::new(), sampled: Vec::new(), renderer: "CPU" };
         for (place, (view, scene, terms)) in seen.iter().enumerate() {
             let letter = LETTERS.get(*view).filter(|_| seen.len() > 1);
             let name = |step: &str| letter.map_or(step.to_owned(), |letter| format!("view {letter}, {step}"));
@@ -418,11 +457,14 @@ impl Job {
                 lit,
             };
             let (picture, sampled) = progress.part((place, seen.len()), name, |part| view.draw(part))?;
-            let outlined = is_map && pictures.is_empty();
-            pictures.push(if outlined { picture.outlined(scene, registry) } else { picture });
-            all.extend(sampled);
+            let outlined = is_map && all.pictures.is_empty();
+            all.pictures.push(if outlined { picture.outlined(scene, registry) } else { picture });
+            all.sampled.extend(sampled);
+            if view.needs_gpu() {
+                all.renderer = "GPU";
+            }
         }
-        Ok((pictures, all))
+        Ok(all)
     }
 
     /// The picture of a size, of those of its views, with the labels of rows and with legends.
@@ -464,10 +506,11 @@ impl Job {
         Some(legend)
     }
 
-    fn save(&self, file: &Path, rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
-        let renderer = if self.is_off_screen() { "CPU" } else { "GPU" };
-        let about = About::scene(&self.pictured(), &self.views.registry).with("Renderer", renderer);
-        png::write(file, width, height, rgb8, &about)
+    fn save(&self, file: &Path, drawn: &Drawn) -> Result<(), String> {
+        let Drawn { rgb8, size: [width, height], light, renderer } = drawn;
+        let about = About::scene(&self.pictured(), &self.views.registry).with("Renderer", *renderer);
+        let about = if light.is_empty() { about } else { about.with("Light", light.as_str()) };
+        png::write(file, *width, *height, rgb8, &about)
             .map_err(|error| format!("{} could not be written: {}.", file.shown(), words(&error)))
     }
 

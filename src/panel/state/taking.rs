@@ -1,4 +1,4 @@
-//! Saved pictures and sheets: what the window before the file dialog asks, and what is kept of it between sessions.
+//! Options of saved pictures and sheets: asked for before the file dialog, kept between sessions.
 
 use serde::{Deserialize, Serialize};
 
@@ -90,8 +90,8 @@ impl PictureSize {
     }
 }
 
-/// Options of saved pictures. Whether they have a caption stands in
-/// [`picture_caption`](super::Settings::picture_caption), since a command changes that too.
+/// Options of saved pictures, except for the caption, which a command changes too:
+/// [`picture_caption`](super::Settings::picture_caption).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PictureOptions {
