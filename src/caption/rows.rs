@@ -4,30 +4,32 @@ use super::{Part, words::value};
 use crate::{
     parameter::Value,
     registry::Registry,
-    scene::{Scene, field::Kind, rows::Variable},
+    scene::{
+        Object, Scene,
+        field::Kind,
+        rows::{Row, Variable},
+    },
 };
 
 /// The labels of the objects in rows that have labels, by their indices.
 #[must_use]
 pub fn row_labels(scene: &Scene, registry: &Registry) -> Vec<(usize, Vec<Part>)> {
-    let (mut labels, mut i) = (Vec::new(), 0);
-    while i < scene.objects.len() {
-        let Some(row) = scene.row(i) else {
-            i += 1;
-            continue;
-        };
-        if row.repeat.labels {
-            let variables: Vec<_> = row.variables(registry).collect();
-            labels.extend(row.range().map(|copy| {
-                let object = &scene.objects[copy];
-                let said = |v: &Variable| said(*v, &v.of_object(object)?, registry);
-                (copy, variables.iter().filter_map(said).collect::<Vec<_>>())
-            }));
-        }
-        i += row.count;
-    }
+    let labelled = scene.rows().filter(|row| row.repeat.labels);
+    let mut labels: Vec<_> =
+        labelled.flat_map(|row| row.range().zip(of_row(scene, &row, registry))).collect();
     labels.retain(|(_, parts)| !parts.is_empty());
     labels
+}
+
+/// The values in which each copy of a row differs from the others, whether the row has labels or not.
+#[must_use]
+pub fn of_row(scene: &Scene, row: &Row, registry: &Registry) -> Vec<Vec<Part>> {
+    let variables: Vec<_> = row.variables(registry).collect();
+    let of_copy = |object: &Object| {
+        let said = |v: &Variable| said(*v, &v.of_object(object)?, registry);
+        variables.iter().filter_map(said).collect()
+    };
+    scene.objects[row.range()].iter().map(of_copy).collect()
 }
 
 /// A value with its symbol or name.

@@ -8,14 +8,13 @@ use std::{
 use glam::{DVec3, Vec4};
 use png::{ColorType, Decoder, DecodingError, Transformations};
 
-use super::render::MAX_SIDE;
 use crate::files::Shown as _;
 use crate::{
     compare::Shown,
     failure::Failure,
     files,
     linear::{self, Format, Limits, MAX_PIXELS, Pixels},
-    reference::Picture,
+    reference::{MAX_SIDE, Picture},
     scene::load::{MAX_FILE_BYTES, MAX_PICTURE_BYTES},
 };
 

@@ -26,7 +26,7 @@ use crate::files::Shown as _;
 use crate::{
     caption::{self, Sampled},
     channel::{DebugChannel, Layer, LayerKind, Legend, Setting, layers, too_large},
-    compare::{Cell, Shown, compose, with_legends, with_row_labels},
+    compare::{self, Cell, Shown, compose, with_legends, with_row_labels},
     explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
@@ -34,7 +34,7 @@ use crate::{
     linear::{Channels, Format, MAX_PIXELS},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     progress::Progress,
-    reference::{self, LightSamples, Reached, Until},
+    reference::{self, LightSamples, MAX_SIDE, Reached, Until},
     reflection::ends::check_that_it_ends,
     registry::Registry,
     render::{
@@ -112,6 +112,9 @@ pub(super) struct Arguments {
     /// Add a strip below the picture that says what it shows; the height of the strip is added to that of --size
     #[arg(long)]
     caption: bool,
+    /// Add the numbers of the difference between view A and the others to the caption: RMSE, FLIP, SSIM, PSNR
+    #[arg(long, requires = "caption")]
+    numbers: bool,
     /// Draw this view alone: A, B, C or D, or the name of a variant
     #[arg(long, value_name = "VIEW", conflicts_with = "layout")]
     view: Option<String>,
@@ -159,9 +162,6 @@ pub(super) struct Size {
     pub(super) width: u32,
     pub(super) height: u32,
 }
-
-/// Maximum width and height of a picture, in pixels: the usual limit of GPUs.
-pub(super) const MAX_SIDE: u32 = 16_384;
 
 impl FromStr for Size {
     type Err = String;
@@ -295,6 +295,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }))?;
     for ((plan, source), file) in plans.iter().zip(&sources).zip(&files) {
         holds(arguments, plan, file, registry)
+            .and_then(|()| compares(arguments, plan))
             .map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?;
     }
     // By now the registry knows the files of models and shaders.
@@ -421,6 +422,15 @@ fn holds(arguments: &Arguments, plan: &Plan, file: &Path, registry: &Registry) -
     }
 }
 
+/// The reason why there are no numbers for the caption.
+fn compares(arguments: &Arguments, plan: &Plan) -> Result<(), String> {
+    if !arguments.numbers || plan.parts.len() > 1 {
+        return Ok(());
+    }
+    let rule = "it needs a scene with variants, and --layout side_by_side, wipe or difference";
+    Err(format!("--numbers compares views, but the picture shows one; {rule}"))
+}
+
 /// The requested renderer. Samples of lights with extent are counted on the CPU.
 fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
     let Some(given) = arguments.sampling.given() else { return Ok(arguments.renderer) };
@@ -531,6 +541,8 @@ impl Painter {
         }
         let mut shown = all;
         let light = caption::line(&caption::sampled(&rests_on));
+        let views: Vec<_> = job.plan.parts.iter().map(|part| part.cell.view).collect();
+        let numbers = if job.arguments.numbers { compare::numbers(&views, &shown) } else { Vec::new() };
         let rgb8 = match shown.pop() {
             Some(only) if shown.is_empty() => only.into_rgb8(),
             last => {
@@ -548,7 +560,7 @@ impl Painter {
         let views = job.plan.parts.iter().map(|part| (part.cell, &part.scene));
         let rgb8 = with_row_labels(rgb8, job.size(), views, registry);
         let about = job.about(renderer_name(gpu), &light, registry);
-        let (rgb8, size) = captioned(job, registry, rgb8, &rests_on);
+        let (rgb8, size) = captioned(job, registry, rgb8, (&rests_on, numbers));
         outputs::write_picture(job.file, size, &rgb8, &about)?;
         Ok(Painted { remarks, light })
     }
@@ -710,25 +722,31 @@ fn layers_on_cpu(
 }
 
 /// The legends of a channel in the views of a picture; if there are several, with the letters of their views.
-fn legends(plan: &Plan, channel: Setting, registry: &Registry) -> Vec<Legend> {
+fn legends(plan: &Plan, channel: Setting, registry: &Registry) -> Vec<Option<Legend>> {
     let several = plan.parts.len() > 1;
     let of_part = |part: &Part| {
         let mut legend = channel.legend(&part.scene, registry);
         if let Some(letter) = LETTERS.get(part.cell.view).filter(|_| several) {
             legend.title = format!("{letter} · {}", legend.title);
         }
-        legend
+        Some(legend)
     };
     plan.parts.iter().map(of_part).collect()
 }
 
 /// The picture and its size, with a caption if requested.
-fn captioned(job: &Job, registry: &Registry, rgb8: Vec<u8>, rests_on: &[Sampled]) -> (Vec<u8>, [u32; 2]) {
+fn captioned(
+    job: &Job,
+    registry: &Registry,
+    rgb8: Vec<u8>,
+    (rests_on, numbers): (&[Sampled], Vec<caption::Part>),
+) -> (Vec<u8>, [u32; 2]) {
     if !job.arguments.caption {
         return (rgb8, job.size());
     }
     let shown: Vec<_> = job.plan.parts.iter().map(|part| (part.cell.view, &part.scene, part.terms)).collect();
-    let caption = caption::of_picture(job.scene, &shown, registry).resting_on(rests_on);
+    let mut caption = caption::of_picture(job.scene, &shown, registry).resting_on(rests_on);
+    caption.facts.extend(numbers);
     caption::draw(&caption, rgb8, job.size())
 }
 
@@ -778,7 +796,7 @@ fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> R
         let (picture, end) = converged()?;
         reached = Some(end);
         Shown::of_light(picture, &lit.display)
-    } else if job.plan.needs_light() {
+    } else if job.plan.needs_light() || job.arguments.numbers {
         let picture = reference::render_samples(&lit, registry, &settings, LightSamples::default(), &odd);
         Shown::of_light(picture, &lit.display)
     } else {

@@ -8,20 +8,25 @@ use super::{
 use crate::{channel::Legend, optics::viridis::viridis, scene::Comparison};
 
 /// The picture of a layout with the legends of its views, in the order of [`Comparison::views`], as far as
-/// there is room. Each legend is at the letter of its view; without letters, all are at the upper left.
+/// they have legends, and there is room. Each legend is at the letter of its view; without letters, all are at the upper left.
 #[must_use]
-pub fn with_legends(comparison: &Comparison, rgb8: Vec<u8>, size: [u32; 2], legends: &[Legend]) -> Vec<u8> {
+pub fn with_legends(
+    comparison: &Comparison,
+    rgb8: Vec<u8>,
+    size: [u32; 2],
+    legends: &[Option<Legend>],
+) -> Vec<u8> {
     let mut canvas = Canvas { size, rgb8 };
     let areas = areas(comparison, size, legends.len());
     for area in &areas {
         let room = area.clear_of_letter(&canvas);
-        if let Some(legend) = legends.get(area.place) {
+        if let Some(Some(legend)) = legends.get(area.place) {
             draw(&mut canvas, room, area.corner, legend);
         }
     }
     if areas.is_empty() {
         let mut top = 0;
-        for legend in legends {
+        for legend in legends.iter().flatten() {
             let room = [0, top, size[0], size[1].saturating_sub(top)];
             if let Some([_, y, _, height]) = draw(&mut canvas, room, [false, false], legend) {
                 top = y + height;
@@ -47,11 +52,11 @@ mod tests {
 
     #[test]
     fn a_legend_has_its_colours_and_leaves_small_pictures_alone() {
-        let legend = Legend {
+        let legend = Some(Legend {
             title: "Depth, m".to_owned(),
             scale: Some(["0", "1", "2"].map(str::to_owned)),
             colours: vec![([255, 0, 200], "not a number".to_owned())],
-        };
+        });
         let size = [320, 180];
         let with_legend = |rgb8: Vec<u8>, size| {
             with_legends(&Comparison::default(), rgb8, size, std::slice::from_ref(&legend))

@@ -48,15 +48,29 @@ impl Pair<'_> {
     /// # Errors
     /// Returns an error if light is to be compared, and one picture has none.
     pub fn map(&self, comparison: &Comparison) -> Result<Vec<u8>, Unequal> {
+        let (mut canvas, differences) = self.marked(comparison)?;
+        let factor = differences.amplification(comparison);
+        legend::draw(&mut canvas, comparison, factor, differences.largest.as_ref());
+        Ok(canvas.rgb8)
+    }
+
+    /// Like [`map`](Self::map), without the legend.
+    ///
+    /// # Errors
+    /// Returns the errors of [`map`](Self::map).
+    pub fn bare_map(&self, comparison: &Comparison) -> Result<Vec<u8>, Unequal> {
+        Ok(self.marked(comparison)?.0.rgb8)
+    }
+
+    /// The map with outlines and the mark, and its differences.
+    fn marked(&self, comparison: &Comparison) -> Result<(Canvas, Differences), Unequal> {
         let differences = self.differences(comparison)?;
         let mut canvas = Canvas { size: self.a.size(), rgb8: differences.colours(comparison) };
         self.outline(&mut canvas, comparison.sign);
         if let Some(largest) = &differences.largest {
             legend::mark(&mut canvas, largest);
         }
-        let factor = differences.amplification(comparison);
-        legend::draw(&mut canvas, comparison, factor, differences.largest.as_ref());
-        Ok(canvas.rgb8)
+        Ok((canvas, differences))
     }
 
     /// Draws thin lines around objects, so that a map without large differences still shows its subject.

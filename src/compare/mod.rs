@@ -28,6 +28,7 @@ mod map;
 pub mod metric;
 mod pair;
 mod shown;
+mod words;
 
 pub use channel::with_legends;
 pub use labels::with_row_labels;
@@ -36,3 +37,4 @@ pub use legend::{fitting_amplification, legend_alone, short};
 pub use metric::{Measured, Metric, Metrics, PIXELS_PER_DEGREE};
 pub use pair::{Differences, Largest, Pair, Unequal};
 pub use shown::{Shown, WrongSize};
+pub use words::numbers;

@@ -115,9 +115,7 @@ fn export_dialog(what: Pick, session: &Session) -> FileDialog {
         Pick::Picture(view) => {
             ("Save the picture".to_owned(), "Save", format!("{}.png", session.picture_stem(view)))
         }
-        Pick::Sheet => {
-            ("Save a sheet of the views".to_owned(), "Save", format!("{}_sheet.png", session.stem()))
-        }
+        Pick::Sheet(_) => ("Save the sheet".to_owned(), "Save", format!("{}_sheet.png", session.stem())),
         Pick::Export(id) => {
             let (form, stem) = (form(id), session.stem());
             let title = form.map_or_else(String::new, |form| format!("Export as {}", form.name));
@@ -166,7 +164,7 @@ fn requested(what: Pick, session: &Session, registry: &Registry) -> (&'static st
             let dialog = dialog("Export the shaders to which folder?", labels);
             ("folder dialog", dialog, DialogMode::PickDirectory)
         }
-        Pick::Export(_) | Pick::Picture(_) | Pick::Plot | Pick::Sheet => {
+        Pick::Export(_) | Pick::Picture(_) | Pick::Plot | Pick::Sheet(_) => {
             ("export dialog", export_dialog(what, session), DialogMode::SaveFile)
         }
     }
@@ -190,7 +188,7 @@ fn action(what: Pick, path: PathBuf, session: &Session) -> Option<Action> {
             Action::Do(Effect::Picture { view, file: Some(path), overwrite })
         }
         Pick::Plot => Action::Do(Effect::WritePlot(path)),
-        Pick::Sheet => Action::Do(Effect::WriteSheet(path)),
+        Pick::Sheet(row) => Action::Do(Effect::WriteSheet { row, path }),
     })
 }
 

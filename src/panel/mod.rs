@@ -92,6 +92,7 @@ mod shares;
 mod sides;
 pub mod state;
 pub mod status;
+mod taking;
 pub mod theme;
 pub mod top;
 pub mod tree;
@@ -120,6 +121,7 @@ pub fn register_builtin(to: &mut Panels) {
     to.add_own(help::About);
     to.add_own(author::Draft);
     to.add_own(matching::Draft);
+    to.add_own(taking::Draft);
     to.add_own(question::Asked);
 }
 

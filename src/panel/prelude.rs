@@ -15,7 +15,7 @@ pub(super) use super::{
     kept,
     state::{
         Action, CompareCommand, LessonCommand, ModelCommand, Over, PictureArea, Place, PlotCommand, Session,
-        Severity, ViewChange,
+        Severity, TakeCommand, ViewChange,
     },
     theme::{self, Palette},
 };

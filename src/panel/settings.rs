@@ -135,7 +135,7 @@ pub fn save_settings(session: &mut Session) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::panel::state::ThemeChoice;
+    use crate::panel::state::{PictureOptions, PictureSize, SheetOptions, ThemeChoice};
 
     #[test]
     fn what_is_saved_is_loaded() -> Result<(), Box<dyn std::error::Error>> {
@@ -144,6 +144,8 @@ mod tests {
             theme: ThemeChoice::Light,
             scale: 150,
             recent_files: vec![PathBuf::from("a.json")],
+            picture: PictureOptions { size: PictureSize::UltraHd, numbers: true, ..Default::default() },
+            sheet: SheetOptions { columns: 3, ..Default::default() },
             ..Settings::default()
         };
         save(folder.path(), &settings)?;
@@ -199,8 +201,11 @@ mod tests {
     #[test]
     fn sizes_that_no_screen_has_become_the_defaults() -> Result<(), Box<dyn std::error::Error>> {
         let folder = tempfile::tempdir()?;
-        std::fs::write(folder.path().join(FILE), "{ \"left_width\": 1e9, \"large_type\": true }")?;
+        let text =
+            r#"{ "left_width": 1e9, "large_type": true, "picture": { "size": "own", "own": [0, 99999] } }"#;
+        std::fs::write(folder.path().join(FILE), text)?;
         let (settings, _) = load(folder.path());
+        assert_eq!((settings.picture.size, settings.picture.own), (PictureSize::Own, [1280, 720]));
         assert_eq!(settings.left_width, Settings::default().left_width);
         assert_eq!(settings.scale, 150, "earlier versions had large type");
         Ok(())

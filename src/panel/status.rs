@@ -4,6 +4,7 @@ use super::{
     export, keys, matching,
     prelude::*,
     state::{Converging, MESSAGES_TAB, SHADER_TAB},
+    taking,
 };
 use crate::text::per_cent;
 
@@ -37,6 +38,7 @@ impl Panel for StatusLine {
             shader_errors(ui, context);
             export::progress(ui, context);
             matching::progress(ui, context);
+            taking::progress(ui, context);
             samples(ui, session);
             let mut selected = format!("{} selected", session.name_of(session.selection, context.registry()));
             if let Some(key) = keys::of(ui.ctx(), "keys") {

@@ -83,6 +83,9 @@ pub use vertices::brightest_vertex;
 use visible::VisibleLights;
 pub use wires::{Dot, Line, WireDrawer, Wires, draw_wires};
 
+/// Maximum width and height of a picture, in pixels: the usual limit of GPUs.
+pub const MAX_SIDE: u32 = 16_384;
+
 /// The settings of a picture, apart from the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {

@@ -393,6 +393,21 @@ impl Scene {
         copies.iter().enumerate().all(is_next).then_some(Row { first, count, entry, repeat })
     }
 
+    /// The rows of the scene, in the order of their objects.
+    pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        let mut i = 0;
+        std::iter::from_fn(move || {
+            while i < self.objects.len() {
+                let row = self.row(i);
+                i += row.map_or(1, |row| row.count);
+                if row.is_some() {
+                    return row;
+                }
+            }
+            None
+        })
+    }
+
     /// The scene with the copies of its rows in the places of their entries.
     ///
     /// # Errors

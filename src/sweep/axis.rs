@@ -4,11 +4,11 @@ use glam::{Quat, Vec3};
 
 use super::values;
 use crate::{
-    caption::{Part as Words, header},
+    caption::{self, Part as Words, header},
     parameter::Value,
     registry::Registry,
     scene::{
-        Part, Scene,
+        Object, Part, Scene,
         at::Place,
         rotation::{rotation, turned},
         variant::LETTERS,
@@ -18,6 +18,10 @@ use crate::{
 
 /// The word for views in place of a path.
 const VIEW: &str = "view";
+/// The word for copies of a row.
+const COPY: &str = "copy";
+/// Maximum number of copies of which each has a picture.
+const MAX_COPIES: usize = 256;
 
 /// One direction of a sweep: values that are set together, step by step.
 #[derive(Clone, Debug)]
@@ -89,6 +93,40 @@ impl Axis {
             written: views.iter().map(letter).collect(),
             sets: Vec::new(),
             views: views.to_vec(),
+        })
+    }
+
+    /// The copies of the row to which an object belongs, each alone, with their values as labels.
+    ///
+    /// # Errors
+    /// Returns an error if the object is in no row, or if the row has too many copies.
+    pub fn copies(object: usize, scene: &Scene, registry: &Registry) -> Result<Self, String> {
+        let row = scene.row(object).ok_or_else(|| format!("objects[{object}] is in no row"))?;
+        if row.count > MAX_COPIES {
+            let count = row.count;
+            return Err(format!("the row has {count} copies, but a sheet shows at most {MAX_COPIES}"));
+        }
+        let label = |(i, mut parts): (usize, Vec<Words>)| match parts.as_slice() {
+            [_] => parts.remove(0),
+            [] => Words::new(
+                0,
+                scene.objects[i].name.clone().unwrap_or_else(|| format!("copy {}", i + 1 - row.first)),
+            ),
+            several => Words::new(0, caption::line(several)),
+        };
+        let set = |i: usize| {
+            let path = Part::Object(i).path().key(Object::visible.key).to_string();
+            let values = row.range().map(|shown| Value::from(shown == i)).collect();
+            Ok((Place::find(&path, scene, registry)?, values))
+        };
+        Ok(Self {
+            name: COPY.to_owned(),
+            labels: row.range().zip(caption::of_row(scene, &row, registry)).map(label).collect(),
+            moves: false,
+            word: COPY.to_owned(),
+            written: (1..=row.count).map(|number| number.to_string()).collect(),
+            sets: row.range().map(set).collect::<Result<_, String>>()?,
+            views: Vec::new(),
         })
     }
 
@@ -251,7 +289,7 @@ fn turn(key: &str, from: Vec3, degrees: f32, centre: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Variant;
+    use crate::scene::{Repeat, Repetition, Variant, Varied};
 
     fn turned_to(text: &str, i: usize) -> Scene {
         let (scene, registry) = (Scene::default(), Registry::builtin());
@@ -312,6 +350,36 @@ mod tests {
             let said = Axis::vary(text, &scene, &registry).expect_err(text);
             assert!(said.contains(expected), "{said}");
         }
+    }
+
+    #[test]
+    fn copies_of_a_row_are_shown_one_by_one() {
+        let registry = Registry::builtin();
+        let repeat = Repeat {
+            columns: 3,
+            spacing: Vec3::X,
+            vary: vec![Varied {
+                parameter: "size".to_owned(),
+                from: Some(0.5),
+                to: Some(1.5),
+                ..Varied::default()
+            }],
+            ..Repeat::default()
+        };
+        let entry = Object { repeat: Repetition::Entry(Box::new(repeat)), ..Object::default() };
+        let scene = Scene { objects: vec![entry, Object::default()], ..Scene::default() };
+        let scene = scene.expanded(&registry).expect("a row");
+        let axis = Axis::copies(1, &scene, &registry).expect("a row");
+        let labels: Vec<_> = axis.labels.iter().map(Words::words).collect();
+        assert_eq!(labels, ["size 0.5 m", "size 1 m", "size 1.5 m"]);
+        let sweep = crate::sweep::Sweep::new(&scene, 0, vec![axis], &registry).expect("valid");
+        for i in 0..3 {
+            let (seen, _) = sweep.seen(i).expect("valid");
+            let shown: Vec<_> = seen.objects.iter().map(|object| object.visible).collect();
+            assert_eq!(shown, [i == 0, i == 1, i == 2, true]);
+        }
+        let said = Axis::copies(3, &scene, &registry).expect_err("it is alone");
+        assert_eq!(said, "objects[3] is in no row");
     }
 
     #[test]

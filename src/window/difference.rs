@@ -201,13 +201,11 @@ fn numbers(answer: &Answer, with: usize, several: bool, values: Compared) -> Num
     let Some(measured) = &answer.measured else { return Numbers::default() };
     let shown = measured.covered.as_ref().unwrap_or(&measured.all);
     let letter = LETTERS.get(with).copied().unwrap_or("B");
-    let mut known: Vec<_> = metric::ALL.iter().filter_map(|m| Some((m.id, m.shown.as_ref()?))).collect();
-    known.sort_by_key(|(_, metric)| metric.place);
     let row = |(id, metric): (&str, &InWindow)| {
         let help = (metric.help)(letter, measured.all.of(id)?);
         Some([metric.name.to_owned(), (metric.text)(shown.of(id)?), help])
     };
-    let mut all: Vec<_> = known.into_iter().filter_map(row).collect();
+    let mut all: Vec<_> = metric::in_window().into_iter().filter_map(row).collect();
     if several {
         let help = format!("The numbers are about views {letter} and A. Click another view to compare it.");
         all.insert(0, [format!("{letter} to A"), String::new(), help]);

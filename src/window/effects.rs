@@ -66,7 +66,8 @@ impl Work<'_> {
             }
             Effect::CancelMatch => self.matches.0.cancel(),
             Effect::WritePlot(path) => self.plots.begin(path, session, registry, wake),
-            Effect::WriteSheet(path) => self.sheets.begin(path, session, registry, wake),
+            Effect::WriteSheet { row, path } => self.sheets.begin((row, path), session, registry, wake),
+            Effect::CancelSheet => self.sheets.0.cancel(),
             Effect::CheckLaws(model) => self.laws.begin(&model, registry.folders(), wake),
             other => return Some(other),
         }
@@ -118,7 +119,7 @@ pub(super) fn carry_out(
             Effect::SaveSettings | Effect::SaveProgress(_) if unattended.is_some() => {}
             Effect::Complain(text) => watching::complain(&text),
             // The panels handle the clipboard. Pictures are taken elsewhere, since the views must be read back first.
-            Effect::CopyText(_) | Effect::Picture { .. } => {}
+            Effect::CopyText(_) | Effect::Picture { .. } | Effect::CancelPicture => {}
             Effect::OpenManual => manual::show(&mut session),
             Effect::Reveal(folder) => exports::reveal(&folder, &mut session),
             dialog @ Effect::Pick(_) => session.wanted_dialog = Some(dialog),

@@ -33,6 +33,7 @@ pub mod laws;
 mod lessons;
 pub mod manual;
 mod matching;
+mod offscreen;
 mod open;
 mod options;
 mod order;

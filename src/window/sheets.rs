@@ -1,4 +1,4 @@
-//! Saves sheets of the views to files in the background.
+//! Saves sheets of the views, or of the copies of a row, to files in the background.
 
 use std::path::{Path, PathBuf};
 
@@ -10,31 +10,29 @@ use crate::{
     export::write::inputs,
     failure::Failure,
     files,
-    panel::state::{Session, Severity},
+    panel::state::{Session, Severity, SheetOptions},
     progress::Progress,
     registry::Registry,
     scene::{Comparison, Scene, comparison::Compared},
-    sweep::{Axis, Format, Look, Plan, Settings, Sweep},
+    sweep::{Axis, Format, Look, Parts, Plan, Settings, Sweep},
 };
-
-/// The size of each picture, pixels.
-const SIZE: [u32; 2] = [640, 360];
 
 /// The sheet being written: its file, and the error if it failed.
 #[derive(Debug, Default, Resource)]
-pub(super) struct SheetFiles(Background<(), (PathBuf, Result<(), String>)>);
+pub(super) struct SheetFiles(pub(super) Background<(), (PathBuf, Result<(), String>)>);
 
 impl SheetFiles {
-    /// Starts to write a sheet of the views and returns at once. Calls `wake` at the end.
+    /// Starts to write a sheet of the row of an object, or of the views, and returns at once. Calls `wake` at each step.
     pub(super) fn begin(
         &self,
-        path: PathBuf,
+        (row, path): (Option<usize>, PathBuf),
         session: &mut Session,
         registry: &Registry,
         wake: impl Fn() + Send + 'static,
     ) {
         if self.0.running().is_some() {
-            return session.say(Severity::Info, "A sheet is still being written: wait for it.");
+            return session
+                .say(Severity::Info, "A sheet is still being drawn: wait for it, or cancel it below.");
         }
         // The dialog asked only about the exact name that was typed.
         let asked = path.extension().is_some();
@@ -46,16 +44,19 @@ impl SheetFiles {
         }
         // As seen from the current camera.
         scene.observer = session.facts.observer(scene.observer);
+        let options = session.settings.sheet.clone();
         let (source, registry) = (session.title(), registry.clone());
         let broken = (file.clone(), Err("an internal error".to_owned()));
         self.0.begin((), wake, broken, move |progress| {
-            let outcome = write(&scene, &registry, &file, &source, progress);
+            let job = Job { scene: &scene, registry: &registry, options: &options, row };
+            let outcome = job.write(&file, &source, progress);
             (file, outcome)
         });
     }
 
-    /// Reports the result.
+    /// Reports the progress and the result.
     pub(super) fn report(&self, session: &mut ResMut<Session>) {
+        session.bypass_change_detection().facts.sheet = self.0.running();
         if let Some((path, outcome)) = self.0.take() {
             session.sheet_written(&path, outcome);
         }
@@ -75,33 +76,55 @@ fn may_write(file: &Path, asked: bool, inputs: &[PathBuf]) -> Result<(), String>
     }
 }
 
-/// Writes a sheet of all views, with their differences from view A.
-fn write(
-    scene: &Scene,
-    registry: &Registry,
-    file: &Path,
-    source: &str,
-    progress: &Progress,
-) -> Result<(), String> {
-    let views: Vec<usize> = (0..=scene.variants.len()).collect();
-    let axis = Axis::views(&views, scene, registry)?;
-    let sweep = Sweep::new(scene, 0, vec![axis], registry)?;
-    let compared = Comparison { values: Compared::Codes, ..scene.comparison };
-    let look = Look {
-        format: Format::Sheet,
-        size: Some(SIZE),
-        columns: None,
-        against: (views.len() > 1).then_some((0, compared)),
-        words: true,
-        rate: 1,
-    };
-    let plan = Plan::new(&sweep, look, Settings::default())?;
-    let check = |seen: &Scene| {
-        let models = seen.objects.iter().filter_map(|object| registry.model(seen.model_of(object)));
-        match models.into_iter().find_map(|model| model.not_on_cpu()) {
+/// A sheet to write.
+struct Job<'a> {
+    scene: &'a Scene,
+    registry: &'a Registry,
+    options: &'a SheetOptions,
+    /// An object of the row whose copies it shows; `None` for the views.
+    row: Option<usize>,
+}
+
+impl Job<'_> {
+    /// Draws the sheet and writes it. Finished pictures that took long are kept for another try.
+    fn write(&self, file: &Path, source: &str, progress: &Progress) -> Result<(), String> {
+        let Self { scene, registry, options, row } = *self;
+        let axis = match row {
+            Some(object) => Axis::copies(object, scene, registry)?,
+            None => Axis::views(&(0..=scene.variants.len()).collect::<Vec<_>>(), scene, registry)?,
+        };
+        let compares = options.differences && axis.count() > 1;
+        let sweep = Sweep::new(scene, 0, vec![axis], registry)?;
+        let compared = Comparison { values: Compared::Codes, ..scene.comparison };
+        let look = Look {
+            format: Format::Sheet,
+            size: Some(options.size),
+            columns: (options.columns > 0).then_some(options.columns as usize),
+            against: compares.then_some((0, compared)),
+            words: options.labels,
+            rate: 1,
+        };
+        let settings = Settings { samples: options.samples(), ..Settings::default() };
+        let plan = Plan::new(&sweep, look, settings)?;
+        let check = |seen: &Scene| self.check(seen);
+        plan.write(file, source, &check, progress).map(drop).map_err(|failure| {
+            let parts = Parts::beside(file);
+            match parts.folder().is_dir() {
+                true => format!(
+                    "{failure}; finished pictures are kept in {} for another try",
+                    parts.folder().shown()
+                ),
+                false => failure.to_string(),
+            }
+        })
+    }
+
+    /// Fails if the CPU renderer cannot draw a scene.
+    fn check(&self, seen: &Scene) -> Result<(), Failure> {
+        let mut models = seen.objects.iter().filter_map(|object| self.registry.model(seen.model_of(object)));
+        match models.find_map(|model| model.not_on_cpu()) {
             Some(why) => Err(Failure::NoRenderer(format!("the CPU cannot draw it: {why}"))),
             None => Ok(()),
         }
-    };
-    plan.write(file, source, &check, progress).map(drop).map_err(|failure| failure.to_string())
+    }
 }

@@ -90,6 +90,14 @@ impl Metric {
     }
 }
 
+/// The metrics that the window shows, each with its id, in the order in which it shows them.
+#[must_use]
+pub fn in_window() -> Vec<(&'static str, &'static InWindow)> {
+    let mut known: Vec<_> = ALL.iter().filter_map(|m| Some((m.id, m.shown.as_ref()?))).collect();
+    known.sort_by_key(|(_, metric)| metric.place);
+    known
+}
+
 /// A number with three digits after the point.
 fn in_thousandths(number: f64) -> String {
     format!("{number:.3}")

@@ -2,13 +2,14 @@
 
 use super::{Group, List, Mark, Menu, command};
 use crate::{
+    document::Selection,
     export::FORMS,
     files::Shown as _,
     panel::{
         export,
-        state::{Action, Effect, ExportCommand, Pick, ViewChange},
+        state::{Action, Effect, ExportCommand, Pick, Session, TakeCommand, Taken, ViewChange},
     },
-    scene::variant::LETTERS,
+    scene::{Repetition, variant::LETTERS},
 };
 
 pub(super) fn file(to: &mut List) {
@@ -53,20 +54,27 @@ fn pictures(to: &mut List) {
     let (save, copy) = if alone { ("Save all views…", "Copy all views") } else { ("Save…", "Copy") };
     let copied = |view| Action::Do(Effect::Picture { view, file: None, overwrite: false });
     to.menu(Menu::new("Picture").width(super::show::WIDTH), |to| {
-        let file = "Write the picture as it is shown to a PNG file, without handles and labels, or its linear light to an \
-                    OpenEXR file (.exr) with layers or a Radiance file (.hdr). The file holds the scene, so it can be \
-                    opened again.";
-        let save = command("save_picture", save, Action::Do(Effect::Pick(Pick::Picture(None))));
+        let ask = |of| Action::Take(TakeCommand::Ask(of));
+        let file = "Write the picture to a PNG file, without handles and labels, or its linear light to an OpenEXR file \
+                    (.exr) with layers or a Radiance file (.hdr). A window asks for size, caption and background first. \
+                    The file holds the scene, so it can be opened again.";
+        let save = command("save_picture", save, ask(Taken::Picture(None)));
         to.add(save.says("Save the picture…").keys("Ctrl+P").tip(file));
+        let help = "Write the picture to another file, with the size, the caption and the background as they were chosen last";
+        let again = Action::Do(Effect::Pick(Pick::Picture(None)));
+        let again = command("save_picture_again", "Save with the same options…", again);
+        to.add(again.says("Save the picture with the same options…").tip(help));
         let help = "Write the picture of the active view to a PNG, OpenEXR (.exr) or Radiance (.hdr) file";
         let name = format!("Save view {letter} alone…");
-        let save = command("save_view", name, Action::Do(Effect::Pick(Pick::Picture(Some(view)))));
+        let save = command("save_view", name, ask(Taken::Picture(Some(view))));
         to.add(save.tip(help).absent(!alone));
-        let help = "Write the views beside each other to a PNG file, with labels, and below each the difference from view A as a \
-                    map with numbers. The CPU renderer draws them, as seen now.";
-        let save = command("save_sheet", "Save sheet…", Action::Do(Effect::Pick(Pick::Sheet)));
-        let save = save.says("Save a sheet of the views…").tip(help);
-        to.add(save.unless(!alone, "The scene has one view alone; add another (Ctrl+B)"));
+        let help = "Write the views beside each other to a PNG file, or the copies of a row, with labels, and below each the \
+                    difference from the first as a map with numbers. The CPU renderer draws them, as seen now.";
+        let save = command("save_sheet", "Save sheet…", ask(Taken::Sheet(row_of_sheet(to.session))));
+        let save = save.says("Save a sheet of the views or of a row…").tip(help);
+        let has_row = to.session.document.objects.iter().any(|object| matches!(object.repeat, Repetition::Copy { .. }));
+        let why = "The scene has one view alone and no row; add a view (Ctrl+B) or a row (Edit › Row…)";
+        to.add(save.unless(!alone && !has_row, why));
         let copy = command("copy_picture", copy, copied(None));
         let help = "Put the picture as it is shown on the clipboard";
         to.add(copy.says("Copy the picture").keys("Ctrl+Shift+P").tip(help));
@@ -79,6 +87,18 @@ fn pictures(to: &mut List) {
         let help = "Add a strip below the picture: models, values that differ from the defaults, tone mapping, version";
         to.add(caption.mark(Mark::Check(on)).tip(help));
     });
+}
+
+/// An object of the row of which a sheet is offered first: that of the selected object, or the first one if there is only
+/// one view.
+fn row_of_sheet(session: &Session) -> Option<usize> {
+    let scene = &session.document;
+    let selected = match session.selection {
+        Selection::Object(i) => scene.row(i).map(|_| i),
+        _ => None,
+    };
+    let first = || scene.rows().next().map(|row| row.first);
+    selected.or_else(|| if scene.variants.is_empty() { first() } else { None })
 }
 
 /// An entry for each form.

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use glam::Vec3;
 
 use super::{
-    CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity, ViewChange,
+    CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity, TakeCommand,
+    ViewChange,
 };
 use crate::{
     document::{Edit, Selection},
@@ -94,6 +95,8 @@ pub enum Action {
     Compare(CompareCommand),
     /// A command for matching views.
     Match(MatchCommand),
+    /// A command for saved pictures and sheets.
+    Take(TakeCommand),
     /// A command for the plots.
     Plot(PlotCommand),
     /// A command for lessons.
@@ -226,6 +229,7 @@ impl Session {
             Action::NextTerms => self.next_terms(registry),
             Action::Compare(command) => self.compare(command, registry),
             Action::Match(command) => self.matching(command, registry),
+            Action::Take(command) => self.take(command),
             Action::Plot(command) => self.plot(command),
             Action::Lesson(command) => self.lesson(command, registry),
             Action::View(ViewChange::Terms(terms)) if self.active() > 0 => {

@@ -91,7 +91,7 @@ impl Session {
         swap(&mut self.view.examples_open, &mut aside.examples_open);
         let shown = std::mem::replace(&mut aside.shown, Shown::of(&self.view));
         shown.put(&mut self.view);
-        (self.renaming, self.match_draft) = (None, None);
+        (self.renaming, self.match_draft, self.take_draft) = (None, None, None);
         self.messages.another_document();
     }
 

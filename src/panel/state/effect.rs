@@ -106,8 +106,17 @@ pub enum Effect {
     },
     /// Save the plot to a file.
     WritePlot(PathBuf),
-    /// Save a sheet of the views to a file.
-    WriteSheet(PathBuf),
+    /// Save a sheet to a file.
+    WriteSheet {
+        /// An object of the row whose copies it shows; `None` for the views.
+        row: Option<usize>,
+        /// The file.
+        path: PathBuf,
+    },
+    /// Stop drawing the picture for a file.
+    CancelPicture,
+    /// Stop drawing the sheet.
+    CancelSheet,
     /// Stop the running match.
     CancelMatch,
     /// Stop the running export.
@@ -141,8 +150,8 @@ pub enum Pick {
     Picture(Option<usize>),
     /// A file for the plot.
     Plot,
-    /// A file for a sheet of the views.
-    Sheet,
+    /// A file for a sheet of the row of an object, or of the views.
+    Sheet(Option<usize>),
     /// A lesson.
     Lesson,
     /// A folder for the shaders.

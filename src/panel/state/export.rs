@@ -16,6 +16,8 @@ pub enum PictureEnd {
     Saved(PathBuf),
     /// Copied to the clipboard, with this width and height in pixels.
     Copied([u32; 2]),
+    /// The user cancelled it.
+    Cancelled,
     /// Neither saved nor copied, for the given reason.
     Failed(String),
 }
@@ -79,6 +81,9 @@ impl Session {
             }
             PictureEnd::Copied([width, height]) => {
                 self.say(Severity::Info, format!("Copied the picture: {width}×{height} pixels."));
+            }
+            PictureEnd::Cancelled => {
+                self.say(Severity::Info, "The picture was cancelled; nothing was written.");
             }
             PictureEnd::Failed(why) => self.say(Severity::Error, why),
         }

@@ -28,6 +28,10 @@ pub struct Facts {
     pub export: Option<Running<&'static str>>,
     /// The running match, labelled with the view that is matched to view A.
     pub matching: Option<Running<usize>>,
+    /// The picture being drawn for a file.
+    pub picture: Option<Running<()>>,
+    /// The sheet being drawn for a file.
+    pub sheet: Option<Running<()>>,
     /// Mean time per frame, in milliseconds; 0 if not yet known.
     pub frame_ms: f32,
     /// The graphics API: "Vulkan", "Metal", …

@@ -37,6 +37,7 @@ pub use shortcut::Shortcut;
 pub use slots::{MODEL_SLOTS, ModelSlots};
 pub use stash::StashedValues;
 pub(super) use stash::{Kept, ParameterPlace};
+pub use taking::{PictureOptions, PictureSize, SheetOptions, TakeCommand, TakeDraft, Taken};
 pub use view::{HandleChange, HandleMode, Labels, MESSAGES_TAB, PLOTS_TAB, SHADER_TAB, View, ViewChange};
 
 use seen::Seen;
@@ -86,6 +87,7 @@ mod shortcut;
 mod shown;
 mod slots;
 mod stash;
+mod taking;
 mod terms;
 mod view;
 
@@ -127,6 +129,8 @@ pub struct Session {
     pub authoring: Authoring,
     /// The match that is about to start.
     pub match_draft: Option<MatchDraft>,
+    /// The options of a picture or a sheet that is about to be saved.
+    pub take_draft: Option<TakeDraft>,
     /// The available panels, for the menus; updated when they are shown.
     pub panels: Vec<PanelInfo>,
     /// A dialog to open on behalf of code other than the panels: an action that was pending until the document was
@@ -166,6 +170,7 @@ impl Session {
             shaders: ShaderStatus::default(),
             authoring: Authoring::default(),
             match_draft: None,
+            take_draft: None,
             panels: Vec::new(),
             wanted_dialog: None,
             seen: Seen::default(),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{GivenKeys, OwnKeys, Session};
+use super::{GivenKeys, OwnKeys, PictureOptions, Session, SheetOptions};
 
 /// Maximum length of the list of recent files.
 pub const RECENT_FILES: usize = 10;
@@ -54,6 +54,10 @@ pub struct Settings {
     pub guest_tab: Option<String>,
     /// True if saved or copied pictures have a caption.
     pub picture_caption: bool,
+    /// The other options of saved pictures.
+    pub picture: PictureOptions,
+    /// Options of saved sheets.
+    pub sheet: SheetOptions,
     /// Files opened or saved, latest first.
     pub recent_files: Vec<PathBuf>,
     /// Keys of the user's own, by the ids of commands. The window only reads them.
@@ -93,6 +97,8 @@ impl Default for Settings {
             folded_panels: Vec::new(),
             guest_tab: None,
             picture_caption: true,
+            picture: PictureOptions::default(),
+            sheet: SheetOptions::default(),
             recent_files: Vec::new(),
             keys: GivenKeys::default(),
         }
@@ -124,6 +130,8 @@ impl Settings {
         tidy(&mut self.lesson_width, default.lesson_width);
         tidy(&mut self.right_width, default.right_width);
         tidy(&mut self.bottom_height, default.bottom_height);
+        self.picture.tidy();
+        self.sheet.tidy();
         self
     }
 }

@@ -315,6 +315,37 @@ fn a_caption_is_added_below_the_picture() {
 }
 
 #[test]
+fn numbers_of_a_comparison_are_added_to_its_caption() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let scene = r#"{ "reflection_model": "lambert", "variants": [{ "reflection_model": "phong" }],
+                     "comparison": { "layout": "side_by_side" } }"#;
+    let scene =
+        load::from_text(scene, "pair.json", &Registry::builtin(), Defaults::Use).expect("valid").scene;
+    fs::write(at("pair.json"), to_json(&scene, None, &Registry::builtin())).expect("written");
+    let drawn = |more: &[&str]| {
+        let fixed = ["pair.json", "-o", "x.png", "--size", "640x360", "--caption"];
+        render(folder.path(), &[&fixed, more].concat());
+        pixels(&at("x.png")).1
+    };
+    let (plain, said) = (drawn(&[]), drawn(&["--numbers"]));
+    let picture = 640 * 360 * 3;
+    assert!(plain[..picture] == said[..picture] && plain[picture..] != said[picture..]);
+    for (arguments, status, expected) in [
+        (
+            &["--numbers", "--caption", "--view", "A"][..],
+            1,
+            "pair.json: --numbers compares views, but the picture shows one",
+        ),
+        (&["--numbers"], 2, "--caption"),
+    ] {
+        let run = lcm_in(folder.path(), &[&["render", "pair.json", "-o", "y.png"], arguments].concat(), b"");
+        assert!(run.status == Some(status) && run.err.contains(expected), "{}", run.err);
+        assert!(!at("y.png").exists());
+    }
+}
+
+#[test]
 fn every_view_of_every_shipped_scene_has_a_caption_without_defaults_and_repetitions() {
     let registry = Registry::builtin();
     for path in crate::helpers::support::shipped_scenes() {

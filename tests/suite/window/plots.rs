@@ -626,14 +626,15 @@ fn pictures_of_the_plots() -> Result<(), Box<dyn std::error::Error>> {
 fn a_sheet_of_the_views_is_written_from_the_window() {
     let mut session = Session::default();
     let path = PathBuf::from("/somewhere/a.png");
-    let asked = session.apply(Action::Do(Effect::WriteSheet(path.clone())), &Registry::builtin());
-    assert_eq!(asked, [Effect::WriteSheet(path)]);
+    let write = |path: PathBuf| Effect::WriteSheet { row: None, path };
+    let asked = session.apply(Action::Do(write(path.clone())), &Registry::builtin());
+    assert_eq!(asked, [write(path)]);
     let folder = tempfile::tempdir().expect("a folder");
     let plugins = LabPlugins::default().size(64, 36).exit_after(100_000).headless();
     let mut app = app(plugins.build(), |_| ());
     for (name, said) in [("a.png", "Saved the sheet to "), ("a.jpg", "The sheet was not saved: ")] {
         let file = folder.path().join(name);
-        app.world_mut().resource_mut::<Messages<Effect>>().write(Effect::WriteSheet(file.clone()));
+        app.world_mut().resource_mut::<Messages<Effect>>().write(write(file.clone()));
         let found = (0..3000).any(|_| {
             app.update();
             thread::sleep(Duration::from_millis(2));

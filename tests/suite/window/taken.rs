@@ -5,11 +5,15 @@ use std::{fs, path::Path};
 use bevy::{app::App, ecs::message::Messages};
 use bevy_egui::egui::{Key, Modifiers, Rect, pos2, vec2};
 use lights_camera_models::{
-    panel::state::{Cell, Effect, PictureArea, Question, Session, Severity, ViewChange},
+    panel::state::{
+        Action, Cell, Effect, PictureArea, PictureOptions, PictureSize, Question, Running, Session, Severity,
+        SheetOptions, TakeCommand, Taken, ViewChange,
+    },
     parameter::Value,
     registry::Registry,
     scene::{
-        Scene,
+        Background, Object, Repeat, Repetition, Scene, Variant,
+        comparison::Layout,
         load::{self, Defaults},
     },
     window::LabPlugins,
@@ -75,6 +79,17 @@ fn side_by_side(app: &mut App) {
         Cell { view, rect, part: rect }
     };
     app.insert_resource(PictureArea { cells: vec![cell(0), cell(1)], ..PictureArea::default() });
+    session(app).document.change(
+        "Layout",
+        lights_camera_models::document::Extent::Rest,
+        Default::default(),
+        |scene| scene.comparison.layout = Layout::SideBySide,
+    );
+}
+
+/// Options with a size.
+fn of_size(width: u32, height: u32) -> PictureOptions {
+    PictureOptions { size: PictureSize::Own, own: [width, height], ..PictureOptions::default() }
 }
 
 #[test]
@@ -118,12 +133,6 @@ fn views_are_taken_together_or_one_alone() {
     assert!(said[0].0 == Severity::Error && said[0].1.contains("view B is not on screen"), "{said:?}");
     assert!(!file.exists());
     side_by_side(&mut app);
-    session(&mut app).document.change(
-        "Layout",
-        lights_camera_models::document::Extent::Rest,
-        Default::default(),
-        |scene| scene.comparison.layout = lights_camera_models::scene::comparison::Layout::SideBySide,
-    );
     let _ = take(&mut app, Some(1), &file, false);
     let alone = Picture::read(&file);
     assert_eq!((alone.width, alone.height), (120, 90));
@@ -185,12 +194,6 @@ fn the_ending_of_a_name_asks_for_linear_light() {
     assert_eq!([channels["A"][0], channels["R"][0]], [0.0; 2], "the background is no light");
     // The light of several views is several pictures.
     side_by_side(&mut app);
-    session(&mut app).document.change(
-        "Layout",
-        lights_camera_models::document::Extent::Rest,
-        Default::default(),
-        |scene| scene.comparison.layout = lights_camera_models::scene::comparison::Layout::SideBySide,
-    );
     let said = take(&mut app, None, &at("both.exr"), false);
     let expected = format!(
         "The picture was not saved to {}: it holds the light of one view; save the view alone.",
@@ -219,7 +222,223 @@ fn the_menu_saves_and_copies_pictures() {
     bench.click("With a caption");
     assert!(!bench.session.settings.picture_caption);
     bench.apply(lights_camera_models::panel::state::Action::View(ViewChange::PictureCaption(true)));
+    bench.effects.clear();
+    // Two keys suffice.
     bench.key(Key::P, Modifiers::COMMAND);
+    assert!(bench.says("Save the picture") && !bench.dialogs.is_open());
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(bench.dialogs.is_open() && bench.session.take_draft.is_none());
+    assert_eq!(bench.effects, [], "nothing was changed");
+}
+
+#[test]
+fn a_picture_has_the_size_and_the_background_that_were_chosen() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut app = lab(folder.path());
+    session(&mut app).settings.picture_caption = false;
+    session(&mut app).settings.picture =
+        PictureOptions { background: Some([0, 255, 0]), ..of_size(200, 100) };
+    let file = folder.path().join("taken.png");
+    let _ = take(&mut app, None, &file, false);
+    let picture = Picture::read(&file);
+    assert_eq!((picture.width, picture.height), (200, 100));
+    assert_eq!(picture.at(2, 2), [0, 255, 0]);
+    assert!(picture.count(0..200, 0..100, RED) > 500);
+    // The picture opens as it is, and the scene of the window stays as it was.
+    assert_eq!(opened(&file).display.background, Background::Colour);
+    assert_eq!(session(&mut app).document.display.background, Background::Environment);
+    assert!(!session(&mut app).is_dirty());
+    // A view need not be on screen.
+    let _ = take(&mut app, Some(1), &file, true);
+    assert!(Picture::read(&file).count(0..200, 0..100, BLUE) > 500);
+    side_by_side(&mut app);
+    session(&mut app).settings.picture = of_size(400, 100);
+    let _ = take(&mut app, None, &file, true);
+    let both = Picture::read(&file);
+    assert_eq!((both.width, both.height), (400, 100));
+    assert!(both.count(0..199, 0..100, RED) > 500 && both.count(201..400, 0..100, BLUE) > 500);
+    // Layers that were not chosen are left out.
+    session(&mut app).settings.picture =
+        PictureOptions { layers: vec!["depth".to_owned()], ..of_size(60, 40) };
+    let linear = folder.path().join("b.exr");
+    let _ = take(&mut app, Some(1), &linear, false);
+    let channels = read_exr(&linear);
+    assert_eq!(channels["R"].len(), 60 * 40);
+    assert!(channels.contains_key("depth.Z") && !channels.contains_key("light_1.G"));
+}
+
+#[test]
+fn sizes_without_room_and_folders_that_cannot_be_written_are_errors() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut app = lab(folder.path());
+    let file = folder.path().join("taken.png");
+    side_by_side(&mut app);
+    session(&mut app).settings.picture = of_size(2, 9);
+    let said = take(&mut app, None, &file, false);
+    let few = "No picture was taken: 2×9 pixels are too few for the views side by side.";
+    assert_eq!(said, [(Severity::Error, few.to_owned())]);
+    session(&mut app).settings.picture = of_size(20, 10);
+    let within = folder.path().join("room.json").join("taken.png");
+    let said = take(&mut app, Some(0), &within, false);
+    assert!(said[0].0 == Severity::Error && said[0].1.contains("taken.png"), "{said:?}");
+    session(&mut app).settings.picture = of_size(16_384, 16_384);
+    let said = take(&mut app, Some(0), &folder.path().join("a.hdr"), false);
+    assert!(said[0].1.contains("16384×16384 are more pixels than it can hold"), "{said:?}");
+}
+
+#[test]
+fn numbers_stand_in_the_caption_and_legends_can_be_left_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut app = lab(folder.path());
+    side_by_side(&mut app);
+    let picture = |app: &mut App, options: PictureOptions| {
+        session(app).settings.picture = options;
+        let file = folder.path().join("taken.png");
+        let _ = take(app, None, &file, true);
+        Picture::read(&file)
+    };
+    // There is less room below small pictures.
+    for (of, more) in [(PictureOptions::default(), 1), (of_size(640, 360), 20)] {
+        let plain = picture(&mut app, of.clone());
+        let said = picture(&mut app, PictureOptions { numbers: true, ..of });
+        assert!(said.height >= plain.height && said.at(60, 45) == plain.at(60, 45));
+        let ink =
+            |p: &Picture| p.count(0..p.width, 0..p.height, |p| p[0] > 150 && p[0] == p[1] && p[1] == p[2]);
+        assert!(ink(&said).abs_diff(ink(&plain)) >= more, "{} {}", ink(&said), ink(&plain));
+    }
+    session(&mut app).document.change(
+        "Layout",
+        lights_camera_models::document::Extent::Rest,
+        Default::default(),
+        |scene| scene.comparison.layout = Layout::Difference,
+    );
+    let with = picture(&mut app, of_size(640, 360));
+    let without = picture(&mut app, PictureOptions { legend: false, ..of_size(640, 360) });
+    let differs = |(x, y): &(u32, u32)| with.at(*x, *y) != without.at(*x, *y);
+    let all = (0..640).flat_map(|x| (0..360).map(move |y| (x, y)));
+    assert!(all.filter(differs).count() > 500, "the legend is left out");
+}
+
+#[test]
+fn options_are_chosen_by_keys_and_kept() {
+    let mut session = Session::default();
+    session.settings.picture = of_size(1280, 720);
+    let mut bench = Bench::new(session);
+    bench.size = vec2(1280.0, 720.0);
+    bench.key(Key::P, Modifiers::COMMAND);
+    for wrong in ["0", "16385", "1.5", "many"] {
+        bench.type_into("Width in pixels", wrong);
+        assert!(bench.find("Choose a file…").is_some_and(|button| button.disabled), "{wrong}");
+        bench.key(Key::Enter, Modifiers::NONE);
+        assert!(bench.session.take_draft.is_some() && !bench.dialogs.is_open(), "{wrong}");
+    }
+    bench.type_into("Width in pixels", "640");
+    bench.click("Another background");
+    bench.click("Depth");
+    assert_eq!(bench.session.settings.picture, of_size(1280, 720), "not before a file is chosen");
+    bench.type_into("Height in pixels", "480");
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(bench.dialogs.is_open());
+    assert_eq!(bench.effects, [Effect::SaveSettings]);
+    let kept = &bench.session.settings.picture;
+    assert_eq!((kept.own, kept.background, kept.layers.len()), ([640, 480], Some([255; 3]), 4));
+    assert!(!bench.session.is_dirty(), "the scene has no part in it");
+}
+
+#[test]
+fn a_closed_window_changes_nothing() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.key(Key::P, Modifiers::COMMAND);
+    bench.click("Smooth edges");
+    bench.click("Caption");
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(bench.session.take_draft.is_none() && !bench.dialogs.is_open());
+    assert_eq!(bench.session.settings.picture, PictureOptions::default());
+    assert!(bench.session.settings.picture_caption && bench.effects.is_empty());
+    // The view is gone.
+    let ask = Action::Take(TakeCommand::Ask(Taken::Picture(Some(3))));
+    bench.apply(ask);
+    assert!(bench.session.take_draft.is_none());
+}
+
+#[test]
+fn the_window_of_options_fits() {
+    for scale in [100, 150] {
+        let variants = vec![Variant::default()];
+        let mut session = Session::new(Scene { variants, ..Scene::default() });
+        session.settings.picture = PictureOptions { background: Some([9, 9, 9]), ..of_size(16_384, 16_384) };
+        let mut bench = Bench::new(session);
+        bench.size = vec2(1280.0, 720.0);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        let whole = Rect::from_min_size(pos2(0.0, 0.0), bench.size / (f32::from(scale) / 100.0));
+        for of in [Taken::Picture(None), Taken::Sheet(None)] {
+            bench.apply(Action::Take(TakeCommand::Ask(of)));
+            bench.settle();
+            for label in ["Choose a file…", "Cancel", "Smooth edges"] {
+                let place = bench.find(label).expect(label).rect;
+                assert!(whole.contains_rect(place), "{scale} %, {label}: {place:?}");
+            }
+            bench.apply(Action::Take(TakeCommand::Close));
+        }
+    }
+}
+
+#[test]
+fn the_progress_of_a_picture_is_shown_and_it_can_be_stopped() {
+    let mut bench = Bench::new(Session::default());
+    let now = Running { label: (), done: 0.4, step: "64 of 256 samples".to_owned() };
+    bench.session.facts.picture = Some(now);
     bench.settle();
-    assert!(bench.find("Save the picture").is_some());
+    assert!(bench.says("Drawing the picture"));
+    bench.key(Key::P, Modifiers::COMMAND);
+    assert!(bench.session.take_draft.is_none(), "one at a time");
+    assert!(bench.session.messages.iter().any(|m| m.text.starts_with("A picture is still being drawn")));
+    bench.click("Cancel");
+    assert_eq!(bench.effects, [Effect::CancelPicture]);
+}
+
+/// Waits for a sheet, and returns what was said of it.
+fn sheet(app: &mut App, row: Option<usize>, path: &Path) -> Vec<(Severity, String)> {
+    session(app).messages.clear();
+    let effect = Effect::WriteSheet { row, path: path.to_owned() };
+    app.world_mut().resource_mut::<Messages<Effect>>().write(effect);
+    for _ in 0..3000 {
+        app.update();
+        let session = app.world().resource::<Session>();
+        if !session.messages.is_empty() {
+            return session.messages.iter().map(|m| (m.severity, m.text.clone())).collect();
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    panic!("the sheet is never written");
+}
+
+#[test]
+fn a_sheet_has_its_options_and_may_show_a_row() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut app = lab(folder.path());
+    let file = folder.path().join("sheet.png");
+    session(&mut app).settings.sheet =
+        SheetOptions { size: [60, 40], columns: 1, labels: false, differences: false, smooth: false };
+    let _ = sheet(&mut app, None, &file);
+    let views = Picture::read(&file);
+    assert!((60..80).contains(&views.width) && (80..110).contains(&views.height), "{}", views.height);
+    let said = sheet(&mut app, Some(0), &file);
+    assert_eq!(said, [(Severity::Error, "The sheet was not saved: objects[0] is in no row.".to_owned())]);
+    session(&mut app).document.change(
+        "Row",
+        lights_camera_models::document::Extent::Rest,
+        Default::default(),
+        |scene| {
+            let repeat = Repeat { columns: 3, spacing: [1.0, 0.0, 0.0].into(), ..Repeat::default() };
+            let entry = Object { repeat: Repetition::Entry(Box::new(repeat)), ..scene.objects[0].clone() };
+            let row = Scene { objects: vec![entry], ..Scene::default() };
+            scene.objects = row.expanded(&Registry::builtin()).expect("a row").objects;
+        },
+    );
+    let saved = sheet(&mut app, Some(1), &file);
+    assert!(saved[0].1.starts_with("Saved the sheet to "), "{saved:?}");
+    let copies = Picture::read(&file);
+    assert!(copies.width == views.width && copies.height > views.height, "{}", copies.height);
 }

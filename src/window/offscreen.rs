@@ -1,0 +1,122 @@
+//! Views drawn off screen, for pictures of another size or with another background than the window shows.
+//!
+//! The CPU renderer draws them, which tells its progress and can be stopped. Models that it cannot run, and edited
+//! shaders, which it ignores, are drawn by a renderer of their own on the GPU; the window goes on meanwhile.
+
+use std::{borrow::Cow, sync::atomic::AtomicBool};
+
+use crate::{
+    caption::Sampled,
+    channel::Setting,
+    compare::Shown,
+    optics::TermSelection,
+    progress::{Cancelled, Progress},
+    reference::{
+        LightSamples, Settings, Until, ignored_edits, render_channel_by, render_rgb8_noting, render_until,
+    },
+    registry::Registry,
+    render::capture::gpu::{GpuRenderer, Output},
+    scene::{Scene, has_extent},
+};
+
+/// Why a view was not drawn.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Undrawn {
+    /// The user cancelled.
+    #[error("cancelled")]
+    Cancelled,
+    /// For the given reason.
+    #[error("{0}")]
+    Failed(String),
+}
+
+impl From<Cancelled> for Undrawn {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+impl Undrawn {
+    fn of(error: impl ToString) -> Self {
+        Self::Failed(error.to_string())
+    }
+}
+
+/// A view to draw.
+pub(super) struct OffScreen<'a> {
+    /// The scene of the view.
+    pub(super) seen: &'a Scene,
+    pub(super) registry: &'a Registry,
+    pub(super) size: [u32; 2],
+    pub(super) samples: u32,
+    pub(super) terms: TermSelection,
+    /// The debug channel that it shows instead of the picture.
+    pub(super) channel: Option<Setting>,
+    /// True if its light and its coverage are needed as well.
+    pub(super) lit: bool,
+}
+
+impl OffScreen<'_> {
+    /// Draws the view. Returns also how lights with extent were sampled, if there are some.
+    pub(super) fn draw(&self, progress: &Progress) -> Result<(Shown, Option<Sampled>), Undrawn> {
+        progress.step(0.0, "drawing")?;
+        let drawn = if self.needs_gpu() { self.on_gpu()? } else { self.on_cpu(progress)? };
+        // An endless function of a custom model is detected only when it runs.
+        if let Some(why) = self.not_on_cpu().filter(|_| !self.needs_gpu()) {
+            return Err(Undrawn::Failed(why));
+        }
+        progress.step(1.0, "drawn")?;
+        Ok(drawn)
+    }
+
+    /// The reason why the CPU cannot draw it, if any.
+    fn not_on_cpu(&self) -> Option<String> {
+        let Self { seen, registry, .. } = self;
+        let mut models = seen.objects.iter().filter_map(|object| registry.model(seen.model_of(object)));
+        models.find_map(|model| model.not_on_cpu())
+    }
+
+    /// True if the CPU would draw it otherwise than the window, or not at all.
+    pub(super) fn needs_gpu(&self) -> bool {
+        self.not_on_cpu().is_some() || !ignored_edits(self.registry, self.seen).is_empty()
+    }
+
+    fn on_cpu(&self, progress: &Progress) -> Result<(Shown, Option<Sampled>), Undrawn> {
+        let Self { seen, registry, size: [width, height], samples, terms, channel, lit } = *self;
+        let settings = Settings { width, height, samples, terms };
+        let alone = channel.filter(|setting| setting.channel.is_picture());
+        let seen = alone.map_or(Cow::Borrowed(seen), |setting| Cow::Owned(setting.lit(seen)));
+        let of_codes = |rgb8| Shown::of_codes(width, height, rgb8).map_err(Undrawn::of);
+        if let Some(setting) = channel.filter(|_| alone.is_none()) {
+            let samples = LightSamples::default();
+            return Ok((of_codes(render_channel_by(&seen, registry, &settings, &setting, samples))?, None));
+        }
+        let odd = AtomicBool::default();
+        if !lit && !has_extent(seen.shining(), registry) {
+            return Ok((of_codes(render_rgb8_noting(&seen, registry, &settings, &odd))?, None));
+        }
+        let (light, sampled) = render_until(&seen, registry, &settings, Until::default(), &odd, progress)?;
+        let sampled = Some(sampled).filter(|sampled| sampled.samples > 0);
+        Ok((Shown::of_light(light, &seen.display), sampled))
+    }
+
+    fn on_gpu(&self) -> Result<(Shown, Option<Sampled>), Undrawn> {
+        let Self { seen, registry, size: [width, height], samples, terms, channel, .. } = *self;
+        let samples = if samples > 1 { 4 } else { 1 };
+        let renderer = GpuRenderer::extended(width, height, samples, Output::Display, |app| {
+            app.insert_resource(registry.clone());
+        });
+        let mut renderer = renderer.map_err(Undrawn::of)?;
+        renderer.set_scene(seen.clone());
+        renderer.set_terms(terms);
+        renderer.set_channel(channel);
+        renderer.settle().map_err(Undrawn::of)?;
+        if let Some(problem) = renderer.shader_problem() {
+            return Err(Undrawn::of(problem));
+        }
+        let rgb8 = renderer.read_rgb8().map_err(Undrawn::of)?;
+        let extent = has_extent(seen.shining(), registry);
+        let sampled = extent.then_some(Sampled { samples: LightSamples::DEFAULT, noise: None });
+        Ok((Shown::of_codes(width, height, rgb8).map_err(Undrawn::of)?, sampled))
+    }
+}
