@@ -1,4 +1,5 @@
-//! Enums whose values are declared in a file each, lists of types that are, and choices, which take a line each.
+//! Enums whose values are declared in a file each, lists of types that are, choices, which take a line each, and structs
+//! whose fields are declared with their defaults.
 
 /// An enum with the static that declares each of its values. The declaration has an `id`.
 macro_rules! declared {
@@ -89,4 +90,22 @@ macro_rules! choice {
     };
 }
 
-pub(crate) use {choice, declared, take_each};
+/// A struct whose fields are declared with their defaults: `field: Type = default,`.
+macro_rules! with_defaults {
+    ($(#[$about:meta])* $visible:vis struct $Name:ident {
+        $($(#[$help:meta])* $of_field:vis $field:ident: $Type:ty = $default:expr,)+
+    }) => {
+        $(#[$about])*
+        $visible struct $Name {
+            $($(#[$help])* $of_field $field: $Type,)+
+        }
+
+        impl Default for $Name {
+            fn default() -> Self {
+                Self { $($field: $default,)+ }
+            }
+        }
+    };
+}
+
+pub(crate) use {choice, declared, take_each, with_defaults};

@@ -110,39 +110,26 @@ pub struct Series {
     pub mark: Mark,
 }
 
-/// A plot with two axes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plot {
-    /// The content, for screen readers.
-    pub title: String,
-    /// The line above the plot; often empty if there is a caption below.
-    pub heading: String,
-    /// The horizontal axis.
-    pub x: Axis,
-    /// The vertical axis.
-    pub y: Axis,
-    /// The curves.
-    pub series: Vec<Series>,
-    /// Width and height.
-    pub size: (u32, u32),
-    /// True if the plot has a legend, at the right.
-    pub legend: bool,
-    /// Remarks below the plot.
-    pub notes: Vec<String>,
-}
-
-impl Default for Plot {
-    fn default() -> Self {
-        Self {
-            title: String::new(),
-            heading: String::new(),
-            x: Axis::new("", 0.0, 1.0, 6),
-            y: Axis::new("", 0.0, 1.0, 6),
-            series: Vec::new(),
-            size: (960, 600),
-            legend: true,
-            notes: Vec::new(),
-        }
+with_defaults! {
+    /// A plot with two axes.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Plot {
+        /// The content, for screen readers.
+        pub title: String = String::new(),
+        /// The line above the plot; often empty if there is a caption below.
+        pub heading: String = String::new(),
+        /// The horizontal axis.
+        pub x: Axis = Axis::new("", 0.0, 1.0, 6),
+        /// The vertical axis.
+        pub y: Axis = Axis::new("", 0.0, 1.0, 6),
+        /// The curves.
+        pub series: Vec<Series> = Vec::new(),
+        /// Width and height.
+        pub size: (u32, u32) = (960, 600),
+        /// True if the plot has a legend, at the right.
+        pub legend: bool = true,
+        /// Remarks below the plot.
+        pub notes: Vec<String> = Vec::new(),
     }
 }
 
