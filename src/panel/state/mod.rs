@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 
-use bevy::ecs::resource::Resource;
+use bevy::prelude::{Deref, DerefMut, Resource};
 
 pub use action::{Action, Answer, ExportCommand, ModelCommand};
 pub use area::{Cell, PictureArea};
@@ -89,7 +89,7 @@ mod terms;
 mod view;
 
 /// The state of the window. What belongs to the open document besides its scene and file stands in the [`Desk`].
-#[derive(Clone, Debug, Resource)]
+#[derive(Clone, Debug, Deref, DerefMut, Resource)]
 pub struct Session {
     /// The document: the scene and its edit history.
     pub document: Document,
@@ -97,6 +97,7 @@ pub struct Session {
     pub path: Option<PathBuf>,
     /// The part shown in the properties panel.
     pub selection: Selection,
+    #[deref]
     desk: Desk,
     /// The part being renamed in the scene list.
     pub renaming: Option<Selection>,
