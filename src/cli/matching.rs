@@ -21,7 +21,7 @@ use crate::{
     registry::Registry,
     scene::{
         Scene,
-        save::{self, Expected},
+        save::{self, Expected, SaveError, Unwritten},
         variant::LETTERS,
     },
     text::listed,
@@ -82,7 +82,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         outputs::spare(file, &inputs(source.path(), [&scene], &workshop.registry))?;
     }
     if let Some(file) = arguments.output.as_deref().filter(|file| !arguments.overwrite && file.exists()) {
-        return Err(unwritten(&save::SaveError::Exists { path: file.to_owned() }));
+        return Err(unwritten(&SaveError { path: file.to_owned(), why: Unwritten::Exists }));
     }
     let registry = &workshop.registry;
     drawable(registry, &scene)?;
@@ -131,9 +131,9 @@ fn write(file: &Path, scene: &Scene, registry: &Registry, expected: Expected) ->
     save::write(file, scene, registry, expected).map(drop).map_err(|error| unwritten(&error))
 }
 
-fn unwritten(error: &save::SaveError) -> Failure {
-    let advice = match error {
-        save::SaveError::Exists { .. } => "; --overwrite replaces it",
+fn unwritten(error: &SaveError) -> Failure {
+    let advice = match error.why {
+        Unwritten::Exists => "; --overwrite replaces it",
         _ => "",
     };
     Failure::Write(format!("{error}{advice}"))
