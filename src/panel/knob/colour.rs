@@ -19,20 +19,19 @@ use crate::{
 impl Knob for Colour {
     fn show(&self, ui: &mut Ui, of: &Declared, value: &Value) -> Option<Value> {
         let Value::Colour(rgb) = *value else { return None };
-        colour_knob(ui, of.salt, &of.caption, rgb, Some(self.default)).map(Value::Colour)
+        colour_knob(ui, &of.caption, rgb, Some(self.default)).map(Value::Colour)
     }
 }
 
 /// A knob for a colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.
 pub fn colour_knob(
     ui: &mut Ui,
-    salt: &str,
     caption: &Caption,
     value: [u8; 3],
     default: Option<[u8; 3]>,
 ) -> Option<[u8; 3]> {
-    let id = ui.make_persistent_id(salt);
-    let out = knob(ui, salt, caption, |ui| {
+    let id = ui.make_persistent_id(caption.salt);
+    let out = knob(ui, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let [r, g, b] = value;
         let (label, hex) = head(ui, caption, Words::Leave(NUMBER), |ui| {

@@ -17,21 +17,20 @@ use crate::{
 impl Knob for Triple {
     fn show(&self, ui: &mut Ui, of: &Declared, value: &Value) -> Option<Value> {
         let (Value::Triple(v), limits) = (value, of.parameter.kind.limits()?) else { return None };
-        triple_knob(ui, of.salt, &of.caption, *v, self.default, &limits).map(Value::Triple)
+        triple_knob(ui, &of.caption, *v, self.default, &limits).map(Value::Triple)
     }
 }
 
 /// A knob for a number in red, green and blue: one field for all three, and one for each.
 pub fn triple_knob(
     ui: &mut Ui,
-    salt: &str,
     caption: &Caption,
     value: [f32; 3],
     default: [f32; 3],
     limits: &Limits,
 ) -> Option<[f32; 3]> {
-    let id = ui.make_persistent_id(salt);
-    let out = knob(ui, salt, caption, |ui| {
+    let id = ui.make_persistent_id(caption.salt);
+    let out = knob(ui, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let plain = |v: f32| number(f64::from(v));
         let list = |v: [f32; 3]| v.map(plain).join(", ");
