@@ -123,6 +123,33 @@ macro_rules! whole {
 
 whole! { SceneSize: Size; Observer: Observer; Display: Display; Comparison: Comparison; }
 
+/// The insertion of parts into a list.
+macro_rules! insert {
+    ($($(#[$about:meta])+ $insert:ident: $list:ident, $Part:ident, $of_list:ident;)+) => {
+        impl Document {
+            $($(#[$about])+
+            pub fn $insert(
+                &mut self, i: usize, part: $Part, verb: &str, selection: Selection, registry: &Registry,
+            ) {
+                let label = self.next_label();
+                self.labels.$list.insert(i, label);
+                self.scene.$list.insert(i, part.clone());
+                self.number_parts(Some(registry));
+                let patch = Patch::$of_list(i, Vec::new(), vec![(self.labels.$list[i], part)]);
+                let name = format!("{verb} {}", self.name_of(Selection::$Part(i), registry));
+                self.came_or_went(patch, name, selection);
+            })+
+        }
+    };
+}
+
+insert! {
+    /// Inserts a light into the list. `verb` begins the name of the step: "Add", "Duplicate".
+    insert_light: lights, Light, of_lights;
+    /// Inserts an object into the list.
+    insert_object: objects, Object, of_objects;
+}
+
 impl Document {
     /// Makes a change, if the rules of scenes allow it. `selection` is the current selection.
     ///
@@ -282,42 +309,6 @@ impl Document {
             }
         });
         Ok(())
-    }
-
-    /// Inserts a light into the list. `verb` begins the name of the step: "Add", "Duplicate".
-    pub fn insert_light(
-        &mut self,
-        i: usize,
-        light: Light,
-        verb: &str,
-        selection: Selection,
-        registry: &Registry,
-    ) {
-        let label = self.next_label();
-        self.labels.lights.insert(i, label);
-        self.scene.lights.insert(i, light.clone());
-        self.number_parts(Some(registry));
-        let patch = Patch::of_lights(i, Vec::new(), vec![(self.labels.lights[i], light)]);
-        let name = format!("{verb} {}", self.name_of(Selection::Light(i), registry));
-        self.came_or_went(patch, name, selection);
-    }
-
-    /// Inserts an object into the list.
-    pub fn insert_object(
-        &mut self,
-        i: usize,
-        object: Object,
-        verb: &str,
-        selection: Selection,
-        registry: &Registry,
-    ) {
-        let label = self.next_label();
-        self.labels.objects.insert(i, label);
-        self.scene.objects.insert(i, object.clone());
-        self.number_parts(Some(registry));
-        let patch = Patch::of_objects(i, Vec::new(), vec![(self.labels.objects[i], object)]);
-        let name = format!("{verb} {}", self.name_of(Selection::Object(i), registry));
-        self.came_or_went(patch, name, selection);
     }
 
     /// Removes a light or an object.

@@ -179,7 +179,7 @@ pub fn list<'e, T>(
         }
     });
     ui.separator();
-    ui.add(Label::new(theme::small(ui, words.foot)).wrap());
+    theme::note(ui, words.foot);
     if edit.changed() {
         row = 0;
     }

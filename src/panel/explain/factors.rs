@@ -47,7 +47,7 @@ pub(super) fn factor(
                 clicked = rows::calculation(ui, numbers, &line.symbols, name);
             }
         } else {
-            rows::note(ui, "Calculated by the program: it has no equation that one could follow by hand.");
+            theme::note(ui, "Calculated by the program: it has no equation that one could follow by hand.");
         }
         if let Some(curve) = geometry.and_then(|geometry| curve(ui, model, geometry, line.defines())) {
             plot(ui, &curve, line);
@@ -57,7 +57,7 @@ pub(super) fn factor(
             source => source,
         };
         if !source.is_empty() {
-            rows::note(ui, &format!("Source: {source}"));
+            theme::note(ui, format!("Source: {source}"));
         }
         ui.add_space(4.0);
     });

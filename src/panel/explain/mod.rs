@@ -332,9 +332,9 @@ fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, re
     rows::heading(ui, &session.name_of(Selection::Object(seen.object.index), registry));
     let d = seen.model.declaration;
     let author = if d.author.is_empty() { String::new() } else { format!(" · {}", d.author) };
-    rows::note(ui, &format!("{}{author}", d.name));
+    theme::note(ui, format!("{}{author}", d.name));
     if seen.model.interpreted {
-        rows::note(ui, "The CPU interprets the WGSL of this model.");
+        theme::note(ui, "The CPU interprets the WGSL of this model.");
     }
     ui.add_space(2.0);
     if let Some(shading) = registry.shading_model(seen.shading.id) {

@@ -67,7 +67,7 @@ pub(super) fn light(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
 fn equation(ui: &mut Ui, entry: &LightEntry) {
     let d = entry.declaration;
     if !d.summary.is_empty() {
-        ui.add(Label::new(theme::small(ui, d.summary)).wrap());
+        theme::note(ui, d.summary);
     }
     maths::equation(ui, &[EquationPart { term: Term::Total, text: d.equation }], |symbol| match symbol {
         "I" => Some("the intensity of the light".to_owned()),

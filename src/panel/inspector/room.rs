@@ -43,7 +43,7 @@ pub(super) fn room(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.add_space(8.0);
     let text = format!("{} · {}", plural(s.lights.len(), "light"), plural(objects, "object"));
     let text = if own > 0 { format!("{text}, {own} with an override of model or shading") } else { text };
-    ui.add(Label::new(theme::small(ui, text)).wrap());
+    theme::note(ui, text);
 }
 
 /// Exposure, tone mapping and encoding, which a view may override.

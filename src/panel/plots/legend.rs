@@ -6,7 +6,7 @@ use super::{
     Entry, PlotPanel, Recipe, Request, links,
     reading::{self, Reading},
     request::Drawn,
-    surface::{right_end, sample, sample_size, small_lines},
+    surface::{right_end, sample, sample_size},
 };
 use crate::{
     curves::{
@@ -73,7 +73,7 @@ pub(super) fn show(
         let notes = panel.figure.as_ref().map_or(&[][..], |built| &built.notes);
         if !notes.is_empty() {
             ui.add_space(6.0);
-            notes.iter().for_each(|note| small_lines(ui, note));
+            notes.iter().for_each(|note| _ = theme::note(ui, note));
         }
     });
     pointed
@@ -178,7 +178,7 @@ fn row(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, kind: Kind, context: &mut 
                     && let Some(i) = scene.objects.iter().position(|o| std::ptr::eq(o, object))
                 {
                     let of = session.name_of(Selection::Object(i), context.registry());
-                    small_lines(ui, &format!("now: {of}"));
+                    theme::note(ui, format!("now: {of}"));
                 }
                 if let Some(Err(why)) = known.filter(|_| entry.shown) {
                     let text = RichText::new(format!("{why}.")).small().color(palette.warning);
