@@ -85,12 +85,9 @@ pub(super) fn find(scene: &Scene, name: &str) -> Result<usize, String> {
     letter.or_else(named).ok_or_else(|| {
         let names = scene.variants.iter().filter_map(|variant| variant.name.as_deref());
         let hint = did_you_mean(name, names.map(|n| (n, n)));
-        let known = |(i, letter): (usize, &&str)| match i.checked_sub(1).and_then(|i| scene.variants.get(i)) {
-            Some(variant) => match &variant.name {
-                Some(name) => format!("{letter} ({name})"),
-                None => (*letter).to_owned(),
-            },
-            None => (*letter).to_owned(),
+        let known = |(i, letter): (usize, &&str)| {
+            let name = i.checked_sub(1).and_then(|i| scene.variants.get(i)?.name.as_deref());
+            name.map_or_else(|| (*letter).to_owned(), |name| format!("{letter} ({name})"))
         };
         let known: Vec<_> = letters.iter().enumerate().map(known).collect();
         format!("there is no view {}; it must be {}{hint}", quoted(name), listed(&known, "or"))

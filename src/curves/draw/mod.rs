@@ -21,6 +21,8 @@ pub use slices::{GAP, SIDE, Slices, Tile};
 use bitmap::Bitmap;
 use svg::{Place, Svg};
 
+use crate::declared::with_defaults;
+
 /// The colour of text and axes in stand-alone figures.
 const INK: [u8; 3] = [28, 29, 31];
 /// The colour of grid lines behind the curves.

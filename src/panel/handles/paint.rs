@@ -50,7 +50,7 @@ fn colour_of(handle: Handle, state: State) -> Color32 {
 
 /// Paints the handles with the given opacity, each in its state; the one under the pointer is on top.
 pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], opacity: f32, state: impl Fn(Handle) -> State) {
-    let painter = ui.painter_at(lens.rect());
+    let painter = ui.painter_at(lens.rect);
     for hot in [false, true] {
         let mut ink = Ink::new(lens);
         let mut letters: Vec<(Pos2, &'static str, Color32)> = Vec::new();
@@ -138,7 +138,7 @@ pub(super) fn guide(ui: &Ui, lens: Lens, at: Vec3, axis: usize, room: SceneSize)
     for run in lens.path(&ends) {
         ink.stroke(run, 1.0, AXES[axis].gamma_multiply(0.6));
     }
-    ink.paint(&ui.painter_at(lens.rect()));
+    ink.paint(&ui.painter_at(lens.rect));
 }
 
 /// The arms of an angle.
@@ -148,7 +148,7 @@ pub(super) fn angle(ui: &Ui, lens: Lens, at: Vec3, ends: [Pos2; 2]) {
     for end in ends {
         ink.stroke(vec![middle, end], 1.0, WHITE.gamma_multiply(0.7));
     }
-    ink.paint(&ui.painter_at(lens.rect()));
+    ink.paint(&ui.painter_at(lens.rect));
 }
 
 /// A plate with numbers beside the pointer.

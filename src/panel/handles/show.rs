@@ -250,7 +250,7 @@ fn drag(
         let Handle { sort, which } = grasp.handle;
         (sort.guide)(ui, *lens, which, target.at, [grasp.pointer, pointer], room);
         if let Some(shown) = shown {
-            paint::plate(ui, lens.rect(), pointer, grasp.words(shown, lens.metres(grasp.at, 1.0)));
+            paint::plate(ui, lens.rect, pointer, grasp.words(shown, lens.metres(grasp.at, 1.0)));
         }
     }
     let changed = legal.filter(|edit| !is_same(edit, now.and_then(|now| hold.grasp.edit(now))));

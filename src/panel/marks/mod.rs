@@ -253,7 +253,7 @@ fn beam(
 /// True if the pyramid of the observer would frame the picture, seen from within, or cover objects, seen over its shoulder.
 fn is_in_the_way(lens: &Lens, scene: &Scene) -> bool {
     let Observer { position, direction, .. } = scene.observer;
-    if lens.eye().distance(position) <= OBSERVER_MARK {
+    if lens.eye.distance(position) <= OBSERVER_MARK {
         return true;
     }
     let (way, [.., ahead]) = (look_along(direction) * Vec3::NEG_Z, lens.axes());
@@ -298,7 +298,7 @@ fn frame(ui: &Ui, ink: &mut Ink, object: &Object, registry: &Registry) {
         mesh
     });
     let (lens, turn) = (ink.lens, rotation(object.rotation));
-    let view = lens.rect().shrink(FRAME);
+    let view = lens.rect.shrink(FRAME);
     let seen = mesh.iter().map(|p| lens.project(object.position + turn * (object.size * *p)));
     // A part that reaches behind the camera is all around it.
     let around = match seen.collect::<Option<Vec<_>>>() {
