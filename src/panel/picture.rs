@@ -125,12 +125,12 @@ impl Overlaid<'_, '_> {
             return;
         }
         // Marks keep clear of what was written over the picture in the previous frame.
-        let before = &self.context.area().written;
+        let sight = marks::Sight { rect, written: &self.context.area().written, session, registry };
         // Handles would cover the pixel that is explained or that a lesson refers to, and look like vectors.
         let covers = session.explains() || session.lesson.is_some();
         let paints = [marks::marks, handles::handles];
         for paint in paints.into_iter().take(if covers { 1 } else { 2 }) {
-            let (asked, places) = paint(ui, rect, before, session, registry);
+            let (asked, places) = paint(ui, sight);
             self.context.actions.extend(asked);
             self.places.extend(places);
         }

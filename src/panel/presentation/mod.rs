@@ -88,9 +88,8 @@ impl Stage {
         let mut hasher = DefaultHasher::new();
         let objects: Vec<_> = session.scene().shown().map(|o| (o.position, o.size)).collect();
         format!("{equation:?} {parts:?} {whole:?} {objects:?} {}", since(ui)).hash(&mut hasher);
-        kept(ui, "stage of the presentation", hasher.finish(), |ui| {
-            Self::laid_out(ui, whole, session, equation, parts)
-        })
+        let (ctx, id) = (ui.ctx().clone(), Id::new("stage of the presentation"));
+        kept::of_key(&ctx, id, hasher.finish(), || Self::laid_out(ui, whole, session, equation, parts))
     }
 
     fn laid_out(
@@ -181,22 +180,6 @@ impl Stage {
 fn model_of<'r>(session: &Session, registry: &'r Registry) -> Option<&'r ModelEntry> {
     let models = models_shown(session);
     models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1)
-}
-
-/// Returns the value cached under a name if it has the same key, otherwise makes it.
-fn kept<T: Clone + Send + Sync + 'static>(
-    ui: &mut Ui,
-    name: &str,
-    key: u64,
-    make: impl FnOnce(&mut Ui) -> T,
-) -> T {
-    let id = Id::new(name);
-    if let Some((_, known)) = ui.data(|d| d.get_temp::<(u64, T)>(id)).filter(|(of, _)| *of == key) {
-        return known;
-    }
-    let made = make(ui);
-    ui.data_mut(|d| d.insert_temp(id, (key, made.clone())));
-    made
 }
 
 /// Shows the equation of a model in columns from a corner on.
