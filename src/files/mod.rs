@@ -160,19 +160,16 @@ pub enum FileError {
 
 impl From<FileError> for io::Error {
     fn from(error: FileError) -> Self {
-        let kind = match &error {
+        let kind = match error {
+            FileError::Io(error) => return error,
             FileError::Kind(Kind::Folder) => io::ErrorKind::IsADirectory,
             FileError::Kind(_) => io::ErrorKind::InvalidInput,
             FileError::TooLarge(_) => io::ErrorKind::FileTooLarge,
             FileError::Taken => io::ErrorKind::AlreadyExists,
             FileError::Outside(_) => io::ErrorKind::PermissionDenied,
-            FileError::Unfinished { error, .. } => error.kind(),
-            FileError::Io(_) => io::ErrorKind::Other,
+            FileError::Unfinished { ref error, .. } => error.kind(),
         };
-        match error {
-            FileError::Io(error) => error,
-            error => Self::new(kind, error.to_string()),
-        }
+        Self::new(kind, error.to_string())
     }
 }
 
