@@ -324,8 +324,9 @@ impl Document {
                 let Some(old) = labels.get($i).copied().zip(parts.get($i).cloned()) else {
                     return Patch::default();
                 };
+                let (_, before) = &old;
                 change(self);
-                let retyped = { &old.1 }.$type != self.scene.$list[$i].$type;
+                let retyped = before.$type != self.scene.$list[$i].$type;
                 if retyped {
                     self.labels.$list[$i].number = 0;
                     self.number_parts(registry);

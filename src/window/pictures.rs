@@ -81,7 +81,8 @@ fn take(
     for effect in effects.read() {
         let Effect::Picture { view, file, overwrite } = effect.clone() else { continue };
         // The user need not type the extension of pictures.
-        let file = file.map(|file| if file.extension().is_none() { file.with_extension("png") } else { file });
+        let file =
+            file.map(|file| if file.extension().is_none() { file.with_extension("png") } else { file });
         match file.as_deref().map_or(Ok(true), |file| may_write(file, overwrite, &session, &registry)) {
             Ok(true) => pictures.wanted.push_back(Wanted { view, file, since: Instant::now() }),
             Ok(false) => {

@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Color32, Id, Response, Sense, Stroke, Ui, WidgetInfo
 
 use super::{
     Declared, Knob,
-    field::{complaint, field, text_field},
+    field::{Entry, complaint, field, text_field},
     line::{Caption, NUMBER, Words, explain, head, knob, tooltip, unit},
     picker::picker,
     vector::axis_letter,
@@ -42,7 +42,8 @@ pub fn colour_knob(
                 parse_hex(text)
                     .ok_or_else(|| "is not a colour; must be # and six hexadecimal digits".to_owned())
             };
-            text_field(ui, id.with("hex"), &name, &shown, "", 72.0, read)
+            let id = id.with("hex");
+            text_field(ui, Entry { id, name: &name, shown: &shown, hint: "", width: 72.0 }, read)
         });
         let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
         let rule = format!(

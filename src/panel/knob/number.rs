@@ -11,7 +11,7 @@ use super::{
 use crate::{
     panel::{menu, theme::Palette},
     parameter::{Value, kind::number::Number},
-    scene::limits::{Limits, number},
+    scene::limits::number,
     text::capitalised,
 };
 

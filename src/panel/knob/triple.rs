@@ -4,7 +4,7 @@ use bevy_egui::egui::Ui;
 
 use super::{
     Declared, Knob,
-    field::{complaint, read, text_field},
+    field::{Entry, complaint, read, text_field},
     line::{Caption, NUMBER, Words, explain, head, knob, tooltip, unit},
     vector::three_fields,
 };
@@ -40,7 +40,8 @@ pub fn triple_knob(
             let shown = if same { plain(value[0]) } else { String::new() };
             let read = |text: &str| read(text, limits).map(|v| [v as f32; 3]);
             let name = format!("{}: all three", caption.label);
-            text_field(ui, id.with("all"), &name, &shown, "all", 64.0, read)
+            let id = id.with("all");
+            text_field(ui, Entry { id, name: &name, shown: &shown, hint: "all", width: 64.0 }, read)
         });
         let mut out = all.value;
         let rule = format!("each {}. Default {}", limits.rule(), list(default));

@@ -61,10 +61,13 @@ const FRAME: f32 = 7.0;
 /// A picture on the screen.
 #[derive(Clone, Copy)]
 pub struct Sight<'a> {
+    /// Its rectangle.
     pub rect: Rect,
     /// The rectangles that are written over it.
     pub written: &'a [Rect],
+    /// The session that it shows.
     pub session: &'a Session,
+    /// The known types and models.
     pub registry: &'a Registry,
 }
 

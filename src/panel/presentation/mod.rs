@@ -81,7 +81,8 @@ impl Stage {
     #[must_use]
     pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
         // None with several models, since it would seem to apply to all of them.
-        let equation = model_of(session, registry).map(|model| maths::definitions(model.declaration.equation));
+        let equation =
+            model_of(session, registry).map(|model| maths::definitions(model.declaration.equation));
         let equation = equation.unwrap_or_default();
         let parts = caption::parts(session, registry);
         // A turning camera must not move the layout: its position at the start counts.

@@ -235,6 +235,10 @@ impl Visible {
     fn shows(&self, model: &str, shading: &ShadingEntry) -> bool {
         self.0.iter().any(|(m, s, _)| m == model && s == shading.declaration.id)
     }
+
+    fn has(&self, key: &Key) -> bool {
+        self.0.iter().any(|(model, shading, lights)| model == key.0 && shading == key.1 && *lights == key.2)
+    }
 }
 
 /// Exchanges the shaders whose files changed.
@@ -263,9 +267,7 @@ pub(super) fn exchange(world: &mut World) {
         live.adopt(world, &visible);
         let registry = world.resource::<Registry>().clone();
         live.work(world, &registry, &visible);
-        let is_visible =
-            |key: &Key| visible.0.iter().any(|(m, s, lights)| (&**m, &**s, *lights) == (key.0, key.1, key.2));
-        if live.shaders.iter().any(|(key, shader)| shader.due && is_visible(key)) {
+        if live.shaders.iter().any(|(key, shader)| shader.due && visible.has(key)) {
             // Problems are reported when all of them are known.
             live.stale_status = true;
             return;
