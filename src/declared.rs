@@ -1,5 +1,5 @@
-//! Enums whose values are declared in a file each, lists of types that are, choices, which take a line each, and structs
-//! whose fields are declared with their defaults.
+//! Enums whose values are declared in a file each, lists of types that are, choices and conversions, which take a line
+//! each, and structs whose fields are declared with their defaults.
 
 /// An enum with the static that declares each of its values. The declaration has an `id`.
 macro_rules! declared {
@@ -90,6 +90,26 @@ macro_rules! choice {
     };
 }
 
+/// An enum, each value with its words, and the method that returns them.
+macro_rules! in_words {
+    ($(#[$about:meta])* $visible:vis enum $Name:ident {
+        $($(#[$doc:meta])* $Value:ident = $words:literal,)+
+    } $(#[$of:meta])* $method:ident) => {
+        $(#[$about])*
+        $visible enum $Name {
+            $($(#[$doc])* $Value,)+
+        }
+
+        impl $Name {
+            $(#[$of])*
+            #[must_use]
+            $visible const fn $method(self) -> &'static str {
+                [$($words),+][self as usize]
+            }
+        }
+    };
+}
+
 /// A struct whose fields are declared with their defaults: `field: Type = default,`.
 macro_rules! with_defaults {
     ($(#[$about:meta])* $visible:vis struct $Name:ident {
@@ -108,4 +128,15 @@ macro_rules! with_defaults {
     };
 }
 
-pub(crate) use {choice, declared, take_each, with_defaults};
+/// The conversions of types into one type.
+macro_rules! from {
+    ($Into:ty; $($Type:ty: |$from:ident| $value:expr;)+) => {
+        $(impl From<$Type> for $Into {
+            fn from($from: $Type) -> Self {
+                $value
+            }
+        })+
+    };
+}
+
+pub(crate) use {choice, declared, from, in_words, take_each, with_defaults};

@@ -10,6 +10,7 @@ use super::{
     names::{light_type, object_type},
 };
 use crate::{
+    declared::from,
     parameter::Value,
     registry::Registry,
     scene::{
@@ -108,20 +109,22 @@ fn replace<T: Fields>(part: &mut T, new: T) -> bool {
     old.value(name) != part.value(name)
 }
 
-/// Edits of whole parts.
-macro_rules! whole {
-    ($($Part:ident: $part:ident;)+) => {
-        $(impl From<$Part> for Edit {
-            fn from(part: $Part) -> Self {
-                let mut values = Vec::new();
-                part.each(&mut |field, held, _| values.push((Key::Own(field.key), held.value())));
-                Self::Set { part: Part::$part, values, what: None }
-            }
-        })+
-    };
+impl Edit {
+    /// The edit of a whole part.
+    fn whole(part: Part, of: &impl Fields) -> Self {
+        let mut values = Vec::new();
+        of.each(&mut |field, held, _| values.push((Key::Own(field.key), held.value())));
+        Self::Set { part, values, what: None }
+    }
 }
 
-whole! { SceneSize: Size; Observer: Observer; Display: Display; Comparison: Comparison; }
+from! {
+    Edit;
+    SceneSize: |size| Self::whole(Part::Size, &size);
+    Observer: |observer| Self::whole(Part::Observer, &observer);
+    Display: |display| Self::whole(Part::Display, &display);
+    Comparison: |comparison| Self::whole(Part::Comparison, &comparison);
+}
 
 /// The insertion of parts into a list.
 macro_rules! insert {

@@ -7,6 +7,7 @@ use super::{
     problems::Problems,
 };
 use crate::{
+    declared::in_words,
     parameter::Parameter,
     registry::Registry,
     scene::{
@@ -22,35 +23,24 @@ use crate::{
 /// The name of the first column.
 pub(super) const PART: &str = "part";
 
-/// The kinds of rows, by the names in the first column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
-    Scene,
-    Light,
-    Observer,
-    Object,
+in_words! {
+    /// The kinds of rows, by the names in the first column.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(super) enum Part {
+        Scene = "scene",
+        Light = "light",
+        Observer = "observer",
+        Object = "object",
+    }
+    name
 }
 
 impl Part {
     pub(super) const ALL: [Self; 4] = [Self::Scene, Self::Light, Self::Observer, Self::Object];
 
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Scene => "scene",
-            Self::Light => "light",
-            Self::Observer => "observer",
-            Self::Object => "object",
-        }
-    }
-
     /// The fields of the part.
     fn fields(self) -> &'static [&'static Field] {
-        match self {
-            Self::Scene => Scene::FIELDS,
-            Self::Light => Light::FIELDS,
-            Self::Observer => Observer::FIELDS,
-            Self::Object => Object::FIELDS,
-        }
+        [Scene::FIELDS, Light::FIELDS, Observer::FIELDS, Object::FIELDS][self as usize]
     }
 }
 
@@ -58,8 +48,8 @@ impl Part {
 const AXES: [&str; 3] = ["x", "y", "z"];
 const CHANNELS: [&str; 3] = ["r", "g", "b"];
 
-/// True if parts of tables have a vector under this key.
-fn is_vector(key: &str) -> bool {
+/// True if parts of tables have a vector under this key; each of its components has its own column in a new table.
+pub(super) fn is_vector(key: &str) -> bool {
     let kinds = Part::ALL.into_iter().flat_map(Part::fields);
     let mut named = kinds.filter(|field| field.key == key);
     named.any(|field| matches!(field.kind, Kind::Position | Kind::Direction | Kind::Rotation))
@@ -90,11 +80,6 @@ impl Column {
 /// The names of the components of a list.
 pub(super) fn components(key: &str) -> [&'static str; 3] {
     if is_vector(key) { AXES } else { CHANNELS }
-}
-
-/// True if each component of a list has its own column in a new table.
-pub(super) fn is_spread(key: &str) -> bool {
-    is_vector(key)
 }
 
 /// All columns that a table may have, in the order of a new table.

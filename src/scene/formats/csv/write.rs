@@ -149,7 +149,7 @@ fn flatten(name: &str, value: &Ast, json: &str, manner: &Manner, cells: &mut Vec
             let key = name.rsplit('.').next().unwrap_or_default();
             let each = columns::components(key).map(|component| format!("{name}.{component}"));
             let has = |name: &str| manner.columns.iter().any(|column| column == name);
-            let is_spread = each.iter().any(|name| has(name)) || columns::is_spread(key) && !has(name);
+            let is_spread = each.iter().any(|name| has(name)) || columns::is_vector(key) && !has(name);
             if is_spread {
                 cells.extend(each.into_iter().zip(list.elements.iter().map(number)));
             } else {
