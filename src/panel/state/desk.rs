@@ -14,3 +14,12 @@ pub struct Desk {
     /// The models that keys 1–9 choose.
     pub model_slots: ModelSlots,
 }
+
+impl Desk {
+    /// The desk of a document with this reflection model.
+    pub(super) fn with(model: &str) -> Self {
+        let mut desk = Self::default();
+        desk.model_slots.take(model);
+        desk
+    }
+}
