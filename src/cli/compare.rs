@@ -52,9 +52,9 @@ pub(super) struct Arguments {
     sampling: Sampling,
     #[command(flatten)]
     choice: Choice,
-    #[arg(long, value_name = "METRIC=VALUE", value_parser = |text: &str| limit(text, false), help = help("larger", false))]
+    #[arg(long, value_name = "METRIC=VALUE", value_parser = above, help = help("larger", false))]
     fail_above: Vec<Limit>,
-    #[arg(long, value_name = "METRIC=VALUE", value_parser = |text: &str| limit(text, true), help = help("smaller", true))]
+    #[arg(long, value_name = "METRIC=VALUE", value_parser = below, help = help("smaller", true))]
     fail_below: Vec<Limit>,
 }
 
@@ -70,6 +70,14 @@ struct Limit {
     metric: &'static Metric,
     covered: bool,
     value: f64,
+}
+
+fn above(text: &str) -> Result<Limit, String> {
+    limit(text, false)
+}
+
+fn below(text: &str) -> Result<Limit, String> {
+    limit(text, true)
 }
 
 fn limit(text: &str, of_likeness: bool) -> Result<Limit, String> {
