@@ -12,7 +12,7 @@ use super::{
     Options, Outcome, collected, gauged,
     light_samples::{self, Sampling},
     one_of, outputs, pictures, print_json,
-    render::{self, Size, cpu_can_draw, samples},
+    render::{self, cpu_can_draw, samples, sides},
     scenes::Source,
     views::{Choice, find},
     workshop::{Workshop, drawable},
@@ -43,8 +43,8 @@ pub(super) struct Arguments {
     #[arg(long, short, value_name = "FILE", value_parser = outputs::place())]
     output: Option<PathBuf>,
     /// Size of the picture in pixels; by default that of a PNG picture, or 1280x720
-    #[arg(long, value_name = "WxH")]
-    size: Option<Size>,
+    #[arg(long, value_name = "WxH", value_parser = sides)]
+    size: Option<[u32; 2]>,
     /// Samples per pixel: 1, or 4 for smooth edges
     #[arg(long, default_value = "4", value_parser = samples)]
     samples: u32,
@@ -421,8 +421,7 @@ fn other<'a>(comparison: &Comparison, views: &[View<'a>]) -> View<'a> {
 }
 
 /// The size of the compared pictures.
-fn size(asked: Option<Size>, read: &[Input]) -> Result<[u32; 2], Failure> {
-    let asked = asked.map(|size| [size.width, size.height]);
+fn size(asked: Option<[u32; 2]>, read: &[Input]) -> Result<[u32; 2], Failure> {
     let mut found: Option<(String, [u32; 2])> = asked.map(|size| ("--size".to_owned(), size));
     for input in read {
         let Some(size) = input.size() else { continue };

@@ -6,9 +6,9 @@ use clap::{Args, builder::PossibleValuesParser};
 
 use super::{
     Options, Outcome,
-    explain::Pixel,
+    explain::place,
     outputs, progress,
-    render::Size,
+    render::sides,
     scenes::Source,
     views,
     workshop::{Workshop, drawable},
@@ -46,11 +46,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "VIEW")]
     view: Option<String>,
     /// Size of pictures and windows in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x720")]
-    size: Size,
+    #[arg(long, value_name = "WxH", value_parser = sides, default_value = "1280x720")]
+    size: [u32; 2],
     /// Say on a web page why this pixel has its colour: column and row, from 0,0 at the top left
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    explain: Option<Pixel>,
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    explain: Option<[u32; 2]>,
 }
 
 fn help() -> String {
@@ -63,13 +63,13 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let form = quoted(&arguments.form);
         return Err(Failure::Usage(format!("unknown form {form}; lcm export --help lists the forms")));
     };
-    let size = [arguments.size.width, arguments.size.height];
+    let size = arguments.size;
     let point = match arguments.explain {
         Some(_) if !form.explains() => {
             let said = format!("{} does not explain pixels, only html does; omit --explain", form.id);
             return Err(Failure::Usage(said));
         }
-        Some(Pixel(pixel)) => {
+        Some(pixel) => {
             explain::inside(pixel, size).map_err(|error| Failure::Usage(format!("--explain: {error}")))?;
             Some(pixel)
         }

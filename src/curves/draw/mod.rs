@@ -21,34 +21,38 @@ pub use slices::{GAP, SIDE, Slices, Tile};
 use bitmap::Bitmap;
 use svg::{Place, Svg};
 
-use crate::declared::with_defaults;
+use crate::declared::{in_words, with_defaults};
 
 /// The colour of text and axes in stand-alone figures.
 const INK: [u8; 3] = [28, 29, 31];
 /// The colour of grid lines behind the curves.
 const GRID: [u8; 3] = [222, 222, 218];
 
-/// The line between the points of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Line {
-    /// A solid line.
-    Solid,
-    /// Dashes.
-    Dashed,
-    /// Dots.
-    Dotted,
-    /// Alternating dashes and dots.
-    DashDot,
-    /// Long dashes.
-    LongDashed,
-    /// Alternating dashes and pairs of dots.
-    DashDotDot,
-    /// Alternating long and short dashes.
-    LongShort,
-    /// Short dashes close together.
-    ShortDashed,
-    /// No line.
-    None,
+in_words! {
+    /// The line between the points of a series.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Line {
+        /// A solid line.
+        Solid = "solid",
+        /// Dashes.
+        Dashed = "dashed",
+        /// Dots.
+        Dotted = "dotted",
+        /// Alternating dashes and dots.
+        DashDot = "dash and dot",
+        /// Long dashes.
+        LongDashed = "long dashes",
+        /// Alternating dashes and pairs of dots.
+        DashDotDot = "dash and two dots",
+        /// Alternating long and short dashes.
+        LongShort = "long and short dashes",
+        /// Short dashes close together.
+        ShortDashed = "short dashes",
+        /// No line.
+        None = "none",
+    }
+    /// The line in words.
+    name
 }
 
 impl Line {

@@ -25,20 +25,6 @@ use crate::{
 /// The colours of curves, as they are called.
 const COLOUR_NAMES: [&str; COLOURS.len()] = ["blue", "vermilion", "green", "purple", "orange", "sky blue"];
 
-fn dash_name(line: Line) -> &'static str {
-    match line {
-        Line::Solid => "solid",
-        Line::Dashed => "dashed",
-        Line::Dotted => "dotted",
-        Line::DashDot => "dash and dot",
-        Line::LongDashed => "long dashes",
-        Line::DashDotDot => "dash and two dots",
-        Line::LongShort => "long and short dashes",
-        Line::ShortDashed => "short dashes",
-        Line::None => "none",
-    }
-}
-
 /// Shows the list in all the room that there is, with the row of a curve that stands out. Returns the one that the pointer
 /// is at.
 pub(super) fn show(
@@ -233,7 +219,7 @@ fn style(
     let (place, response) = ui.allocate_exact_size(sample_size(), Sense::click());
     let Style { colour, line } = entry.style;
     let colour = COLOUR_NAMES.get(colour).copied().unwrap_or_default();
-    let says = format!("Colour and dash of {name}: {colour}, {}", dash_name(line));
+    let says = format!("Colour and dash of {name}: {colour}, {}", line.name());
     theme::says(&response, WidgetType::ComboBox, says);
     if theme::is_hot(&response) {
         ui.painter().rect_filled(place, 4.0, Palette::here(ui).hovered);
@@ -269,7 +255,7 @@ fn picked(ui: &mut Ui, now: Style, plain: &Series, by_key: &mut bool) -> Option<
     }
     ui.separator();
     for line in Line::ALL {
-        offer(ui, dash_name(line), Style { line, ..now });
+        offer(ui, line.name(), Style { line, ..now });
     }
     picked
 }
