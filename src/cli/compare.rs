@@ -130,17 +130,11 @@ impl Input {
     }
 
     fn scene(&self) -> Option<&Scene> {
-        match self {
-            Self::Scene(_, scene) => Some(scene),
-            Self::Picture(..) => None,
-        }
+        if let Self::Scene(_, scene) = self { Some(scene) } else { None }
     }
 
     fn size(&self) -> Option<[u32; 2]> {
-        match self {
-            Self::Scene(..) => None,
-            Self::Picture(_, shown) => Some(shown.size()),
-        }
+        if let Self::Picture(_, shown) = self { Some(shown.size()) } else { None }
     }
 }
 
@@ -208,21 +202,17 @@ impl View<'_> {
     fn report(&self, reached: Option<Reached>) -> Side {
         let light_samples = reached.map(|reached| reached.samples);
         let noise = reached.and_then(|reached| reached.noise);
-        match self.input {
-            Input::Picture(name, _) => {
-                Side { file: name.clone(), view: None, name: None, light_samples, noise }
-            }
-            Input::Scene(source, scene) => Side {
-                file: source.plain_name(),
-                view: LETTERS.get(self.view).copied(),
-                name: match self.view.checked_sub(1) {
+        let (file, view, name) = match self.input {
+            Input::Picture(name, _) => (name.clone(), None, None),
+            Input::Scene(source, scene) => {
+                let name = match self.view.checked_sub(1) {
                     None => scene.name.clone(),
                     Some(i) => scene.variants.get(i).and_then(|variant| variant.name.clone()),
-                },
-                light_samples,
-                noise,
-            },
-        }
+                };
+                (source.plain_name(), LETTERS.get(self.view).copied(), name)
+            }
+        };
+        Side { file, view, name, light_samples, noise }
     }
 }
 
@@ -356,7 +346,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let rests_on: Vec<Sampled> = [reached_a, reached_b].into_iter().flatten().collect();
         let light = caption::line(&caption::sampled(&rests_on));
         let about = light_samples::noted(about, &light);
-        write(output, size, &rgb8, &about)?;
+        outputs::tidy_beside(output);
+        outputs::write_picture(output, size, &rgb8, &about)?;
         options.tell(format_args!("wrote {}", output.shown()));
     }
     // Limits matter even if nobody reads the numbers.
@@ -370,11 +361,6 @@ fn about(read: &[Input], comparison: Comparison, registry: &Registry) -> About {
         _ => About::program(),
     };
     about.with("Source", listed(&read.iter().map(Input::name).collect::<Vec<_>>(), "and"))
-}
-
-fn write(output: &Path, size: [u32; 2], rgb8: &[u8], about: &About) -> Outcome {
-    outputs::tidy_beside(output);
-    outputs::write_picture(output, size, rgb8, about)
 }
 
 /// The comparison, and the views that it shows: those of a scene, or view A of each input.
