@@ -63,7 +63,7 @@ impl From<Selection> for Part {
 }
 
 /// The part of a scene to which a change is confined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Extent {
     /// Everything except lights and objects.
     Rest,
