@@ -170,8 +170,7 @@ impl Session {
     pub fn plot_written(&mut self, path: PathBuf, outcome: Result<Vec<String>, String>) {
         match outcome {
             Ok(notes) => {
-                notes.into_iter().for_each(|note| self.say(Severity::Info, note));
-                self.note_file(format!("The plot was written to {}.", path.shown()), &path);
+                self.note_written(notes, format!("The plot was written to {}.", path.shown()), &path);
             }
             Err(why) => self.say(Severity::Error, format!("The plot was not written: {why}.")),
         }
