@@ -77,12 +77,7 @@ impl Ids {
     /// What an id refers to.
     #[must_use]
     pub fn find(self, registry: &Registry, id: &str) -> Option<Listed> {
-        match self {
-            Self::ReflectionModel => registry.model(id).map(Listed::from),
-            Self::ShadingModel => registry.shading_model(id).map(Listed::from),
-            Self::LightType => registry.light(id).map(Listed::from),
-            Self::ObjectType => registry.shape(id).map(Listed::from),
-        }
+        self.all(registry).find(|listed| listed.id == id)
     }
 
     /// Checks that an id is registered.
