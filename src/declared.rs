@@ -1,6 +1,6 @@
-//! Enums whose values are declared in a file each, lists of types that are, choices and other enums with
-//! texts, the keys of declared fields, and the methods that differ only in names: builder methods, calls of another trait,
-//! the registered types' methods.
+//! Enums whose values are declared in a file each, lists of types that are, choices and other enums with texts, structs
+//! whose fields are declared with their defaults, the keys of declared fields, and what differs only in names: builder
+//! methods, conversions, calls of another trait, the registered types' methods.
 
 /// An enum with the static that declares each of its values. The declaration has an `id`.
 macro_rules! declared {
@@ -202,6 +202,56 @@ macro_rules! entry {
     };
 }
 
+/// An enum, each value with its words, and the method that returns them.
+macro_rules! in_words {
+    ($(#[$about:meta])* $visible:vis enum $Name:ident {
+        $($(#[$doc:meta])* $Value:ident = $words:literal,)+
+    } $(#[$of:meta])* $method:ident) => {
+        $(#[$about])*
+        $visible enum $Name {
+            $($(#[$doc])* $Value,)+
+        }
+
+        impl $Name {
+            $(#[$of])*
+            #[must_use]
+            $visible const fn $method(self) -> &'static str {
+                [$($words),+][self as usize]
+            }
+        }
+    };
+}
+
+/// A struct whose fields are declared with their defaults: `field: Type = default,`.
+macro_rules! with_defaults {
+    ($(#[$about:meta])* $visible:vis struct $Name:ident {
+        $($(#[$help:meta])* $of_field:vis $field:ident: $Type:ty = $default:expr,)+
+    }) => {
+        $(#[$about])*
+        $visible struct $Name {
+            $($(#[$help])* $of_field $field: $Type,)+
+        }
+
+        impl Default for $Name {
+            fn default() -> Self {
+                Self { $($field: $default,)+ }
+            }
+        }
+    };
+}
+
+/// The conversions of types into one type.
+macro_rules! from {
+    ($Into:ty; $($Type:ty: |$from:ident| $value:expr;)+) => {
+        $(impl From<$Type> for $Into {
+            fn from($from: $Type) -> Self {
+                $value
+            }
+        })+
+    };
+}
+
 pub(crate) use {
-    choice, debug_by, declared, entry, forwards, ids, key, keys, setters, take_each, texts,
+    choice, debug_by, declared, entry, forwards, from, ids, in_words, key, keys, setters, take_each, texts,
+    with_defaults,
 };

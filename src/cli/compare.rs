@@ -12,7 +12,7 @@ use super::{
     Options, Outcome, collected, gauged,
     light_samples::{self, Sampling},
     one_of, outputs, pictures, print_json,
-    render::{self, Size, cpu_can_draw, samples},
+    render::{self, cpu_can_draw, samples, sides},
     scenes::Source,
     views::{Choice, find},
     workshop::{Workshop, drawable},
@@ -43,8 +43,8 @@ pub(super) struct Arguments {
     #[arg(long, short, value_name = "FILE", value_parser = outputs::place())]
     output: Option<PathBuf>,
     /// Size of the picture in pixels; by default that of a picture, or 1280x720
-    #[arg(long, value_name = "WxH")]
-    size: Option<Size>,
+    #[arg(long, value_name = "WxH", value_parser = sides)]
+    size: Option<[u32; 2]>,
     /// Samples per pixel: 1, or 4 for smooth edges
     #[arg(long, default_value = "4", value_parser = samples)]
     samples: u32,
@@ -130,10 +130,7 @@ impl Input {
     }
 
     fn scene(&self) -> Option<&Scene> {
-        match self {
-            Self::Scene(_, scene) => Some(scene),
-            Self::Picture(..) => None,
-        }
+        if let Self::Scene(_, scene) = self { Some(scene) } else { None }
     }
 
     /// True for a picture of linear light.
@@ -142,10 +139,7 @@ impl Input {
     }
 
     fn size(&self) -> Option<[u32; 2]> {
-        match self {
-            Self::Scene(..) => None,
-            Self::Picture(_, shown) => Some(shown.size()),
-        }
+        if let Self::Picture(_, shown) = self { Some(shown.size()) } else { None }
     }
 }
 
@@ -213,21 +207,17 @@ impl View<'_> {
     fn report(&self, reached: Option<Reached>) -> Side {
         let light_samples = reached.map(|reached| reached.samples);
         let noise = reached.and_then(|reached| reached.noise);
-        match self.input {
-            Input::Picture(name, _) => {
-                Side { file: name.clone(), view: None, name: None, light_samples, noise }
-            }
-            Input::Scene(source, scene) => Side {
-                file: source.plain_name(),
-                view: LETTERS.get(self.view).copied(),
-                name: match self.view.checked_sub(1) {
+        let (file, view, name) = match self.input {
+            Input::Picture(name, _) => (name.clone(), None, None),
+            Input::Scene(source, scene) => {
+                let name = match self.view.checked_sub(1) {
                     None => scene.name.clone(),
                     Some(i) => scene.variants.get(i).and_then(|variant| variant.name.clone()),
-                },
-                light_samples,
-                noise,
-            },
-        }
+                };
+                (source.plain_name(), LETTERS.get(self.view).copied(), name)
+            }
+        };
+        Side { file, view, name, light_samples, noise }
     }
 }
 
@@ -390,7 +380,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let rests_on: Vec<Sampled> = [reached_a, reached_b].into_iter().flatten().collect();
         let light = caption::line(&caption::sampled(&rests_on));
         let about = light_samples::noted(about, &light);
-        write(output, size, &rgb8, &about)?;
+        outputs::tidy_beside(output);
+        outputs::write_picture(output, size, &rgb8, &about)?;
         options.tell(format_args!("wrote {}", output.shown()));
     }
     // Limits matter even if nobody reads the numbers.
@@ -404,11 +395,6 @@ fn about(read: &[Input], comparison: Comparison, registry: &Registry) -> About {
         _ => About::program(),
     };
     about.with("Source", listed(&read.iter().map(Input::name).collect::<Vec<_>>(), "and"))
-}
-
-fn write(output: &Path, size: [u32; 2], rgb8: &[u8], about: &About) -> Outcome {
-    outputs::tidy_beside(output);
-    outputs::write_picture(output, size, rgb8, about)
 }
 
 /// The comparison, and the views that it shows: those of a scene, or view A of each input.
@@ -486,8 +472,7 @@ fn other<'a>(comparison: &Comparison, views: &[View<'a>]) -> View<'a> {
 }
 
 /// The size of the compared pictures.
-fn size(asked: Option<Size>, read: &[Input]) -> Result<[u32; 2], Failure> {
-    let asked = asked.map(|size| [size.width, size.height]);
+fn size(asked: Option<[u32; 2]>, read: &[Input]) -> Result<[u32; 2], Failure> {
     let mut found: Option<(String, [u32; 2])> = asked.map(|size| ("--size".to_owned(), size));
     for input in read {
         let Some(size) = input.size() else { continue };

@@ -1,9 +1,6 @@
 //! `lcm evaluate`: the BRDF of a model at given angles, for plots and comparisons.
 
-use std::{
-    io::{self, BufWriter, Write as _},
-    str::FromStr,
-};
+use std::io::{self, BufWriter, Write as _};
 
 use clap::{Args, ValueEnum};
 use glam::Vec3;
@@ -64,7 +61,7 @@ impl Arguments {
 #[derive(Args, Debug)]
 pub(super) struct Settings {
     /// Set a parameter of the model, such as k_d=0.7 or base_colour=255,128,0; can be repeated
-    #[arg(long = "set", value_name = "NAME=VALUE")]
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = Setting::read)]
     pub settings: Vec<Setting>,
 }
 
@@ -92,15 +89,6 @@ impl Machine {
 pub(super) struct Setting {
     pub name: String,
     pub value: String,
-}
-
-impl FromStr for Setting {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (name, value) = text.split_once('=').ok_or("it must be NAME=VALUE, e.g. k_d=0.7")?;
-        Ok(Self { name: name.trim().to_owned(), value: value.trim().to_owned() })
-    }
 }
 
 /// A quantity of models that is printed for each row of a table.
@@ -192,6 +180,11 @@ impl Settings {
 }
 
 impl Setting {
+    fn read(text: &str) -> Result<Self, String> {
+        let (name, value) = text.split_once('=').ok_or("it must be NAME=VALUE, e.g. k_d=0.7")?;
+        Ok(Self { name: name.trim().to_owned(), value: value.trim().to_owned() })
+    }
+
     /// Sets the value for a model, or adds a problem.
     pub(super) fn put(&self, model: &ModelEntry, values: &mut Values, problems: &mut Vec<String>) {
         let Self { name, value } = self;

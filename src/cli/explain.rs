@@ -1,15 +1,12 @@
 //! `lcm explain`: the colour of a pixel with every number behind it.
 
-use std::{
-    path::{Path, PathBuf},
-    str::FromStr,
-};
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::{
     Options, Outcome, outputs, print_json, print_text,
-    render::{Size, cpu_can_draw, term},
+    render::{cpu_can_draw, sides, term},
     scenes::Source,
     views::{Plan, find},
     workshop::{Workshop, drawable},
@@ -34,11 +31,11 @@ pub(super) struct Arguments {
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Column and row of the pixel, from 0,0 at the top left
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    at: Pixel,
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    at: [u32; 2],
     /// Size of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x720")]
-    size: Size,
+    #[arg(long, value_name = "WxH", value_parser = sides, default_value = "1280x720")]
+    size: [u32; 2],
     /// Explain this view: A, B, C or D, or the name of a variant
     #[arg(long, value_name = "VIEW", default_value = "A")]
     view: String,
@@ -63,19 +60,11 @@ pub(super) struct Arguments {
     markdown: bool,
 }
 
-/// Column and row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Pixel(pub(super) [u32; 2]);
-
-impl FromStr for Pixel {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let side = |s: &str| s.trim().parse().ok();
-        text.split_once(',')
-            .and_then(|(x, y)| Some(Self([side(x)?, side(y)?])))
-            .ok_or_else(|| "it must be X,Y: two whole numbers, 0 or more, e.g. 640,360".to_owned())
-    }
+/// Parser of pixels: column and row.
+pub(super) fn place(text: &str) -> Result<[u32; 2], String> {
+    let side = |s: &str| s.trim().parse().ok();
+    let both = text.split_once(',').and_then(|(x, y)| Some([side(x)?, side(y)?]));
+    both.ok_or_else(|| "it must be X,Y: two whole numbers, 0 or more, e.g. 640,360".to_owned())
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
@@ -136,7 +125,7 @@ fn explained(
     registry: &Registry,
 ) -> Result<Explained, Failure> {
     let view = find(scene, view).map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?;
-    let Size { width, height } = arguments.size;
+    let [width, height] = arguments.size;
     let plan = Plan::of_view(scene, view, [width, height], arguments.term, registry);
     let Some(part) = plan.parts.into_iter().next() else {
         return Err(Failure::Invalid(format!("{}: the view shows nothing", source.name())));
@@ -149,7 +138,7 @@ fn explained(
         options.tell(format!("explanations follow the CPU renderer, which ignores the edited {passed}"));
     }
     let settings = Settings { width, height, samples: 1, terms: part.terms };
-    let explanation = explain::pixel(&part.scene, registry, &settings, arguments.at.0)
+    let explanation = explain::pixel(&part.scene, registry, &settings, arguments.at)
         .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
     // An endless function is detected only when it runs.
     cpu_can_draw(&part.scene, registry)?;
@@ -162,7 +151,7 @@ fn influences(
     registry: &Registry,
 ) -> Result<Vec<Influence>, Failure> {
     let Explained { scene, settings, .. } = explained;
-    let found = Explainer::default().influences(scene, registry, settings, arguments.at.0);
+    let found = Explainer::default().influences(scene, registry, settings, arguments.at);
     found.map_err(|error| Failure::Usage(format!("--at: {error}")))
 }
 
@@ -193,10 +182,10 @@ mod tests {
 
     #[test]
     fn pixels_have_a_column_and_a_row() {
-        assert_eq!("640,360".parse(), Ok(Pixel([640, 360])));
-        assert_eq!(" 0, 7 ".parse(), Ok(Pixel([0, 7])));
+        assert_eq!(place("640,360"), Ok([640, 360]));
+        assert_eq!(place(" 0, 7 "), Ok([0, 7]));
         for wrong in ["", "640", "640x360", "-1,5", "1,2,3", "1.5,2", "99999999999,1"] {
-            assert!(wrong.parse::<Pixel>().is_err(), "{wrong}");
+            assert!(place(wrong).is_err(), "{wrong}");
         }
     }
 }

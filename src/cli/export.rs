@@ -6,9 +6,9 @@ use clap::{Args, builder::PossibleValuesParser};
 
 use super::{
     Options, Outcome,
-    explain::Pixel,
+    explain::place,
     outputs, progress,
-    render::Size,
+    render::sides,
     scenes::Source,
     views,
     workshop::{Workshop, drawable},
@@ -46,11 +46,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "VIEW")]
     view: Option<String>,
     /// Size of pictures and windows in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x720")]
-    size: Size,
+    #[arg(long, value_name = "WxH", value_parser = sides, default_value = "1280x720")]
+    size: [u32; 2],
     /// Say on a web page why this pixel has its colour: column and row, from 0,0 at the top left
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    explain: Option<Pixel>,
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    explain: Option<[u32; 2]>,
 }
 
 fn help() -> String {
@@ -63,31 +63,26 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let form = quoted(&arguments.form);
         return Err(Failure::Usage(format!("unknown form {form}; lcm export --help lists the forms")));
     };
-    let size = [arguments.size.width, arguments.size.height];
-    let point = match arguments.explain {
-        Some(_) if !form.explains() => {
+    let size = arguments.size;
+    if let Some(pixel) = arguments.explain {
+        if !form.explains() {
             let said = format!("{} does not explain pixels, only html does; omit --explain", form.id);
             return Err(Failure::Usage(said));
         }
-        Some(Pixel(pixel)) => {
-            explain::inside(pixel, size).map_err(|error| Failure::Usage(format!("--explain: {error}")))?;
-            Some(pixel)
-        }
-        None => None,
-    };
+        explain::inside(pixel, size).map_err(|error| Failure::Usage(format!("--explain: {error}")))?;
+    }
     let source = Source::of(arguments.scene.as_deref(), workshop);
     let scene = source.open(workshop, options)?;
     let place = arguments.output.clone().unwrap_or_else(|| form.default_path(&source.stem()));
     let read = inputs(source.path(), [&scene], &workshop.registry);
     let before = may_write(form, &place, arguments.overwrite, &read).map_err(unwritten)?;
     let view = arguments.view.as_ref().map(|name| views::find(&scene, name)).transpose();
-    let view = view.map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?;
+    let invalid = |why: String| Failure::Invalid(format!("{}: {why}", source.name()));
+    let view = view.map_err(invalid)?;
     let (scene, of_view) = view::exported(form, &scene, view, &source.stem(), &workshop.registry);
     drawable(&workshop.registry, &scene)?;
     let object = match &arguments.object {
-        Some(name) if form.of_object => {
-            find(&scene, name).map_err(|why| Failure::Invalid(format!("{}: {why}", source.name())))?
-        }
+        Some(name) if form.of_object => find(&scene, name).map_err(invalid)?,
         Some(_) => {
             return Err(Failure::Usage(format!("{} always contains all objects; omit --object", form.id)));
         }
@@ -105,7 +100,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         stem: &source.stem(),
         size: size.into(),
         object,
-        point,
+        point: arguments.explain,
     };
     let made = (form.make)(&request, &Progress { tell: &tell, cancelled: &|| false });
     bar.finish_and_clear();

@@ -1,8 +1,11 @@
 //! `lcm match`: the parameters of a view that come closest to view A.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::{
+    Args,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
 use serde_json::{Value as Json, json};
 
 use super::{
@@ -21,7 +24,7 @@ use crate::{
     registry::Registry,
     scene::{
         Scene,
-        save::{self, Expected},
+        save::{self, Expected, SaveError, Unwritten},
         variant::LETTERS,
     },
     text::listed,
@@ -36,8 +39,8 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "B", value_name = "LETTER|NAME")]
     view: String,
     /// What is compared with view A
-    #[arg(long, value_enum, default_value_t = On::Lobe)]
-    on: On,
+    #[arg(long, value_parser = what(), default_value = What::Lobe.id())]
+    on: What,
     /// The parameters that are free, such as alpha,k_s; by default every number
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     free: Vec<String>,
@@ -52,25 +55,16 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// What is compared.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum On {
-    /// The light reflected by the models, for all directions of light and viewer
-    Lobe,
-    /// The pictures of this scene, in linear light
-    Picture,
-    /// The width of the highlights
-    Highlight,
-}
-
-impl On {
-    fn what(self) -> What {
-        match self {
-            Self::Lobe => What::Lobe,
-            Self::Picture => What::Picture,
-            Self::Highlight => What::Highlight,
-        }
-    }
+/// Parser of what is compared, with help for each choice.
+fn what() -> impl TypedValueParser<Value = What> {
+    let help = [
+        "The light reflected by the models, for all directions of light and viewer",
+        "The pictures of this scene, in linear light",
+        "The width of the highlights",
+    ];
+    let choices =
+        What::ALL.into_iter().zip(help).map(|(what, help)| PossibleValue::new(what.id()).help(help));
+    PossibleValuesParser::new(choices).map(|id| What::from_id(&id).unwrap_or_default())
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
@@ -82,7 +76,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         outputs::spare(file, &inputs(source.path(), [&scene], &workshop.registry))?;
     }
     if let Some(file) = arguments.output.as_deref().filter(|file| !arguments.overwrite && file.exists()) {
-        return Err(unwritten(&save::SaveError::Exists { path: file.to_owned() }));
+        return Err(unwritten(&SaveError { path: file.to_owned(), why: Unwritten::Exists }));
     }
     let registry = &workshop.registry;
     drawable(registry, &scene)?;
@@ -95,7 +89,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         }
         names => names.iter().map(|name| name.trim()).collect(),
     };
-    let what = arguments.on.what();
+    let what = arguments.on;
     let bar = progress(100, options);
     let tell = |done: f32, step: &str| {
         bar.set_position((100.0 * done) as u64);
@@ -121,19 +115,15 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         for (name, value) in &found.values {
             scene.variants[view - 1].material.set(*name, value.clone());
         }
-        write(file, &scene, registry, expected)?;
+        save::write(file, &scene, registry, expected).map_err(|error| unwritten(&error))?;
         options.tell(format_args!("wrote {}", file.shown()));
     }
     Ok(())
 }
 
-fn write(file: &Path, scene: &Scene, registry: &Registry, expected: Expected) -> Outcome {
-    save::write(file, scene, registry, expected).map(drop).map_err(|error| unwritten(&error))
-}
-
-fn unwritten(error: &save::SaveError) -> Failure {
-    let advice = match error {
-        save::SaveError::Exists { .. } => "; --overwrite replaces it",
+fn unwritten(error: &SaveError) -> Failure {
+    let advice = match error.why {
+        Unwritten::Exists => "; --overwrite replaces it",
         _ => "",
     };
     Failure::Write(format!("{error}{advice}"))

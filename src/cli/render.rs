@@ -4,7 +4,6 @@ use std::{
     borrow::Cow,
     collections::{BTreeSet, HashMap},
     path::{Path, PathBuf},
-    str::FromStr,
     sync::atomic::AtomicBool,
     time::Duration,
 };
@@ -70,8 +69,8 @@ pub(super) struct Arguments {
     #[arg(long, short, value_name = "FILE|FOLDER", value_parser = outputs::place())]
     output: Option<PathBuf>,
     /// Size of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x720")]
-    size: Size,
+    #[arg(long, value_name = "WxH", value_parser = sides, default_value = "1280x720")]
+    size: [u32; 2],
     /// Render on the GPU or on the CPU
     #[arg(long, value_enum, default_value_t = Renderer::Auto)]
     renderer: Renderer,
@@ -156,24 +155,11 @@ pub enum Renderer {
     Cpu,
 }
 
-/// The size of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Size {
-    pub(super) width: u32,
-    pub(super) height: u32,
-}
-
-impl FromStr for Size {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=MAX_SIDE).contains(n));
-        text.split_once(['x', 'X', '×'])
-            .and_then(|(w, h)| Some(Self { width: side(w)?, height: side(h)? }))
-            .ok_or_else(|| {
-                format!("it must be WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE}, e.g. 800x600")
-            })
-    }
+/// Parser of sizes: width and height.
+pub(super) fn sides(text: &str) -> Result<[u32; 2], String> {
+    let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=MAX_SIDE).contains(n));
+    let both = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    both.ok_or_else(|| format!("it must be WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE}, e.g. 800x600"))
 }
 
 /// Parser of the exposure; its range is checked with those of all changes.
@@ -234,10 +220,6 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn size(&self) -> [u32; 2] {
-        [self.arguments.size.width, self.arguments.size.height]
-    }
-
     /// The layers of a linear picture.
     fn layers(&self, part: &Part, registry: &Registry) -> Vec<Layer> {
         layers(&part.scene, part.terms, self.arguments.kinds(), registry)
@@ -286,7 +268,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }))?;
 
     let registry = &workshop.registry;
-    let size = [arguments.size.width, arguments.size.height];
+    let size = arguments.size;
     let plans = collected(scenes.iter().zip(&sources).map(|(scene, source)| {
         plan(scene, arguments, size, registry).map_err(|failure| match failure {
             Failure::Invalid(why) => Failure::Invalid(format!("{}: {why}", source.name())),
@@ -547,18 +529,21 @@ impl Painter {
             Some(only) if shown.is_empty() => only.into_rgb8(),
             last => {
                 shown.extend(last);
-                compose(&job.plan.comparison, job.size(), &shown)
+                compose(&job.plan.comparison, job.arguments.size, &shown)
                     .map_err(|error| Failure::Invalid(format!("{}: {error}", job.source.name())))?
             }
         };
         let rgb8 = match job.channel.filter(|_| !job.arguments.no_legend) {
-            Some(channel) => {
-                with_legends(&job.plan.comparison, rgb8, job.size(), &legends(job.plan, channel, registry))
-            }
+            Some(channel) => with_legends(
+                &job.plan.comparison,
+                rgb8,
+                job.arguments.size,
+                &legends(job.plan, channel, registry),
+            ),
             None => rgb8,
         };
         let views = job.plan.parts.iter().map(|part| (part.cell, &part.scene));
-        let rgb8 = with_row_labels(rgb8, job.size(), views, registry);
+        let rgb8 = with_row_labels(rgb8, job.arguments.size, views, registry);
         let about = job.about(renderer_name(gpu), &light, registry);
         let (rgb8, size) = captioned(job, registry, rgb8, (&rests_on, numbers));
         outputs::write_picture(job.file, size, &rgb8, &about)?;
@@ -594,7 +579,7 @@ impl Painter {
         progress: &Progress,
     ) -> Result<(Channels, Option<Reached>, Vec<String>), Failure> {
         let renderer = self.renderer(job, part, gpu::Output::Linear, registry)?;
-        let [width, height] = job.size();
+        let [width, height] = job.arguments.size;
         let (mut channels, mut odd) = (Channels::new(width, height), false);
         for (i, layer) in layers.iter().enumerate() {
             (progress.tell)(i as f32 / layers.len() as f32, &layer.name);
@@ -742,12 +727,12 @@ fn captioned(
     (rests_on, numbers): (&[Sampled], Vec<caption::Part>),
 ) -> (Vec<u8>, [u32; 2]) {
     if !job.arguments.caption {
-        return (rgb8, job.size());
+        return (rgb8, job.arguments.size);
     }
     let shown: Vec<_> = job.plan.parts.iter().map(|part| (part.cell.view, &part.scene, part.terms)).collect();
     let mut caption = caption::of_picture(job.scene, &shown, registry).resting_on(rests_on);
     caption.facts.extend(numbers);
-    caption::draw(&caption, rgb8, job.size())
+    caption::draw(&caption, rgb8, job.arguments.size)
 }
 
 /// True if something is drawn that this crate's tests do not cover.
@@ -1031,9 +1016,9 @@ mod tests {
 
     #[test]
     fn sizes_have_two_sides() {
-        assert_eq!("800x600".parse(), Ok(Size { width: 800, height: 600 }));
+        assert_eq!(sides("800x600"), Ok([800, 600]));
         for wrong in ["800", "0x5", "5x-1", "x", "axb", "99999x1", ""] {
-            assert!(wrong.parse::<Size>().is_err(), "{wrong}");
+            assert!(sides(wrong).is_err(), "{wrong}");
         }
     }
 }

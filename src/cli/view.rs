@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use bevy::app::App;
 use clap::{Args, CommandFactory as _};
 
-use super::{Options, Outcome, above_zero, outputs, render::Size, scenes::Source, workshop::Places};
+use super::{Options, Outcome, above_zero, outputs, render::sides, scenes::Source, workshop::Places};
 use crate::files::Shown as _;
 use crate::{
     export::write::inputs,
@@ -40,8 +40,8 @@ pub(super) struct Arguments {
     #[arg(long, requires = "capture")]
     no_scene: bool,
     /// Size of the window in pixels
-    #[arg(long, value_name = "WxH")]
-    size: Option<Size>,
+    #[arg(long, value_name = "WxH", value_parser = sides)]
+    size: Option<[u32; 2]>,
 }
 
 impl Arguments {
@@ -90,7 +90,7 @@ pub(super) fn run(
         step: step.map(|step| step as usize - 1),
         examples: source == Source::Default,
         use_defaults: options.defaults() == Defaults::Use,
-        size: size.map(|s| [s.width, s.height]).or(wanted),
+        size: size.or(wanted),
         exit_after,
         capture,
         no_scene,

@@ -10,6 +10,7 @@ use super::{
     names::{light_type, object_type},
 };
 use crate::{
+    declared::from,
     parameter::Value,
     registry::Registry,
     scene::{
@@ -118,20 +119,49 @@ pub(super) fn replace<T: Fields>(part: &mut T, new: T) -> bool {
     old.value(name) != part.value(name)
 }
 
-/// Edits of whole parts.
-macro_rules! whole {
-    ($($Part:ident: $part:ident;)+) => {
-        $(impl From<$Part> for Edit {
-            fn from(part: $Part) -> Self {
-                let mut values = Vec::new();
-                part.each(&mut |field, held, _| values.push((Key::Own(field.key), held.value())));
-                Self::Set { part: Part::$part, values, what: None }
-            }
-        })+
+impl Edit {
+    /// The edit of a whole part.
+    fn whole(part: Part, of: &impl Fields) -> Self {
+        let mut values = Vec::new();
+        of.each(&mut |field, held, _| values.push((Key::Own(field.key), held.value())));
+        Self::Set { part, values, what: None }
+    }
+}
+
+from! {
+    Edit;
+    SceneSize: |size| Self::whole(Part::Size, &size);
+    Observer: |observer| Self::whole(Part::Observer, &observer);
+    Display: |display| Self::whole(Part::Display, &display);
+    Comparison: |comparison| Self::whole(Part::Comparison, &comparison);
+}
+
+/// The insertion of parts into a list.
+macro_rules! insert {
+    ($($(#[$about:meta])+ $insert:ident: $list:ident, $Part:ident, $of_list:ident;)+) => {
+        impl Document {
+            $($(#[$about])+
+            pub fn $insert(
+                &mut self, i: usize, part: $Part, verb: &str, selection: Selection, registry: &Registry,
+            ) {
+                let label = self.next_label();
+                self.labels.$list.insert(i, label);
+                self.scene.$list.insert(i, part.clone());
+                self.number_parts(Some(registry));
+                let patch = Patch::$of_list(i, Vec::new(), vec![(self.labels.$list[i], part)]);
+                let name = format!("{verb} {}", self.name_of(Selection::$Part(i), registry));
+                self.came_or_went(patch, name, selection);
+            })+
+        }
     };
 }
 
-whole! { SceneSize: Size; Observer: Observer; Display: Display; Comparison: Comparison; }
+insert! {
+    /// Inserts a light into the list. `verb` begins the name of the step: "Add", "Duplicate".
+    insert_light: lights, Light, of_lights;
+    /// Inserts an object into the list.
+    insert_object: objects, Object, of_objects;
+}
 
 impl Document {
     /// Makes a change, if the rules of scenes allow it. `selection` is the current selection.
@@ -307,42 +337,6 @@ impl Document {
             }
         });
         Ok(())
-    }
-
-    /// Inserts a light into the list. `verb` begins the name of the step: "Add", "Duplicate".
-    pub fn insert_light(
-        &mut self,
-        i: usize,
-        light: Light,
-        verb: &str,
-        selection: Selection,
-        registry: &Registry,
-    ) {
-        let label = self.next_label();
-        self.labels.lights.insert(i, label);
-        self.scene.lights.insert(i, light.clone());
-        self.number_parts(Some(registry));
-        let patch = Patch::of_lights(i, Vec::new(), vec![(self.labels.lights[i], light)]);
-        let name = format!("{verb} {}", self.name_of(Selection::Light(i), registry));
-        self.came_or_went(patch, name, selection);
-    }
-
-    /// Inserts an object into the list.
-    pub fn insert_object(
-        &mut self,
-        i: usize,
-        object: Object,
-        verb: &str,
-        selection: Selection,
-        registry: &Registry,
-    ) {
-        let label = self.next_label();
-        self.labels.objects.insert(i, label);
-        self.scene.objects.insert(i, object.clone());
-        self.number_parts(Some(registry));
-        let patch = Patch::of_objects(i, Vec::new(), vec![(self.labels.objects[i], object)]);
-        let name = format!("{verb} {}", self.name_of(Selection::Object(i), registry));
-        self.came_or_went(patch, name, selection);
     }
 
     /// Removes a light, an object, or the row to which it belongs.

@@ -90,19 +90,15 @@ impl Extent {
     pub(crate) fn copy(self, from: &Scene, to: &mut Scene) {
         match self {
             Self::Rest => history::copy_rest(from, to),
-            Self::Light(i) => {
-                if let (Some(to), Some(from)) = (to.lights.get_mut(i), from.lights.get(i)) {
-                    to.clone_from(from);
-                }
-            }
-            Self::Object(i) => {
-                if let (Some(to), Some(from)) = (to.objects.get_mut(i), from.objects.get(i)) {
-                    to.clone_from(from);
-                }
-            }
+            Self::Light(i) => copy(to.lights.get_mut(i).zip(from.lights.get(i))),
+            Self::Object(i) => copy(to.objects.get_mut(i).zip(from.objects.get(i))),
             Self::All => history::copy_all(from, to),
         }
     }
+}
+
+fn copy<T: Clone>(parts: Option<(&mut T, &T)>) {
+    parts.into_iter().for_each(|(to, from)| to.clone_from(from));
 }
 
 /// A scene and its history.
@@ -323,40 +319,31 @@ impl Document {
 
     /// Changes a part of the document. Returns the difference.
     fn patch(&mut self, part: Extent, registry: Option<&Registry>, change: impl FnOnce(&mut Self)) -> Patch {
+        macro_rules! one {
+            ($i:ident, $list:ident, $type:ident, $of_one:path) => {{
+                let (parts, labels) = (&self.scene.$list, &self.labels.$list);
+                let Some(old) = labels.get($i).copied().zip(parts.get($i).cloned()) else {
+                    return Patch::default();
+                };
+                let (_, before) = &old;
+                change(self);
+                let retyped = before.$type != self.scene.$list[$i].$type;
+                if retyped {
+                    self.labels.$list[$i].number = 0;
+                    self.number_parts(registry);
+                }
+                let new = (self.labels.$list[$i], self.scene.$list[$i].clone());
+                ($of_one($i, old, new), retyped)
+            }};
+        }
         let (patch, moved) = match part {
             Extent::Rest => {
                 let old = rest_of(&self.scene);
                 change(self);
                 (Patch::of_rest(old, rest_of(&self.scene)), false)
             }
-            Extent::Light(i) => {
-                let Some(old) = self.labels.lights.get(i).copied().zip(self.scene.lights.get(i).cloned())
-                else {
-                    return Patch::default();
-                };
-                change(self);
-                let retyped = old.1.light_type != self.scene.lights[i].light_type;
-                if retyped {
-                    self.labels.lights[i].number = 0;
-                    self.number_parts(registry);
-                }
-                let new = (self.labels.lights[i], self.scene.lights[i].clone());
-                (Patch::of_light(i, old, new), retyped)
-            }
-            Extent::Object(i) => {
-                let Some(old) = self.labels.objects.get(i).copied().zip(self.scene.objects.get(i).cloned())
-                else {
-                    return Patch::default();
-                };
-                change(self);
-                let retyped = old.1.object_type != self.scene.objects[i].object_type;
-                if retyped {
-                    self.labels.objects[i].number = 0;
-                    self.number_parts(registry);
-                }
-                let new = (self.labels.objects[i], self.scene.objects[i].clone());
-                (Patch::of_object(i, old, new), retyped)
-            }
+            Extent::Light(i) => one!(i, lights, light_type, Patch::of_light),
+            Extent::Object(i) => one!(i, objects, object_type, Patch::of_object),
             Extent::All => {
                 let (old, labels) = (self.scene.clone(), self.labels.clone());
                 change(self);

@@ -1,6 +1,8 @@
 //! Changes of the scene by systems: checked part by part, and recorded as one step while they follow each
 //! other.
 
+use std::collections::HashSet;
+
 use super::{
     Document, Extent, Patch, Selection,
     history::{Label, Labels, rest_of},
@@ -59,15 +61,18 @@ impl Document {
     ) -> Result<(), String> {
         self.adopt(scene, &[Extent::All], registry, |document| {
             document.step(BY_SYSTEM.to_owned(), Extent::All, selection, Some(registry), |document| {
-                let gone = |of: fn(Extent) -> Option<usize>| -> Vec<_> {
-                    removed.iter().filter_map(|part| of(*part)).collect()
-                };
-                let lights = kept(&document.labels.lights, &gone(light), |i, j| {
-                    Some(document.scene.lights[i].light_type == scene.lights.get(j)?.light_type)
-                });
-                let objects = kept(&document.labels.objects, &gone(object), |i, j| {
-                    Some(document.scene.objects[i].object_type == scene.objects.get(j)?.object_type)
-                });
+                let removed: HashSet<_> = removed.iter().copied().collect();
+                let stays = |part: Extent| !removed.contains(&part);
+                let lights = kept(
+                    &document.labels.lights,
+                    |i| stays(Extent::Light(i)),
+                    |i, j| Some(document.scene.lights[i].light_type == scene.lights.get(j)?.light_type),
+                );
+                let objects = kept(
+                    &document.labels.objects,
+                    |i| stays(Extent::Object(i)),
+                    |i, j| Some(document.scene.objects[i].object_type == scene.objects.get(j)?.object_type),
+                );
                 (document.scene, document.labels) = (scene.clone(), Labels { lights, objects });
             });
         })
@@ -119,23 +124,15 @@ impl Document {
     }
 }
 
-fn light(part: Extent) -> Option<usize> {
-    if let Extent::Light(i) = part { Some(i) } else { None }
-}
-
-fn object(part: Extent) -> Option<usize> {
-    if let Extent::Object(i) = part { Some(i) } else { None }
-}
-
 /// The labels of the parts that stay. `same_type` compares the type of a part at its old index with that at
 /// its new one, if there is one: a part of another type gets another number.
-fn kept(labels: &[Label], gone: &[usize], same_type: impl Fn(usize, usize) -> Option<bool>) -> Vec<Label> {
-    let mut stays = vec![true; labels.len()];
-    for i in gone {
-        stays.get_mut(*i).into_iter().for_each(|stays| *stays = false);
-    }
+fn kept(
+    labels: &[Label],
+    stays: impl Fn(usize) -> bool,
+    same_type: impl Fn(usize, usize) -> Option<bool>,
+) -> Vec<Label> {
     (0..labels.len())
-        .filter(|i| stays[*i])
+        .filter(|i| stays(*i))
         .enumerate()
         .map_while(|(j, i)| {
             let number = if same_type(i, j)? { labels[i].number } else { 0 };

@@ -48,6 +48,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use crate::declared::in_words;
+
 mod before;
 mod draft;
 mod folder;
@@ -73,21 +75,25 @@ pub use shown::{OnOneLine, Shown, printable, printable_json};
 pub use stamp::Stamp;
 pub use words::words;
 
-/// The kind of file or other item to which a path leads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
-    /// A regular file.
-    File,
-    /// A folder.
-    Folder,
-    /// A named pipe, or an anonymous one to another program.
-    Pipe,
-    /// A socket.
-    Socket,
-    /// A device: a terminal, a disk, `/dev/null`.
-    Device,
-    /// Something else.
-    Unknown,
+in_words! {
+    /// The kind of file or other item to which a path leads.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Kind {
+        /// A regular file.
+        File = "a file",
+        /// A folder.
+        Folder = "a folder",
+        /// A named pipe, or an anonymous one to another program.
+        Pipe = "a named pipe",
+        /// A socket.
+        Socket = "a socket",
+        /// A device: a terminal, a disk, `/dev/null`.
+        Device = "a device",
+        /// Something else.
+        Unknown = "something unknown",
+    }
+    /// The kind, with its article.
+    name
 }
 
 impl Kind {
@@ -119,14 +125,7 @@ impl Kind {
 
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::File => "a file",
-            Self::Folder => "a folder",
-            Self::Pipe => "a named pipe",
-            Self::Socket => "a socket",
-            Self::Device => "a device",
-            Self::Unknown => "something unknown",
-        })
+        f.write_str(self.name())
     }
 }
 
@@ -160,19 +159,16 @@ pub enum FileError {
 
 impl From<FileError> for io::Error {
     fn from(error: FileError) -> Self {
-        let kind = match &error {
+        let kind = match error {
+            FileError::Io(error) => return error,
             FileError::Kind(Kind::Folder) => io::ErrorKind::IsADirectory,
             FileError::Kind(_) => io::ErrorKind::InvalidInput,
             FileError::TooLarge(_) => io::ErrorKind::FileTooLarge,
             FileError::Taken => io::ErrorKind::AlreadyExists,
             FileError::Outside(_) => io::ErrorKind::PermissionDenied,
-            FileError::Unfinished { error, .. } => error.kind(),
-            FileError::Io(_) => io::ErrorKind::Other,
+            FileError::Unfinished { ref error, .. } => error.kind(),
         };
-        match error {
-            FileError::Io(error) => error,
-            error => Self::new(kind, error.to_string()),
-        }
+        Self::new(kind, error.to_string())
     }
 }
 

@@ -62,31 +62,24 @@ pub fn buttons(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The dialog that asks for the name of a new model.
-pub(super) struct Draft;
-
 /// Id of the dialog.
-const DRAFT: &str = "model draft";
+pub(super) const DRAFT: &str = "model draft";
+/// Its name.
+pub(super) const DRAFT_TITLE: &str = "A new reflection model";
 
-impl Panel for Draft {
-    is_panel!(DRAFT, "A new reflection model", Place::Over(Over::Window), |session| session
-        .authoring
-        .draft
-        .is_some());
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let Some(draft) = &context.session().authoring.draft else { return };
-        let title = match &draft.of {
-            Some(of) => {
-                let name = context.registry().model(of).map_or(of.as_str(), |m| m.declaration.name);
-                format!("{name} as a custom model")
-            }
-            None => self.title().to_owned(),
-        };
-        let centre = context.area().rect.center();
-        if !draft::window(ui, DRAFT, title, centre, |ui| ask(ui, draft, context)) {
-            context.act(Action::Model(ModelCommand::Cancel));
+/// The dialog that asks for the name of a new model.
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let Some(draft) = &context.session().authoring.draft else { return };
+    let title = match &draft.of {
+        Some(of) => {
+            let name = context.registry().model(of).map_or(of.as_str(), |m| m.declaration.name);
+            format!("{name} as a custom model")
         }
+        None => DRAFT_TITLE.to_owned(),
+    };
+    let centre = context.area().rect.center();
+    if !draft::window(ui, DRAFT, title, centre, |ui| ask(ui, draft, context)) {
+        context.act(Action::Model(ModelCommand::Cancel));
     }
 }
 

@@ -179,7 +179,7 @@ pub fn list<'e, T>(
         }
     });
     ui.separator();
-    ui.add(Label::new(theme::small(ui, words.foot)).wrap());
+    theme::note(ui, words.foot);
     if edit.changed() {
         row = 0;
     }
@@ -395,21 +395,15 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
 }
 
 /// The list alone, in a corner of a presentation, which has no bar; the equation is in the opposite corner.
-pub(super) struct Alone;
-
-impl Panel for Alone {
-    is_panel!("models", "Reflection models", Place::Over(Over::List), |session| session.view.chooser_open);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let session = context.session();
-        if !session.view.chooser_open {
-            forget(ui.ctx(), Id::new(CHOOSER));
-        } else if session.view.presenting {
-            let screen = ui.ctx().content_rect();
-            let at = screen.right_top() + vec2(-theme::UNIT, theme::UNIT);
-            let popup = Popup::new(Id::new(CHOOSER), ui.ctx().clone(), at, egui::LayerId::background());
-            opened(popup.align(RectAlign::BOTTOM_END), screen.height() - 172.0, context);
-        }
+pub(super) fn alone(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
+    if !session.view.chooser_open {
+        forget(ui.ctx(), Id::new(CHOOSER));
+    } else if session.view.presenting {
+        let screen = ui.ctx().content_rect();
+        let at = screen.right_top() + vec2(-theme::UNIT, theme::UNIT);
+        let popup = Popup::new(Id::new(CHOOSER), ui.ctx().clone(), at, egui::LayerId::background());
+        opened(popup.align(RectAlign::BOTTOM_END), screen.height() - 172.0, context);
     }
 }
 

@@ -38,30 +38,61 @@ pub trait Panel: Send + Sync + 'static {
     fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>);
 }
 
-/// Declares the id, the title and the place of a panel of the window, and when it is open, unless always.
-macro_rules! is_panel {
-    ($id:expr, $title:expr, $place:expr $(, $open:expr)?) => {
-        fn id(&self) -> &'static str {
-            $id
-        }
-
-        fn title(&self) -> &'static str {
-            $title
-        }
-
-        fn place(&self) -> Place {
-            $place
-        }
-
-        $(
-            fn is_open(&self, session: &$crate::panel::state::Session) -> bool {
-                let open: fn(&$crate::panel::state::Session) -> bool = $open;
-                open(session)
-            }
-        )?
-    };
+/// A panel of the window itself: see [`register_builtin`](super::register_builtin).
+pub(super) struct Own {
+    names: [&'static str; 2],
+    place: Place,
+    is_open: fn(&Session) -> bool,
+    note: fn(&Session) -> Option<(Severity, String)>,
+    show: Box<dyn FnMut(&mut Ui, &mut PanelContext<'_>) + Send + Sync>,
 }
-pub(super) use is_panel;
+
+impl Own {
+    /// A panel by its id and its title that is always open.
+    pub(super) fn new(
+        names: [&'static str; 2],
+        place: Place,
+        show: impl FnMut(&mut Ui, &mut PanelContext<'_>) + Send + Sync + 'static,
+    ) -> Self {
+        Self { names, place, is_open: |_| true, note: |_| None, show: Box::new(show) }
+    }
+
+    /// The same, but closed at times.
+    pub(super) fn open_if(self, is_open: fn(&Session) -> bool) -> Self {
+        Self { is_open, ..self }
+    }
+
+    /// The same with a note.
+    pub(super) fn noted(self, note: fn(&Session) -> Option<(Severity, String)>) -> Self {
+        Self { note, ..self }
+    }
+}
+
+impl Panel for Own {
+    fn id(&self) -> &'static str {
+        self.names[0]
+    }
+
+    fn title(&self) -> &'static str {
+        self.names[1]
+    }
+
+    fn place(&self) -> Place {
+        self.place
+    }
+
+    fn is_open(&self, session: &Session) -> bool {
+        (self.is_open)(session)
+    }
+
+    fn note(&self, session: &Session) -> Option<(Severity, String)> {
+        (self.note)(session)
+    }
+
+    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        (self.show)(ui, context);
+    }
+}
 
 /// A change of the world that waits until all panels have been shown.
 type Command = Box<dyn FnOnce(&mut World) + Send + Sync>;
@@ -227,7 +258,7 @@ impl Panels {
     }
 
     /// Adds a panel of the window itself.
-    pub(super) fn add_own(&mut self, panel: impl Panel) {
+    pub(super) fn add_own(&mut self, panel: Own) {
         self.put(Box::new(panel), false);
     }
 

@@ -422,7 +422,7 @@ fn show_preview(ui: &mut Ui, source: Option<Source>, registry: &Registry, outsid
     let (place, _) = ui.allocate_exact_size(vec2(width, width * 9.0 / 16.0), Sense::hover());
     let Some(source) = source else {
         ui.painter().rect_filled(place, 2.0, Palette::here(ui).field);
-        ui.add(Label::new(theme::small(ui, "Select a scene to see what is in it.")).wrap());
+        theme::note(ui, "Select a scene to see what is in it.");
         return;
     };
     let preview = preview::of(ui.ctx(), &source, registry, outside);
@@ -444,7 +444,7 @@ fn show_preview(ui: &mut Ui, source: Option<Source>, registry: &Registry, outsid
             if let Some(description) = &shown.description {
                 ui.add(Label::new(description).wrap());
             }
-            ui.add(Label::new(theme::small(ui, &shown.facts)).wrap());
+            theme::note(ui, &shown.facts);
         }
     });
 }

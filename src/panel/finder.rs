@@ -30,7 +30,7 @@ const LIST: f32 = 0.58;
 /// So many of the latest commands come first.
 const RECENT: usize = 5;
 
-const WORDS: Words = Words {
+pub(super) const WORDS: Words = Words {
     label: "Find a command",
     hint: "Find a command, a scene, a lesson, a model or a parameter…",
     none: "Nothing is called so.",
@@ -82,21 +82,11 @@ enum Does {
 }
 
 /// See the module.
-pub(super) struct Finder;
-
-impl Panel for Finder {
-    is_panel!("finder", WORDS.label, Place::Over(Over::List), |session| session.view.finder_open);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        if self.is_open(context.session()) {
-            show(ui.ctx(), context);
-        } else {
-            chooser::forget(ui.ctx(), id());
-        }
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let ctx = ui.ctx();
+    if !context.session().view.finder_open {
+        return chooser::forget(ctx, id());
     }
-}
-
-fn show(ctx: &Context, context: &mut PanelContext<'_>) {
     let all = everything(ctx, context.session(), context.registry());
     let screen = ctx.content_rect();
     let width = WIDTH.min(screen.width() - 2.0 * MARGIN);

@@ -10,55 +10,48 @@ const TWO_COLUMNS: f32 = 1000.0;
 /// The width of the line around a window, points.
 const EDGE: f32 = 1.0;
 
+/// The id of the list of keys, and its name.
+pub(super) const KEYS: [&str; 2] = ["keys", "Keys and mouse"];
+/// The id of the window about the program, and its name.
+pub(super) const ABOUT: [&str; 2] = ["about", "About"];
+
 /// The list of keys.
-#[derive(Clone, Copy, Debug)]
-pub struct Keys;
-
-impl Panel for Keys {
-    is_panel!("keys", "Keys and mouse", Place::Over(Over::Window), |session| session.view.keys_open);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry, screen) = (context.session(), context.registry(), ui.ctx().content_rect());
-        let wide = if screen.width() < TWO_COLUMNS { 560.0 } else { 720.0 };
-        let wide = f32::min(wide, screen.width() - 48.0);
-        // It would stay as wide as it was at another size of everything.
-        let most = wide + ui.ctx().global_style().spacing.window_margin.sum().x + 2.0 * EDGE;
-        let high = screen.height() - 140.0;
-        let size = |window: Window<'static>| window.max_width(most);
-        window(ui, self, context, ViewChange::Keys(false), size, |ui| {
-            ui.set_width(wide);
-            let scroll = ScrollArea::vertical().auto_shrink([false, true]).min_scrolled_height(high);
-            scroll.max_height(high).show(ui, |ui| key_list(ui, session, registry));
-        });
-    }
+pub(super) fn keys_window(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry, screen) = (context.session(), context.registry(), ui.ctx().content_rect());
+    let wide = if screen.width() < TWO_COLUMNS { 560.0 } else { 720.0 };
+    let wide = f32::min(wide, screen.width() - 48.0);
+    // It would stay as wide as it was at another size of everything.
+    let most = wide + ui.ctx().global_style().spacing.window_margin.sum().x + 2.0 * EDGE;
+    let high = screen.height() - 140.0;
+    let size = |window: Window<'static>| window.max_width(most);
+    let open = session.view.keys_open;
+    window(ui, KEYS, open, ViewChange::Keys(false), size, context, |ui| {
+        ui.set_width(wide);
+        let scroll = ScrollArea::vertical().auto_shrink([false, true]).min_scrolled_height(high);
+        scroll.max_height(high).show(ui, |ui| key_list(ui, session, registry));
+    });
 }
 
 /// Version and licences.
-#[derive(Clone, Copy, Debug)]
-pub struct About;
-
-impl Panel for About {
-    is_panel!("about", "About", Place::Over(Over::Window), |session| session.view.about_open);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry) = (context.session(), context.registry());
-        let size = |window: Window<'static>| window.default_width(480.0);
-        window(ui, self, context, ViewChange::About(false), size, |ui| about(ui, session, registry));
-    }
+pub(super) fn about_window(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
+    let size = |window: Window<'static>| window.default_width(480.0);
+    let (open, close) = (session.view.about_open, ViewChange::About(false));
+    window(ui, ABOUT, open, close, size, context, |ui| about(ui, session, registry));
 }
 
 /// Shows the window of a panel while it is open. The button in its corner and Escape make the change `close`.
 fn window(
     ui: &Ui,
-    panel: &dyn Panel,
-    context: &mut PanelContext<'_>,
+    [id, title]: [&str; 2],
+    is_open: bool,
     close: ViewChange,
     size: impl FnOnce(Window<'static>) -> Window<'static>,
+    context: &mut PanelContext<'_>,
     content: impl FnOnce(&mut Ui),
 ) {
-    let is_open = panel.is_open(context.session());
     let anchored = |window: Window<'static>| size(window.anchor(Align2::CENTER_CENTER, Vec2::ZERO));
-    if !theme::window(ui, panel.id(), panel.title(), is_open, anchored, content) && is_open {
+    if !theme::window(ui, id, title, is_open, anchored, content) && is_open {
         context.act(Action::View(close));
     }
 }

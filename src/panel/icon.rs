@@ -10,43 +10,52 @@ use super::{
     state::Severity,
     theme::{self, Palette},
 };
-use crate::shading::Stage;
+use crate::{declared::in_words, shading::Stage};
 
-/// An icon.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Icon {
-    /// Add something.
-    Plus,
-    /// Delete.
-    Bin,
-    /// Duplicate.
-    Duplicate,
-    /// Rename.
-    Pencil,
-    /// Close or dismiss.
-    Cross,
-    /// Copy text.
-    Copy,
-    /// Show more.
-    Down,
-    /// Show less.
-    Up,
-    /// The observer, or a visible part.
-    Eye,
-    /// A hidden part.
-    EyeOff,
-    /// A light that is on.
-    Lamp,
-    /// A light that is off.
-    LampOff,
-    /// The room.
-    Room,
-    /// Reset to the default.
-    Reset,
-    /// Bring into view.
-    Target,
-    /// Done or correct.
-    Check,
+in_words! {
+    /// An icon.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Icon {
+        /// Add something.
+        Plus = "0.5 0.16 0.5 0.84, 0.16 0.5 0.84 0.5",
+        /// Delete.
+        Bin = "0.14 0.26 0.86 0.26, 0.38 0.26 0.38 0.12 0.62 0.12 0.62 0.26, \
+             0.24 0.26 0.3 0.9 0.7 0.9 0.76 0.26",
+        /// Duplicate.
+        Duplicate = "0.34 0.34 0.9 0.34 0.9 0.9 0.34 0.9 0.34 0.34, \
+             0.66 0.34 0.66 0.1 0.1 0.1 0.1 0.66 0.34 0.66, 0.62 0.48 0.62 0.76, 0.48 0.62 0.76 0.62",
+        /// Rename.
+        Pencil = "0.14 0.86 0.2 0.64 0.7 0.14 0.86 0.3 0.36 0.8 0.14 0.86",
+        /// Close or dismiss.
+        Cross = "0.22 0.22 0.78 0.78, 0.78 0.22 0.22 0.78",
+        /// Copy text.
+        Copy = "0.34 0.34 0.9 0.34 0.9 0.9 0.34 0.9 0.34 0.34, \
+             0.66 0.34 0.66 0.1 0.1 0.1 0.1 0.66 0.34 0.66",
+        /// Show more.
+        Down = "0.2 0.36 0.5 0.66 0.8 0.36",
+        /// Show less.
+        Up = "0.2 0.64 0.5 0.34 0.8 0.64",
+        /// The observer, or a visible part.
+        Eye = "",
+        /// A hidden part.
+        EyeOff = "",
+        /// A light that is on.
+        Lamp = "0.36 0.78 0.64 0.78, 0.4 0.94 0.6 0.94",
+        /// A light that is off.
+        LampOff = "0.36 0.78 0.64 0.78, 0.4 0.94 0.6 0.94",
+        /// The room.
+        Room = "0.12 0.34 0.66 0.34 0.66 0.9 0.12 0.9 0.12 0.34, 0.12 0.34 0.36 0.1 0.9 0.1 0.66 0.34, \
+             0.9 0.1 0.9 0.64 0.66 0.9",
+        /// Reset to the default.
+        Reset = "0.1 0.12 0.18 0.38 0.44 0.32",
+        /// Bring into view.
+        Target = "0.5 0.02 0.5 0.3, 0.5 0.7 0.5 0.98, 0.02 0.5 0.3 0.5, 0.7 0.5 0.98 0.5",
+        /// Done or correct.
+        Check = "0.12 0.54 0.4 0.82 0.9 0.2",
+    }
+    /// The straight lines of an icon in a square with side 1, apart from the one through what is off: the coordinates of
+    /// their corners.
+    lines
 }
 
 /// Draws an icon into a square.
@@ -77,42 +86,9 @@ pub fn paint(painter: &Painter, rect: Rect, icon: Icon, colour: Color32) {
         _ => {}
     }
     let off = matches!(icon, Icon::LampOff | Icon::EyeOff).then_some("0.06 0.94 0.94 0.06");
-    for points in lines(icon).split(',').filter(|points| !points.is_empty()).chain(off) {
+    for points in icon.lines().split(',').filter(|points| !points.is_empty()).chain(off) {
         let numbers: Vec<f32> = points.split_whitespace().filter_map(|number| number.parse().ok()).collect();
         line(&mut numbers.chunks_exact(2).map(|at| (at[0], at[1])));
-    }
-}
-
-/// The straight lines of an icon in a square with side 1, apart from the one through what is off: the coordinates of their
-/// corners.
-fn lines(icon: Icon) -> &'static str {
-    match icon {
-        Icon::Plus => "0.5 0.16 0.5 0.84, 0.16 0.5 0.84 0.5",
-        Icon::Cross => "0.22 0.22 0.78 0.78, 0.78 0.22 0.22 0.78",
-        Icon::Bin => {
-            "0.14 0.26 0.86 0.26, 0.38 0.26 0.38 0.12 0.62 0.12 0.62 0.26, \
-             0.24 0.26 0.3 0.9 0.7 0.9 0.76 0.26"
-        }
-        Icon::Copy => {
-            "0.34 0.34 0.9 0.34 0.9 0.9 0.34 0.9 0.34 0.34, \
-             0.66 0.34 0.66 0.1 0.1 0.1 0.1 0.66 0.34 0.66"
-        }
-        Icon::Duplicate => {
-            "0.34 0.34 0.9 0.34 0.9 0.9 0.34 0.9 0.34 0.34, \
-             0.66 0.34 0.66 0.1 0.1 0.1 0.1 0.66 0.34 0.66, 0.62 0.48 0.62 0.76, 0.48 0.62 0.76 0.62"
-        }
-        Icon::Pencil => "0.14 0.86 0.2 0.64 0.7 0.14 0.86 0.3 0.36 0.8 0.14 0.86",
-        Icon::Down => "0.2 0.36 0.5 0.66 0.8 0.36",
-        Icon::Up => "0.2 0.64 0.5 0.34 0.8 0.64",
-        Icon::Lamp | Icon::LampOff => "0.36 0.78 0.64 0.78, 0.4 0.94 0.6 0.94",
-        Icon::Eye | Icon::EyeOff => "",
-        Icon::Room => {
-            "0.12 0.34 0.66 0.34 0.66 0.9 0.12 0.9 0.12 0.34, 0.12 0.34 0.36 0.1 0.9 0.1 0.66 0.34, \
-             0.9 0.1 0.9 0.64 0.66 0.9"
-        }
-        Icon::Check => "0.12 0.54 0.4 0.82 0.9 0.2",
-        Icon::Reset => "0.1 0.12 0.18 0.38 0.44 0.32",
-        Icon::Target => "0.5 0.02 0.5 0.3, 0.5 0.7 0.5 0.98, 0.02 0.5 0.3 0.5, 0.7 0.5 0.98 0.5",
     }
 }
 

@@ -31,6 +31,20 @@ pub(super) fn set<T: Clone + Default + Send + Sync + 'static>(ctx: &Context, val
     with(ctx, |kept| std::mem::replace(kept, value))
 }
 
+/// The value under an id, made again whenever its key changes.
+pub(super) fn of_key<K, T>(ctx: &Context, id: Id, key: K, make: impl FnOnce() -> T) -> T
+where
+    K: Clone + PartialEq + Send + Sync + 'static,
+    T: Clone + Send + Sync + 'static,
+{
+    if let Some((_, known)) = ctx.data(|d| d.get_temp::<(K, T)>(id)).filter(|(of, _)| *of == key) {
+        return known;
+    }
+    let made = make();
+    ctx.data_mut(|d| d.insert_temp(id, (key, made.clone())));
+    made
+}
+
 /// Applies a function to the value of a type that threads use too. The function may use the context.
 pub(super) fn shared<T: Default + Send + 'static, R>(ctx: &Context, of: impl FnOnce(&mut T) -> R) -> R {
     let shared: Arc<Mutex<T>> = get(ctx);

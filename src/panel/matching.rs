@@ -13,7 +13,7 @@ const SENTENCE: f32 = 34.0;
 /// Maximum height of the parameter list, in points.
 const LIST: f32 = 240.0;
 /// Id of the dialog.
-const DRAFT: &str = "match draft";
+pub(super) const DRAFT: &str = "match draft";
 
 /// Letter of a view.
 fn letter(view: usize) -> &'static str {
@@ -31,23 +31,17 @@ pub(super) fn entry(ui: &mut Ui, view: usize) -> bool {
 }
 
 /// The dialog about the match that is about to start.
-pub(super) struct Draft;
-
-impl Panel for Draft {
-    is_panel!(DRAFT, "Match to A", Place::Over(Over::Window), |session| session.match_draft.is_some());
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry) = (context.session(), context.registry());
-        let Some(draft) = &session.match_draft else { return };
-        // The view may be gone, or show other models now.
-        let now = crate::matching::parameters(&session.document, draft.view, registry);
-        let is_right = now.iter().map(|(p, _)| p.name).eq(draft.parameters.iter().map(|(p, _)| p.name));
-        let title = format!("Match {} to A", letter(draft.view));
-        let (centre, asked) = (context.area().rect.center(), context.actions.len());
-        if !is_right || !draft::window(ui, DRAFT, title, centre, |ui| ask(ui, draft, context)) {
-            context.actions.truncate(asked);
-            context.act(Action::Match(MatchCommand::Close));
-        }
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
+    let Some(draft) = &session.match_draft else { return };
+    // The view may be gone, or show other models now.
+    let now = crate::matching::parameters(&session.document, draft.view, registry);
+    let is_right = now.iter().map(|(p, _)| p.name).eq(draft.parameters.iter().map(|(p, _)| p.name));
+    let title = format!("Match {} to A", letter(draft.view));
+    let (centre, asked) = (context.area().rect.center(), context.actions.len());
+    if !is_right || !draft::window(ui, DRAFT, title, centre, |ui| ask(ui, draft, context)) {
+        context.actions.truncate(asked);
+        context.act(Action::Match(MatchCommand::Close));
     }
 }
 

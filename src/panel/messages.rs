@@ -2,36 +2,29 @@
 
 use super::{
     prelude::*,
-    state::{Effect, MESSAGES_TAB, Note},
+    state::{Effect, Note},
 };
 
 /// The *Messages* panel.
-#[derive(Clone, Copy, Debug)]
-pub struct Messages;
-
-impl Panel for Messages {
-    is_panel!(MESSAGES_TAB, "Messages", Place::Bottom);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let session = context.session();
-        if session.messages.is_empty() {
-            ui.add_space(8.0);
-            ui.weak("No messages. Problems with files, values and shaders appear here and stay until you dismiss them.");
-            return;
-        }
-        ui.horizontal(|ui| {
-            if ui.button("Copy all").clicked() {
-                let all = session.messages.iter().map(|m| format!("{}: {}", m.severity.name(), m.text));
-                context.act(Action::Do(Effect::CopyText(all.collect::<Vec<_>>().join("\n"))));
-            }
-            context.on_click(&ui.button("Dismiss all"), || Action::DismissAll);
-        });
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            for (i, message) in session.messages.iter().enumerate().rev() {
-                ui.push_id(i, |ui| ui.horizontal_top(|ui| row(ui, i, message, context)));
-            }
-        });
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
+    if session.messages.is_empty() {
+        ui.add_space(8.0);
+        ui.weak("No messages. Problems with files, values and shaders appear here and stay until you dismiss them.");
+        return;
     }
+    ui.horizontal(|ui| {
+        if ui.button("Copy all").clicked() {
+            let all = session.messages.iter().map(|m| format!("{}: {}", m.severity.name(), m.text));
+            context.act(Action::Do(Effect::CopyText(all.collect::<Vec<_>>().join("\n"))));
+        }
+        context.on_click(&ui.button("Dismiss all"), || Action::DismissAll);
+    });
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        for (i, message) in session.messages.iter().enumerate().rev() {
+            ui.push_id(i, |ui| ui.horizontal_top(|ui| row(ui, i, message, context)));
+        }
+    });
 }
 
 /// A message with what it offers, and buttons that copy and dismiss it.

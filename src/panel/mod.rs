@@ -4,7 +4,7 @@
 //! actions to the [`Session`] and returns the effects that need files, entities or the operating system. No window is
 //! needed for any of this.
 //!
-//! **To add one**: write `panel/x.rs` and add its name to [`register_builtin`]; a panel at the bottom automatically
+//! **To add one**: write `panel/x.rs` and add a line to [`register_builtin`]; a panel at the bottom automatically
 //! gets a tab and a menu entry. From outside the crate: [`PanelApp::add_panel`].
 
 use std::{
@@ -28,12 +28,13 @@ use bevy_egui::{
 };
 
 use crate::registry::Registry;
+use context::Own;
 pub use context::{Panel, PanelApp, PanelContext, Panels};
 use cover::is_in_sight;
 pub use cover::is_over_picture;
 pub use dialogs::Dialogs;
 pub use frame::show;
-use state::{Effect, PictureArea, Session};
+use state::{EXPLAIN_TAB, Effect, MESSAGES_TAB, PLOTS_TAB, PictureArea, SHADER_TAB, Session};
 pub use state::{Over, PanelInfo, Place, follow};
 
 pub mod author;
@@ -103,26 +104,35 @@ pub mod wires;
 
 /// Registers the built-in panels, in layout order. This is the only list.
 pub fn register_builtin(to: &mut Panels) {
-    to.add_own(top::TopBar);
-    to.add_own(status::StatusLine);
-    to.add_own(messages::Messages);
-    to.add_own(plots::PlotPanel::default());
-    to.add_own(shader::Shader);
-    to.add_own(history::History);
-    to.add_own(explain::Explain);
-    to.add_own(lesson::LessonPanel);
-    to.add_own(tree::Tree);
-    to.add_own(inspector::Inspector);
-    to.add_own(welcome::Welcome);
-    to.add_own(picture::Picture);
-    to.add_own(finder::Finder);
-    to.add_own(chooser::Alone);
-    to.add_own(help::Keys);
-    to.add_own(help::About);
-    to.add_own(author::Draft);
-    to.add_own(matching::Draft);
-    to.add_own(taking::Draft);
-    to.add_own(question::Asked);
+    let [list, window, question] = [Over::List, Over::Window, Over::Question].map(Place::Over);
+    let mut plots = plots::PlotPanel::default();
+    let plots = move |ui: &mut Ui, context: &mut PanelContext<'_>| plots.show(ui, context);
+    for panel in [
+        Own::new(["top", "Top bar"], Place::Top, top::show),
+        Own::new(["status", "Status line"], Place::Status, status::show),
+        Own::new([MESSAGES_TAB, "Messages"], Place::Bottom, messages::show),
+        Own::new([PLOTS_TAB, "Plots"], Place::Bottom, plots),
+        Own::new([SHADER_TAB, "Shader"], Place::Bottom, shader::show).noted(shader::note),
+        Own::new([history::HISTORY_TAB, "History"], Place::Bottom, history::show),
+        Own::new([EXPLAIN_TAB, "Explain"], Place::Bottom, explain::show),
+        Own::new(["lesson", "Lesson"], Place::Left, lesson::show),
+        Own::new(["tree", "Scene"], Place::Left, tree::show),
+        Own::new(["inspector", "Properties"], Place::Right, inspector::show),
+        Own::new(["examples", "Examples"], Place::Strip, welcome::show).open_if(|s| s.view.examples_open),
+        Own::new(["picture", "Picture"], Place::Picture, picture::show),
+        Own::new(["finder", finder::WORDS.label], list, finder::show).open_if(|s| s.view.finder_open),
+        Own::new(["models", "Reflection models"], list, chooser::alone).open_if(|s| s.view.chooser_open),
+        Own::new(help::KEYS, window, help::keys_window).open_if(|s| s.view.keys_open),
+        Own::new(help::ABOUT, window, help::about_window).open_if(|s| s.view.about_open),
+        Own::new([author::DRAFT, author::DRAFT_TITLE], window, author::show)
+            .open_if(|s| s.authoring.draft.is_some()),
+        Own::new([matching::DRAFT, "Match to A"], window, matching::show)
+            .open_if(|s| s.match_draft.is_some()),
+        Own::new([taking::DRAFT, taking::TITLE], window, taking::show).open_if(|s| s.take_draft.is_some()),
+        Own::new(["question", "Question"], question, question::show).open_if(|s| s.questions.open.is_some()),
+    ] {
+        to.add_own(panel);
+    }
 }
 
 impl Panels {

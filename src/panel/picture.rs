@@ -37,41 +37,34 @@ const WIDE_PLATE: f32 = 330.0;
 const PLATE: f32 = 0.25;
 
 /// The picture's own panel: all that is written over the picture.
-#[derive(Clone, Copy, Debug)]
-pub struct Picture;
-
-impl Panel for Picture {
-    is_panel!("picture", "Picture", Place::Picture);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry) = (context.session(), context.registry());
-        let whole = ui.available_rect_before_wrap();
-        focus::region(ui.ctx(), Region::Picture, whole);
-        let presenting = session.view.presenting;
-        let several = presenting && !session.document.variants.is_empty();
-        let footer = several.then(|| Footer::of(ui, whole, session, registry));
-        let arrangement = compare::arrange(session, whole, footer.as_ref().map_or(0.0, |f| f.height));
-        let mut over = Overlaid { context, places: Vec::new(), written: Vec::new() };
-        let (rect, frame) = if arrangement.is_single() {
-            let stage = presenting.then(|| Stage::of(ui, whole, session, registry));
-            let frame = stage.as_ref().map_or(whole, |stage| stage.picture);
-            over.single(ui, [whole, frame], stage.as_ref());
-            (whole, frame)
-        } else {
-            over.views(ui, &arrangement);
-            (arrangement.picture, arrangement.picture)
-        };
-        let Overlaid { mut places, written, .. } = over;
-        places.extend(compare::show(ui, &arrangement, context));
-        if let Some(footer) = footer {
-            footer.paint(ui, whole, session, registry);
-        }
-        let mut area = PictureArea { rect, frame, written, ..PictureArea::default() };
-        if !arrangement.is_single() {
-            (area.cells, area.map) = (arrangement.cells, arrangement.map);
-        }
-        context.picture = (area, places);
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
+    let whole = ui.available_rect_before_wrap();
+    focus::region(ui.ctx(), Region::Picture, whole);
+    let presenting = session.view.presenting;
+    let several = presenting && !session.document.variants.is_empty();
+    let footer = several.then(|| Footer::of(ui, whole, session, registry));
+    let arrangement = compare::arrange(session, whole, footer.as_ref().map_or(0.0, |f| f.height));
+    let mut over = Overlaid { context, places: Vec::new(), written: Vec::new() };
+    let (rect, frame) = if arrangement.is_single() {
+        let stage = presenting.then(|| Stage::of(ui, whole, session, registry));
+        let frame = stage.as_ref().map_or(whole, |stage| stage.picture);
+        over.single(ui, [whole, frame], stage.as_ref());
+        (whole, frame)
+    } else {
+        over.views(ui, &arrangement);
+        (arrangement.picture, arrangement.picture)
+    };
+    let Overlaid { mut places, written, .. } = over;
+    places.extend(compare::show(ui, &arrangement, context));
+    if let Some(footer) = footer {
+        footer.paint(ui, whole, session, registry);
     }
+    let mut area = PictureArea { rect, frame, written, ..PictureArea::default() };
+    if !arrangement.is_single() {
+        (area.cells, area.map) = (arrangement.cells, arrangement.map);
+    }
+    context.picture = (area, places);
 }
 
 /// The overlays of a picture, as far as they are painted.
@@ -132,12 +125,12 @@ impl Overlaid<'_, '_> {
             return;
         }
         // Marks keep clear of what was written over the picture in the previous frame.
-        let before = &self.context.area().written;
+        let sight = marks::Sight { rect, written: &self.context.area().written, session, registry };
         // Handles would cover the pixel that is explained or that a lesson refers to, and look like vectors.
         let covers = session.explains() || session.lesson.is_some();
         let paints = [marks::marks, handles::handles];
         for paint in paints.into_iter().take(if covers { 1 } else { 2 }) {
-            let (asked, places) = paint(ui, rect, before, session, registry);
+            let (asked, places) = paint(ui, sight);
             self.context.actions.extend(asked);
             self.places.extend(places);
         }

@@ -10,11 +10,11 @@ pub(super) use bevy_egui::egui::{
 pub(super) use glam::Vec3;
 
 pub(super) use super::{
-    context::{Panel, PanelContext, is_panel},
+    context::PanelContext,
     icon::{self, Icon},
     kept,
     state::{
-        Action, CompareCommand, LessonCommand, ModelCommand, Over, PictureArea, Place, PlotCommand, Session,
+        Action, CompareCommand, LessonCommand, ModelCommand, PictureArea, Place, PlotCommand, Session,
         Severity, TakeCommand, ViewChange,
     },
     theme::{self, Palette},

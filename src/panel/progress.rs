@@ -58,18 +58,13 @@ pub fn load_progress(session: &mut Session) {
     let _ = tidy(&folder);
     let (progress, complaint) = load(&folder);
     session.progress = progress;
-    if let Some(complaint) = complaint {
-        session.say(Severity::Warning, complaint);
-    }
+    complaint.into_iter().for_each(|complaint| session.say(Severity::Warning, complaint));
 }
 
 /// Saves the progress in a lesson, and reports if that fails.
 pub fn save_progress(session: &mut Session, name: &str) {
-    if let Some(folder) = own_folder()
-        && let Err(complaint) = save(&folder, &session.progress, name)
-    {
-        session.say(Severity::Warning, complaint);
-    }
+    let complaint = own_folder().and_then(|folder| save(&folder, &session.progress, name).err());
+    complaint.into_iter().for_each(|complaint| session.say(Severity::Warning, complaint));
 }
 
 #[cfg(test)]

@@ -10,36 +10,30 @@ use super::{
 };
 
 /// The open question. Enter gives the first answer, which loses nothing; Escape the last.
-pub(super) struct Asked;
-
-impl Panel for Asked {
-    is_panel!("question", "Question", Place::Over(Over::Question), |s| s.questions.open.is_some());
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let session = context.session();
-        let Some(question) = &session.questions.open else { return };
-        let (title, text, details, answers) = words(session, question);
-        let mut out = None;
-        Modal::new(Id::new("question")).show(ui.ctx(), |ui: &mut Ui| {
-            ui.set_width(420.0);
-            egui::Frame::new().inner_margin(8.0).show(ui, |ui| {
-                ui.label(RichText::new(title).heading());
-                ui.add_space(8.0);
-                ui.add(Label::new(text).wrap());
-                for (what, more) in details {
-                    ui.add_space(4.0);
-                    ui.horizontal_wrapped(|ui| {
-                        ui.label(theme::strong(ui, what));
-                        ui.label(RichText::new(more).color(Palette::here(ui).weak));
-                    });
-                }
-                ui.add_space(16.0);
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| out = answered(ui, &answers));
-            });
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
+    let Some(question) = &session.questions.open else { return };
+    let (title, text, details, answers) = words(session, question);
+    let mut out = None;
+    Modal::new(Id::new("question")).show(ui.ctx(), |ui: &mut Ui| {
+        ui.set_width(420.0);
+        egui::Frame::new().inner_margin(8.0).show(ui, |ui| {
+            ui.label(RichText::new(title).heading());
+            ui.add_space(8.0);
+            ui.add(Label::new(text).wrap());
+            for (what, more) in details {
+                ui.add_space(4.0);
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(theme::strong(ui, what));
+                    ui.label(RichText::new(more).color(Palette::here(ui).weak));
+                });
+            }
+            ui.add_space(16.0);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| out = answered(ui, &answers));
         });
-        let escape = ui.input(|i| i.key_pressed(Key::Escape)).then_some(Answer::Cancel);
-        context.actions.extend(escape.or(out).map(Action::Answer));
-    }
+    });
+    let escape = ui.input(|i| i.key_pressed(Key::Escape)).then_some(Answer::Cancel);
+    context.actions.extend(escape.or(out).map(Action::Answer));
 }
 
 /// The buttons for the answers, of which the first stands out. Returns the chosen one.

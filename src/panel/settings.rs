@@ -117,19 +117,14 @@ pub fn load_settings(session: &mut Session) {
         let _ = tidy(&folder);
         let (settings, complaint) = load(&folder);
         session.adopt(settings);
-        if let Some(complaint) = complaint {
-            session.say(Severity::Warning, complaint);
-        }
+        complaint.into_iter().for_each(|complaint| session.say(Severity::Warning, complaint));
     }
 }
 
 /// Saves the settings for the next session, and reports if that fails.
 pub fn save_settings(session: &mut Session) {
-    if let Some(folder) = folder()
-        && let Err(complaint) = save(&folder, &session.settings)
-    {
-        session.say(Severity::Warning, complaint);
-    }
+    let complaint = folder().and_then(|folder| save(&folder, &session.settings).err());
+    complaint.into_iter().for_each(|complaint| session.say(Severity::Warning, complaint));
 }
 
 #[cfg(test)]

@@ -9,47 +9,40 @@ use super::{
 use crate::text::per_cent;
 
 /// The status line.
-#[derive(Clone, Copy, Debug)]
-pub struct StatusLine;
-
-impl Panel for StatusLine {
-    is_panel!("status", "Status line", Place::Status);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let session = context.session();
-        ui.horizontal(|ui| {
-            ui.set_min_height(20.0);
-            let count = session.messages.len();
-            let text = if count == 0 { "No messages".to_owned() } else { plural(count, "message") };
-            let text = theme::small(ui, text);
-            match session.messages.worst() {
-                Some(worst) => _ = icon::sign(ui, [14.0, 16.0], 5.5, worst),
-                None => {
-                    let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
-                    let icon = if session.view.bottom_open { Icon::Down } else { Icon::Up };
-                    icon::paint(ui.painter(), rect.shrink(3.0), icon, Palette::here(ui).weak);
-                }
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
+    ui.horizontal(|ui| {
+        ui.set_min_height(20.0);
+        let count = session.messages.len();
+        let text = if count == 0 { "No messages".to_owned() } else { plural(count, "message") };
+        let text = theme::small(ui, text);
+        match session.messages.worst() {
+            Some(worst) => _ = icon::sign(ui, [14.0, 16.0], 5.5, worst),
+            None => {
+                let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
+                let icon = if session.view.bottom_open { Icon::Down } else { Icon::Up };
+                icon::paint(ui.painter(), rect.shrink(3.0), icon, Palette::here(ui).weak);
             }
-            let says = if session.view.bottom_open { "Fold the strip away" } else { "Show messages" };
-            let says = keys::hint(ui.ctx(), says, "panel.messages");
-            let button = ui.add(Button::new(text).frame_when_inactive(false).small());
-            theme::says(&button, WidgetType::Button, format!("Messages: {count}"));
-            context.on_click(&button.on_hover_text(says), || Action::View(session.strip_change()));
-            shader_errors(ui, context);
-            export::progress(ui, context);
-            matching::progress(ui, context);
-            taking::progress(ui, context);
-            samples(ui, session);
-            let mut selected = format!("{} selected", session.name_of(session.selection, context.registry()));
-            if let Some(key) = keys::of(ui.ctx(), "keys") {
-                selected.push_str(&format!(" · {key} keys"));
-            }
-            latest(ui, theme::small_width(ui, &selected), context);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                ui.add(Label::new(theme::small(ui, selected)).truncate());
-            });
+        }
+        let says = if session.view.bottom_open { "Fold the strip away" } else { "Show messages" };
+        let says = keys::hint(ui.ctx(), says, "panel.messages");
+        let button = ui.add(Button::new(text).frame_when_inactive(false).small());
+        theme::says(&button, WidgetType::Button, format!("Messages: {count}"));
+        context.on_click(&button.on_hover_text(says), || Action::View(session.strip_change()));
+        shader_errors(ui, context);
+        export::progress(ui, context);
+        matching::progress(ui, context);
+        taking::progress(ui, context);
+        samples(ui, session);
+        let mut selected = format!("{} selected", session.name_of(session.selection, context.registry()));
+        if let Some(key) = keys::of(ui.ctx(), "keys") {
+            selected.push_str(&format!(" · {key} keys"));
+        }
+        latest(ui, theme::small_width(ui, &selected), context);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add(Label::new(theme::small(ui, selected)).truncate());
         });
-    }
+    });
 }
 
 /// Convergence of pictures with light with extent: the least converged one in words, and one line per view if there are

@@ -15,7 +15,9 @@ use crate::{
 };
 
 /// Id of the window.
-const DRAFT: &str = "take draft";
+pub(super) const DRAFT: &str = "take draft";
+/// Its title, where all views are saved.
+pub(super) const TITLE: &str = "Save the picture";
 /// Width of a field for a number, in points.
 const FIELD: f32 = 56.0;
 /// Width of the names before lists and fields, in points.
@@ -26,25 +28,19 @@ const TIP: f32 = 320.0;
 const WHITE: [u8; 3] = [255; 3];
 
 /// The window about the picture or the sheet that is about to be saved.
-pub(super) struct Draft;
-
-impl Panel for Draft {
-    is_panel!(DRAFT, "Save the picture", Place::Over(Over::Window), |session| session.take_draft.is_some());
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let Some(draft) = &context.session().take_draft else { return };
-        let title = match draft.of {
-            Taken::Picture(None) => self.title().to_owned(),
-            Taken::Picture(Some(view)) => format!("Save view {}", LETTERS[view.min(MAX_VARIANTS)]),
-            Taken::Sheet(_) => "Save a sheet".to_owned(),
-        };
-        let (centre, asked) = (context.area().rect.center(), context.actions.len());
-        if is_gone(context.session(), draft.of)
-            || !draft::window(ui, DRAFT, title, centre, |ui| ask(ui, draft, context))
-        {
-            context.actions.truncate(asked);
-            context.act(Action::Take(TakeCommand::Close));
-        }
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let Some(draft) = &context.session().take_draft else { return };
+    let title = match draft.of {
+        Taken::Picture(None) => TITLE.to_owned(),
+        Taken::Picture(Some(view)) => format!("Save view {}", LETTERS[view.min(MAX_VARIANTS)]),
+        Taken::Sheet(_) => "Save a sheet".to_owned(),
+    };
+    let (centre, asked) = (context.area().rect.center(), context.actions.len());
+    if is_gone(context.session(), draft.of)
+        || !draft::window(ui, DRAFT, title, centre, |ui| ask(ui, draft, context))
+    {
+        context.actions.truncate(asked);
+        context.act(Action::Take(TakeCommand::Close));
     }
 }
 

@@ -19,74 +19,55 @@ use crate::{lettering, reflection::Term};
 /// Unit of spacing, in points; halves are allowed.
 pub const UNIT: f32 = 8.0;
 
-/// The colours of the window.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Palette {
-    /// True for the dark palette.
-    pub dark: bool,
-    /// Background of a panel.
-    pub panel: Color32,
-    /// Surfaces raised above a panel: menus, dialogs, buttons.
-    pub raised: Color32,
-    /// A widget under the pointer.
-    pub hovered: Color32,
-    /// Text fields, and rails of sliders.
-    pub field: Color32,
-    /// Separating lines.
-    pub line: Color32,
-    /// Text.
-    pub text: Color32,
-    /// Secondary text: units, ends of ranges, hints.
-    pub weak: Color32,
-    /// Selected and interactive widgets.
-    pub accent: Color32,
-    /// Background of selected list items.
-    pub chosen: Color32,
-    /// Errors.
-    pub error: Color32,
-    /// Warnings.
-    pub warning: Color32,
-    /// Surroundings of the picture.
-    pub surround: Color32,
-}
-
 const fn grey(v: u8) -> Color32 {
     Color32::from_rgb(v, v, v)
 }
 
-/// Dark palette, for judging pictures.
-pub const DARK: Palette = Palette {
-    dark: true,
-    panel: grey(21),
-    raised: grey(34),
-    hovered: grey(48),
-    field: grey(11),
-    line: grey(52),
-    text: grey(230),
-    weak: grey(160),
-    accent: Color32::from_rgb(0x6c, 0xb4, 0xff),
-    chosen: Color32::from_rgb(0x1f, 0x3a, 0x57),
-    error: Color32::from_rgb(0xff, 0x8a, 0x7a),
-    warning: Color32::from_rgb(0xf0, 0xc0, 0x50),
-    surround: grey(46),
-};
+/// Declares the colours of the window, each in the dark and in the light palette.
+macro_rules! palettes {
+    ($($(#[$doc:meta])* $name:ident: $Type:ty = $dark:expr, $light:expr;)+) => {
+        /// The colours of the window.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Palette {
+            $($(#[$doc])* pub $name: $Type,)+
+        }
 
-/// Light palette, for bright rooms and projectors.
-pub const LIGHT: Palette = Palette {
-    dark: false,
-    panel: grey(250),
-    raised: grey(238),
-    hovered: grey(224),
-    field: grey(255),
-    line: grey(205),
-    text: grey(24),
-    weak: grey(92),
-    accent: Color32::from_rgb(0x0a, 0x5c, 0xb0),
-    chosen: Color32::from_rgb(0xcf, 0xe3, 0xf8),
-    error: Color32::from_rgb(0xb3, 0x26, 0x1e),
-    warning: Color32::from_rgb(0x7a, 0x52, 0x00),
-    surround: grey(184),
-};
+        /// Dark palette, for judging pictures.
+        pub const DARK: Palette = Palette { $($name: $dark),+ };
+
+        /// Light palette, for bright rooms and projectors.
+        pub const LIGHT: Palette = Palette { $($name: $light),+ };
+    };
+}
+
+palettes! {
+    /// True for the dark palette.
+    dark: bool = true, false;
+    /// Background of a panel.
+    panel: Color32 = grey(21), grey(250);
+    /// Surfaces raised above a panel: menus, dialogs, buttons.
+    raised: Color32 = grey(34), grey(238);
+    /// A widget under the pointer.
+    hovered: Color32 = grey(48), grey(224);
+    /// Text fields, and rails of sliders.
+    field: Color32 = grey(11), grey(255);
+    /// Separating lines.
+    line: Color32 = grey(52), grey(205);
+    /// Text.
+    text: Color32 = grey(230), grey(24);
+    /// Secondary text: units, ends of ranges, hints.
+    weak: Color32 = grey(160), grey(92);
+    /// Selected and interactive widgets.
+    accent: Color32 = Color32::from_rgb(0x6c, 0xb4, 0xff), Color32::from_rgb(0x0a, 0x5c, 0xb0);
+    /// Background of selected list items.
+    chosen: Color32 = Color32::from_rgb(0x1f, 0x3a, 0x57), Color32::from_rgb(0xcf, 0xe3, 0xf8);
+    /// Errors.
+    error: Color32 = Color32::from_rgb(0xff, 0x8a, 0x7a), Color32::from_rgb(0xb3, 0x26, 0x1e);
+    /// Warnings.
+    warning: Color32 = Color32::from_rgb(0xf0, 0xc0, 0x50), Color32::from_rgb(0x7a, 0x52, 0x00);
+    /// Surroundings of the picture.
+    surround: Color32 = grey(46), grey(184);
+}
 
 impl Palette {
     /// The palette that the settings select.

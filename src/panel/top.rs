@@ -13,44 +13,37 @@ use super::{
 };
 
 /// See the module.
-#[derive(Clone, Copy, Debug)]
-pub struct TopBar;
-
-impl Panel for TopBar {
-    is_panel!("top", "Top bar", Place::Top);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry) = (context.session(), context.registry());
-        ui.horizontal(|ui| {
-            ui.set_min_height(28.0);
-            ui.spacing_mut().item_spacing.x = 4.0;
-            document(ui, context);
-            divider(ui);
-            menus(ui, context);
-            divider(ui);
-            // Where there is little room, the captions go first, then the choices of shading fold up.
-            let names: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.name).collect();
-            let buttons = names.iter().map(|n| segment_width(ui, n)).sum::<f32>() + 4.0;
-            let captions = CAPTIONS.iter().map(|c| theme::small_width(ui, c) + 4.0).sum::<f32>();
-            let left = ui.available_width() - chooser::WIDTH - 8.0 - 2.0 * 4.0;
-            let (captioned, apart) = (left >= captions + buttons, left >= buttons);
-            if captioned {
-                caption(ui, CAPTIONS[0]);
-            }
-            let from = ui.cursor().left();
-            chooser::show(ui, context);
-            pointed(ui, "reflection", from);
-            ui.add_space(8.0);
-            if captioned {
-                caption(ui, CAPTIONS[1]);
-            }
-            let from = ui.cursor().left();
-            shading(ui, &names, apart, context);
-            pointed(ui, "shading", from);
-            model_override::whose(ui, session, registry);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, session));
-        });
-    }
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
+    ui.horizontal(|ui| {
+        ui.set_min_height(28.0);
+        ui.spacing_mut().item_spacing.x = 4.0;
+        document(ui, context);
+        divider(ui);
+        menus(ui, context);
+        divider(ui);
+        // Where there is little room, the captions go first, then the choices of shading fold up.
+        let names: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.name).collect();
+        let buttons = names.iter().map(|n| segment_width(ui, n)).sum::<f32>() + 4.0;
+        let captions = CAPTIONS.iter().map(|c| theme::small_width(ui, c) + 4.0).sum::<f32>();
+        let left = ui.available_width() - chooser::WIDTH - 8.0 - 2.0 * 4.0;
+        let (captioned, apart) = (left >= captions + buttons, left >= buttons);
+        if captioned {
+            caption(ui, CAPTIONS[0]);
+        }
+        let from = ui.cursor().left();
+        chooser::show(ui, context);
+        pointed(ui, "reflection", from);
+        ui.add_space(8.0);
+        if captioned {
+            caption(ui, CAPTIONS[1]);
+        }
+        let from = ui.cursor().left();
+        shading(ui, &names, apart, context);
+        pointed(ui, "shading", from);
+        model_override::whose(ui, session, registry);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, session));
+    });
 }
 
 /// A choice of this name is in the bar, from this place to the cursor.

@@ -12,10 +12,6 @@ use crate::{
 /// Height of a row, in points.
 const HEIGHT: f32 = 26.0;
 
-/// The scene list.
-#[derive(Clone, Copy, Debug)]
-pub struct Tree;
-
 #[derive(Clone, Copy)]
 enum Row {
     Part(Selection),
@@ -23,41 +19,38 @@ enum Row {
     Objects,
 }
 
-impl Panel for Tree {
-    is_panel!("tree", "Scene", Place::Left);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let session = context.session();
-        let (lights, objects) = (session.document.lights.len(), session.document.objects.len());
-        // Rows are addressed by index, so that ten thousand objects cost no more than the visible ones.
-        let row = |i: usize| match i {
-            0 => Row::Part(Selection::Room),
-            1 => Row::Part(Selection::Observer),
-            2 => Row::Lights,
-            i if i < 3 + lights => Row::Part(Selection::Light(i - 3)),
-            i if i == 3 + lights => Row::Objects,
-            i => Row::Part(Selection::Object(i - 4 - lights)),
-        };
-        context.actions.extend(step(ui, session).map(Action::Select));
-        focus::first(ui.ctx(), row_id(session.selection));
-        ui.spacing_mut().item_spacing.y = 0.0;
-        let total = 4 + lights + objects;
-        let mut area = ScrollArea::vertical().auto_shrink(false);
-        let memory = ui.id().with("shown selection");
-        if let Some(offset) = offset_of_selection(ui, memory, session) {
-            area = area.vertical_scroll_offset(offset);
-        }
-        let output = area.show_rows(ui, HEIGHT, total, |ui, range| {
-            for i in range {
-                match row(i) {
-                    Row::Part(part) => PartRow::of(part, context).show(ui, context),
-                    Row::Lights => heading(ui, "Lights", lights, |ui| add_lights(ui, context)),
-                    Row::Objects => heading(ui, "Objects", objects, |ui| add_objects(ui, context)),
-                }
-            }
-        });
-        ui.data_mut(|d| d.insert_temp(memory.with("offset"), output.state.offset.y));
+/// The scene list.
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
+    let (lights, objects) = (session.document.lights.len(), session.document.objects.len());
+    // Rows are addressed by index, so that ten thousand objects cost no more than the visible ones.
+    let row = |i: usize| match i {
+        0 => Row::Part(Selection::Room),
+        1 => Row::Part(Selection::Observer),
+        2 => Row::Lights,
+        i if i < 3 + lights => Row::Part(Selection::Light(i - 3)),
+        i if i == 3 + lights => Row::Objects,
+        i => Row::Part(Selection::Object(i - 4 - lights)),
+    };
+    context.actions.extend(step(ui, session).map(Action::Select));
+    focus::first(ui.ctx(), row_id(session.selection));
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let total = 4 + lights + objects;
+    let mut area = ScrollArea::vertical().auto_shrink(false);
+    let memory = ui.id().with("shown selection");
+    if let Some(offset) = offset_of_selection(ui, memory, session) {
+        area = area.vertical_scroll_offset(offset);
     }
+    let output = area.show_rows(ui, HEIGHT, total, |ui, range| {
+        for i in range {
+            match row(i) {
+                Row::Part(part) => PartRow::of(part, context).show(ui, context),
+                Row::Lights => heading(ui, "Lights", lights, |ui| add_lights(ui, context)),
+                Row::Objects => heading(ui, "Objects", objects, |ui| add_objects(ui, context)),
+            }
+        }
+    });
+    ui.data_mut(|d| d.insert_temp(memory.with("offset"), output.state.offset.y));
 }
 
 fn row_id(part: Selection) -> Id {

@@ -39,17 +39,10 @@ const LEAST: f32 = 320.0;
 const MENU: [f32; 2] = [580.0, 260.0];
 
 /// The strip below the picture, with three sections.
-#[derive(Clone, Copy, Debug)]
-pub struct Welcome;
-
-impl Panel for Welcome {
-    is_panel!("examples", "Examples", Place::Strip, |session| session.view.examples_open);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        // The picture has priority; the menus offer the same.
-        if self.is_open(context.session()) && ui.available_height() >= LEAST {
-            strip(ui, context);
-        }
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    // The picture has priority; the menus offer the same.
+    if context.session().view.examples_open && ui.available_height() >= LEAST {
+        strip(ui, context);
     }
 }
 

@@ -101,7 +101,7 @@ pub(super) fn paint(ui: &Ui, rect: Rect, part: Rect, view: usize, session: &Sess
         reloaded: session.shaders.last.clone(),
     };
     let lens = Lens::of(session, rect);
-    let sight = Sight { rect, eye: lens.eye(), axes: lens.axes(), field_of_view: fov };
+    let sight = Sight { rect, eye: lens.eye, axes: lens.axes(), field_of_view: fov };
     let mesh = kept::shared(ui.ctx(), |all: &mut Views| {
         let of = all.entry(view).or_default();
         let wires = of.answer(ui.ctx(), &question, view, session, registry)?;

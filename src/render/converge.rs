@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use bevy::ecs::resource::Resource;
 
-use crate::reference::LightSamples;
+use crate::{declared::with_defaults, reference::LightSamples};
 
 /// Maximum number of samples in a frame.
 const MOST: u32 = 8;
@@ -44,24 +44,20 @@ impl Converged {
     }
 }
 
-/// The convergence of pictures with light with extent.
-#[derive(Clone, Debug, Resource)]
-pub struct Convergence {
-    /// The target number of samples, at least 1.
-    pub target: u32,
-    /// Number of samples in a frame, at least 1; `None` for as many as frames have time for.
-    pub pace: Option<u32>,
-    /// The first sample of the next frame.
-    next: u32,
-    /// Maximum number of samples in the next frame.
-    most: u32,
-    /// Start of the last frame of a converging picture.
-    began: Option<Instant>,
-}
-
-impl Default for Convergence {
-    fn default() -> Self {
-        Self { target: LightSamples::DEFAULT, pace: None, next: 0, most: 1, began: None }
+with_defaults! {
+    /// The convergence of pictures with light with extent.
+    #[derive(Clone, Debug, Resource)]
+    pub struct Convergence {
+        /// The target number of samples, at least 1.
+        pub target: u32 = LightSamples::DEFAULT,
+        /// Number of samples in a frame, at least 1; `None` for as many as frames have time for.
+        pub pace: Option<u32> = None,
+        /// The first sample of the next frame.
+        next: u32 = 0,
+        /// Maximum number of samples in the next frame.
+        most: u32 = 1,
+        /// Start of the last frame of a converging picture.
+        began: Option<Instant> = None,
     }
 }
 

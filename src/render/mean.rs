@@ -62,12 +62,6 @@ struct Joins {
     illumination: AssetId<ShaderBuffer>,
 }
 
-impl Joins {
-    fn begins(&self) -> bool {
-        self.frame.converged.done == self.frame.count
-    }
-}
-
 /// The mean of the frames of a view.
 #[derive(Component)]
 struct Mean {
@@ -166,7 +160,8 @@ fn prepare(
         match mean {
             Some(mut mean) if mean.size == size => {
                 mean.textures.reverse();
-                mean.frames = if joins.begins() { 1 } else { mean.frames + 1 };
+                let Frame { converged, count, .. } = joins.frame;
+                mean.frames = if converged.done == count { 1 } else { mean.frames + 1 };
             }
             _ => _ = commands.entity(view).insert(Mean::new(size, &device)),
         }

@@ -20,6 +20,7 @@ use super::{
     shown::ShownObject,
 };
 use crate::{
+    declared::with_defaults,
     registry::Registry,
     scene::Object,
     shape::{MeshKey, PolygonMesh},
@@ -40,24 +41,26 @@ const SPARE_BYTES: u64 = 64 << 20;
 /// Maximum number of meshes built at once. Together they may exceed the budget before they are counted.
 const AT_ONCE: usize = 16;
 
-/// The meshes by object type, parameters and tessellation. Meshes are large, so each is built only in the
-/// form that its shading model needs, and exists only on the GPU once it is there.
-#[derive(Resource)]
-pub struct ShapeMeshes {
-    known: HashMap<(MeshKey, Vertices), Known>,
-    /// The size of all in bytes, the maximum for several, and the maximum for a single one.
-    bytes: u64,
-    together: u64,
-    alone: u64,
-    /// Meshes that did not fit, and the objects that are not drawn without them.
-    refused: HashSet<(MeshKey, Vertices)>,
-    /// The total size that the last rejected mesh would have reached, in bytes.
-    reached: u64,
-    omitted: Vec<Entity>,
-    /// True if there is more room than when they were refused.
-    room: bool,
-    /// True if meshes were added since unused ones were last dropped.
-    grown: bool,
+with_defaults! {
+    /// The meshes by object type, parameters and tessellation. Meshes are large, so each is built only in the
+    /// form that its shading model needs, and exists only on the GPU once it is there.
+    #[derive(Resource)]
+    pub struct ShapeMeshes {
+        known: HashMap<(MeshKey, Vertices), Known> = HashMap::new(),
+        /// The size of all in bytes, the maximum for several, and the maximum for a single one.
+        bytes: u64 = 0,
+        together: u64 = WINDOW_BUDGET,
+        alone: u64 = MESH_BUDGET,
+        /// Meshes that did not fit, and the objects that are not drawn without them.
+        refused: HashSet<(MeshKey, Vertices)> = HashSet::new(),
+        /// The total size that the last rejected mesh would have reached, in bytes.
+        reached: u64 = WINDOW_BUDGET,
+        omitted: Vec<Entity> = Vec::new(),
+        /// True if there is more room than when they were refused.
+        room: bool = false,
+        /// True if meshes were added since unused ones were last dropped.
+        grown: bool = false,
+    }
 }
 
 /// The priority of a shape: shapes outside all pictures come last, and nearer ones before others.
@@ -79,22 +82,6 @@ impl Need {
 struct Known {
     mesh: Handle<Mesh>,
     bytes: u64,
-}
-
-impl Default for ShapeMeshes {
-    fn default() -> Self {
-        Self {
-            known: HashMap::new(),
-            bytes: 0,
-            together: WINDOW_BUDGET,
-            alone: MESH_BUDGET,
-            refused: HashSet::new(),
-            reached: WINDOW_BUDGET,
-            omitted: Vec::new(),
-            room: false,
-            grown: false,
-        }
-    }
 }
 
 impl ShapeMeshes {

@@ -12,6 +12,7 @@ use bevy::{
 };
 
 use crate::{
+    declared::with_defaults,
     document::PartId,
     parameter::Values,
     scene::{Light, Observer, observer::observer},
@@ -47,19 +48,21 @@ impl Component for PartId {
     type Mutability = Immutable;
 }
 
-/// A light of the scene. Required by the component of its type. Its position is the translation of the
-/// `Transform`, and it shines along −z of its rotation.
-#[derive(Clone, Component, Copy, Debug, PartialEq, Reflect)]
-#[reflect(Component, Default, Clone, Debug, PartialEq)]
-#[require(Transform, Visibility)]
-#[component(on_remove = touch)]
-pub struct SceneLight {
-    /// False if switched off.
-    pub enabled: bool,
-    /// Colour.
-    pub colour: LightColour,
-    /// Strength.
-    pub power: LightPower,
+with_defaults! {
+    /// A light of the scene. Required by the component of its type. Its position is the translation of the
+    /// `Transform`, and it shines along −z of its rotation.
+    #[derive(Clone, Component, Copy, Debug, PartialEq, Reflect)]
+    #[reflect(Component, Default, Clone, Debug, PartialEq)]
+    #[require(Transform, Visibility)]
+    #[component(on_remove = touch)]
+    pub struct SceneLight {
+        /// False if switched off.
+        pub enabled: bool = true,
+        /// Colour.
+        pub colour: LightColour = LightColour::default(),
+        /// Strength.
+        pub power: LightPower = LightPower::default(),
+    }
 }
 
 /// The colour of a light.
@@ -91,12 +94,6 @@ impl Default for LightColour {
 impl Default for LightPower {
     fn default() -> Self {
         Self::Intensity(Light::default().intensity)
-    }
-}
-
-impl Default for SceneLight {
-    fn default() -> Self {
-        Self { enabled: true, colour: LightColour::default(), power: LightPower::default() }
     }
 }
 

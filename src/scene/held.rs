@@ -5,6 +5,7 @@ use glam::Vec3;
 pub use super::part::Held;
 use super::views::LETTERS;
 use crate::{
+    declared::from,
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::{Value, Values},
 };
@@ -122,18 +123,9 @@ word! {
     TermSelection: |terms| terms.id(), "";
 }
 
-/// Values for edits.
-macro_rules! value {
-    ($($type:ty: |$from:ident| $value:expr;)+) => {
-        $(impl From<$type> for Value {
-            fn from($from: $type) -> Self {
-                $value
-            }
-        })+
-    };
-}
-
-value! {
+// Values for edits.
+from! {
+    Value;
     f32: |v| Self::Number(v);
     u32: |n| Self::Integer(n.into());
     bool: |on| Self::flag(on);

@@ -4,6 +4,7 @@ use super::clause::Rule;
 use crate::files::Shown as _;
 use crate::{
     custom,
+    declared::in_words,
     light::LightEntry,
     parameter::Parameter,
     reflection::ModelEntry,
@@ -13,17 +14,21 @@ use crate::{
     text::{self, detailed},
 };
 
-/// The registered things to which an id may refer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ids {
-    /// Reflection models.
-    ReflectionModel,
-    /// Shading models.
-    ShadingModel,
-    /// Light types.
-    LightType,
-    /// Object types.
-    ObjectType,
+in_words! {
+    /// The registered things to which an id may refer.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Ids {
+        /// Reflection models.
+        ReflectionModel = "reflection model",
+        /// Shading models.
+        ShadingModel = "shading model",
+        /// Light types.
+        LightType = "light type",
+        /// Object types.
+        ObjectType = "object type",
+    }
+    /// The name of what the ids refer to.
+    name
 }
 
 /// Something registered.
@@ -58,17 +63,6 @@ macro_rules! listed {
 listed!(ModelEntry, ShadingEntry, LightEntry, ShapeEntry);
 
 impl Ids {
-    /// The name of what the ids refer to.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ReflectionModel => "reflection model",
-            Self::ShadingModel => "shading model",
-            Self::LightType => "light type",
-            Self::ObjectType => "object type",
-        }
-    }
-
     /// Everything registered.
     #[must_use]
     pub fn all(self, registry: &Registry) -> Box<dyn Iterator<Item = Listed> + '_> {
@@ -83,12 +77,7 @@ impl Ids {
     /// What an id refers to.
     #[must_use]
     pub fn find(self, registry: &Registry, id: &str) -> Option<Listed> {
-        match self {
-            Self::ReflectionModel => registry.model(id).map(Listed::from),
-            Self::ShadingModel => registry.shading_model(id).map(Listed::from),
-            Self::LightType => registry.light(id).map(Listed::from),
-            Self::ObjectType => registry.shape(id).map(Listed::from),
-        }
+        self.all(registry).find(|listed| listed.id == id)
     }
 
     /// Checks that an id is registered.

@@ -32,98 +32,64 @@ pub(super) fn pretty(compact: &str) -> Option<String> {
     Some(out)
 }
 
+/// The values in an object or a list, each with its name as written, in quotes, if it has one; and the brackets around
+/// them, and what stands after each name. None for other values.
+type Items<'v> = Option<(Vec<(&'v str, &'v Ast<'v>)>, [&'static str; 3])>;
+
+fn items<'v>(value: &'v Ast<'v>, text: &'v str) -> Items<'v> {
+    match value {
+        Ast::Object(object) => {
+            let named = object.properties.iter().map(|property| (property.name.text(text), &property.value));
+            Some((named.collect(), ["{", "}", ": "]))
+        }
+        Ast::Array(array) => Some((array.elements.iter().map(|item| ("", item)).collect(), ["[", "]", ""])),
+        _ => None,
+    }
+}
+
 /// Writes a value; the cursor is at `column`, and broken lines are indented by `depth` steps.
 fn lay_out(value: &Ast, text: &str, depth: usize, column: usize, out: &mut String) {
     let has_objects =
         matches!(value, Ast::Array(a) if a.elements.iter().any(|e| matches!(e, Ast::Object(_))));
-    // Room for the comma that may follow.
-    if depth > 0 && !has_objects && column + width(value, text) < LINE_WIDTH {
-        return lay_flat(value, text, out);
+    if depth > 0 && !has_objects {
+        let start = out.len();
+        lay_flat(value, text, out);
+        // Room for the comma that may follow.
+        if column + out[start..].chars().count() < LINE_WIDTH {
+            return;
+        }
+        out.truncate(start);
     }
+    let Some((items, [open, close, after])) = items(value, text) else {
+        return out.push_str(value.text(text));
+    };
     let indent = |out: &mut String, depth: usize| {
         out.push('\n');
         out.extend(std::iter::repeat_n("  ", depth));
     };
-    match value {
-        Ast::Object(object) => {
-            out.push('{');
-            for (i, property) in object.properties.iter().enumerate() {
-                if i > 0 {
-                    out.push(',');
-                }
-                indent(out, depth + 1);
-                let name = name_text(property, text);
-                out.push_str(name);
-                out.push_str(": ");
-                let column = 2 * (depth + 1) + name.chars().count() + 2;
-                lay_out(&property.value, text, depth + 1, column, out);
-            }
-            indent(out, depth);
-            out.push('}');
-        }
-        Ast::Array(array) => {
-            out.push('[');
-            for (i, element) in array.elements.iter().enumerate() {
-                if i > 0 {
-                    out.push(',');
-                }
-                indent(out, depth + 1);
-                lay_out(element, text, depth + 1, 2 * (depth + 1), out);
-            }
-            indent(out, depth);
-            out.push(']');
-        }
-        scalar => out.push_str(scalar.text(text)),
+    out.push_str(open);
+    for (i, (name, item)) in items.into_iter().enumerate() {
+        out.push_str(if i > 0 { "," } else { "" });
+        indent(out, depth + 1);
+        out.extend([name, after]);
+        lay_out(item, text, depth + 1, 2 * (depth + 1) + name.chars().count() + after.len(), out);
     }
-}
-
-/// The name of a property as written, in quotes.
-fn name_text<'t>(property: &jsonc_parser::ast::ObjectProp, text: &'t str) -> &'t str {
-    property.name.text(text)
-}
-
-/// The width of a value on one line.
-fn width(value: &Ast, text: &str) -> usize {
-    match value {
-        Ast::Object(o) if o.properties.is_empty() => 2,
-        Ast::Object(o) => {
-            let fields = o.properties.iter();
-            2 + fields
-                .map(|p| name_text(p, text).chars().count() + 2 + width(&p.value, text) + 2)
-                .sum::<usize>()
-        }
-        Ast::Array(a) => {
-            a.elements.iter().map(|e| width(e, text)).sum::<usize>() + 2 * a.elements.len().max(1)
-        }
-        scalar => scalar.text(text).chars().count(),
-    }
+    indent(out, depth);
+    out.push_str(close);
 }
 
 /// Writes a value on one line.
 fn lay_flat(value: &Ast, text: &str, out: &mut String) {
-    match value {
-        Ast::Object(o) if o.properties.is_empty() => out.push_str("{}"),
-        Ast::Object(o) => {
-            for (i, property) in o.properties.iter().enumerate() {
-                out.push_str(if i == 0 { "{ " } else { ", " });
-                out.push_str(name_text(property, text));
-                out.push_str(": ");
-                lay_flat(&property.value, text, out);
-            }
-            out.push_str(" }");
-        }
-        Ast::Array(a) => {
-            out.push('[');
-            for (i, element) in a.elements.iter().enumerate() {
-                if i > 0 {
-                    out.push_str(", ");
-                }
-                lay_flat(element, text, out);
-            }
-            out.push(']');
-        }
-        scalar => out.push_str(scalar.text(text)),
+    let Some((items, [open, close, after])) = items(value, text) else {
+        return out.push_str(value.text(text));
+    };
+    let space = if items.is_empty() || after.is_empty() { "" } else { " " };
+    out.extend([open, space]);
+    for (i, (name, item)) in items.into_iter().enumerate() {
+        out.extend([if i > 0 { ", " } else { "" }, name, after]);
+        lay_flat(item, text, out);
     }
+    out.extend([space, close]);
 }
 
 #[cfg(test)]

@@ -235,11 +235,13 @@ macro_rules! part {
             $($(#[doc = $help:literal])+ $field:ident $([$key:literal])?: $type:ty = $declared:expr, $default:expr;)+
         }
     ) => {
-        $(#[doc = $about])+
-        #[derive(Clone, Debug, PartialEq $(, $($derive),+)?)]
-        #[allow(rustdoc::broken_intra_doc_links)]
-        pub struct $Part {
-            $($(#[doc = $help])+ pub $field: $type,)+
+        $crate::declared::with_defaults! {
+            $(#[doc = $about])+
+            #[derive(Clone, Debug, PartialEq $(, $($derive),+)?)]
+            #[allow(rustdoc::broken_intra_doc_links)]
+            pub struct $Part {
+                $($(#[doc = $help])+ pub $field: $type = $default,)+
+            }
         }
 
         #[allow(non_upper_case_globals)]
@@ -252,12 +254,6 @@ macro_rules! part {
                     ..$declared
                 };
             )+
-        }
-
-        impl Default for $Part {
-            fn default() -> Self {
-                Self { $($field: $default,)+ }
-            }
         }
 
         impl $crate::scene::part::Fields for $Part {

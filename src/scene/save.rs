@@ -13,9 +13,8 @@ use super::{
     formats::{self, Target, UnknownExtension},
     load::{self, Defaults, MAX_FILE_BYTES, Stamp},
 };
-use crate::files::{Shown as _, words};
 use crate::{
-    files::{self, Draft, FileError, Kind},
+    files::{self, Draft, FileError, Kind, Shown as _, words},
     parameter::Outside,
     registry::Registry,
 };
@@ -31,96 +30,78 @@ pub enum Expected {
     Anything,
 }
 
-/// The reason why a scene could not be written. In that case nothing has changed: the old file is still
-/// complete.
+/// A scene that could not be written. In that case nothing has changed: the old file is still complete.
 #[derive(Debug, thiserror::Error)]
-pub enum SaveError {
-    /// The scene breaks rules, so it could not be read again.
-    #[error("{} was not written: the scene has problems:\n{}", .path.shown(), lines(.problems))]
-    Invalid {
-        /// The file.
-        path: PathBuf,
-        /// The problems, at least one.
-        problems: Vec<Problem>,
-    },
+#[error("{} {why}{}", .path.shown(), instead(.path, .why))]
+pub struct SaveError {
+    /// The file.
+    pub path: PathBuf,
+    /// The reason.
+    pub why: Unwritten,
+}
+
+/// The reason why a scene could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum Unwritten {
+    /// The scene breaks rules, so it could not be read again: the problems, at least one.
+    #[error("was not written: the scene has problems:\n{}", lines(.0))]
+    Invalid(Vec<Problem>),
     /// The file name's extension belongs to no known format.
-    #[error("{} was not written: {unknown}", .path.shown())]
-    UnknownExtension {
-        /// The file.
-        path: PathBuf,
-        /// The extension, and those that are known.
-        unknown: UnknownExtension,
-    },
-    /// The format can only be read.
-    #[error("{} was not written: files of the format {format} can only be read; save the scene as JSON, for example as {}", .path.shown(), as_json(.path).shown())]
-    CannotWrite {
-        /// The file.
-        path: PathBuf,
-        /// The name of the format.
-        format: &'static str,
-    },
-    /// The format cannot hold the whole scene.
-    #[error("{} was not written: {why}; save the scene as JSON, for example as {}", .path.shown(), as_json(.path).shown())]
-    Lossy {
-        /// The file.
-        path: PathBuf,
-        /// The part that would be lost.
-        why: String,
-    },
+    #[error("was not written: {0}")]
+    UnknownExtension(UnknownExtension),
+    /// The format of this name can only be read.
+    #[error("was not written: files of the format {0} can only be read")]
+    CannotWrite(&'static str),
+    /// The format cannot hold the whole scene: the part that would be lost.
+    #[error("was not written: {0}")]
+    Lossy(String),
     /// A new file was requested, but one exists.
-    #[error("{} already exists; it was not overwritten", .path.shown())]
-    Exists {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("already exists; it was not overwritten")]
+    Exists,
     /// Another program wrote the file since it was read.
-    #[error("{} changed on disk since it was read; it was not overwritten", .path.shown())]
-    Changed {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("changed on disk since it was read; it was not overwritten")]
+    Changed,
     /// The file was deleted or moved since it was read.
-    #[error("{} is no longer there; it was deleted or moved since it was read", .path.shown())]
-    Gone {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("is no longer there; it was deleted or moved since it was read")]
+    Gone,
     /// The file is protected.
-    #[error("{} is read-only; it was not overwritten", .path.shown())]
-    ReadOnly {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("is read-only; it was not overwritten")]
+    ReadOnly,
     /// The path leads to a folder.
-    #[error("{} is a folder; choose a file name", .path.shown())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-    },
+    #[error("is a folder; choose a file name")]
+    Folder,
     /// The path leads to something other than a file or folder.
-    #[error("{} was not written: it is {kind}, not a regular file", .path.shown())]
-    NoFile {
-        /// The path given.
-        path: PathBuf,
-        /// The kind of thing that it is.
-        kind: Kind,
-    },
+    #[error("was not written: it is {0}, not a regular file")]
+    NoFile(Kind),
     /// The folder of the file does not exist.
-    #[error("{} was not written: there is no folder {}", .path.shown(), .folder.shown())]
-    NoFolder {
-        /// The file.
-        path: PathBuf,
-        /// The missing folder.
-        folder: PathBuf,
-    },
+    #[error("was not written: there is no folder {}", .0.shown())]
+    NoFolder(PathBuf),
     /// A failure of the operating system: no permission, no space.
-    #[error("{} was not written: {}", .path.shown(), words(.source))]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The reason given by the system.
-        source: io::Error,
-    },
+    #[error("was not written: {}", words(.0))]
+    Io(#[source] io::Error),
+}
+
+impl From<FileError> for Unwritten {
+    fn from(error: FileError) -> Self {
+        match error {
+            FileError::Kind(Kind::Folder) => Self::Folder,
+            FileError::Kind(kind) => Self::NoFile(kind),
+            error => match io::Error::from(error) {
+                e if e.kind() == io::ErrorKind::AlreadyExists => Self::Exists,
+                source => Self::Io(source),
+            },
+        }
+    }
+}
+
+/// The advice to choose the format that holds every scene, where that of the file is the reason.
+fn instead(path: &Path, why: &Unwritten) -> String {
+    match why {
+        Unwritten::CannotWrite(_) | Unwritten::Lossy(_) => {
+            format!("; save the scene as JSON, for example as {}", as_json(path).shown())
+        }
+        _ => String::new(),
+    }
 }
 
 /// The name of a file with the extension of JSON, the format that holds every scene.
@@ -144,40 +125,40 @@ pub fn write(
     registry: &Registry,
     expected: Expected,
 ) -> Result<Stamp, SaveError> {
-    let shown = || path.to_owned();
+    written(path, scene, registry, expected).map_err(|why| SaveError { path: path.to_owned(), why })
+}
+
+fn written(path: &Path, scene: &Scene, registry: &Registry, expected: Expected) -> Result<Stamp, Unwritten> {
     let problems = check::scene(scene, registry);
     if !problems.is_empty() {
-        return Err(SaveError::Invalid { path: shown(), problems });
+        return Err(Unwritten::Invalid(problems));
     }
-    let format = formats::of_path(path, registry)
-        .map_err(|unknown| SaveError::UnknownExtension { path: shown(), unknown })?;
-    let writer =
-        format.writer().ok_or_else(|| SaveError::CannotWrite { path: shown(), format: format.name() })?;
-    let failed = |error| SaveError::from_file(path, error);
+    let format = formats::of_path(path, registry).map_err(Unwritten::UnknownExtension)?;
+    let writer = format.writer().ok_or(Unwritten::CannotWrite(format.name()))?;
     // The target of /dev/stdout has no folder for a draft.
-    if let Ok(kind @ (files::Kind::Pipe | files::Kind::Device)) = files::kind(path) {
-        return Err(failed(files::FileError::Kind(kind)));
+    if let Ok(kind @ (Kind::Pipe | Kind::Device)) = files::kind(path) {
+        return Err(Unwritten::NoFile(kind));
     }
-    let target = files::follow(path).map_err(|e| failed(e.into()))?;
+    let target = files::follow(path).map_err(FileError::from)?;
     let folder = files::folder_of(&target);
     if !folder.is_dir() {
-        return Err(SaveError::NoFolder { path: shown(), folder: folder.to_owned() });
+        return Err(Unwritten::NoFolder(folder.to_owned()));
     }
-    let old = on_disk(&target, path, expected)?;
-    let lossy = |why| SaveError::Lossy { path: shown(), why };
-    let bytes = writer.write(scene, &Target::new(folder, old.as_deref()), registry).map_err(lossy)?;
+    let old = on_disk(&target, expected)?;
+    let bytes = writer.write(scene, &Target::new(folder, old.as_deref()), registry);
+    let bytes = bytes.map_err(Unwritten::Lossy)?;
     if !formats::is_json(format) {
-        comes_back(&bytes, scene, (path, folder), registry).map_err(lossy)?;
+        comes_back(&bytes, scene, (path, folder), registry).map_err(Unwritten::Lossy)?;
     }
 
-    let mut draft = Draft::new(&target).map_err(failed)?;
-    draft.write_all(&bytes).map_err(|e| failed(e.into()))?;
+    let mut draft = Draft::new(&target)?;
+    draft.write_all(&bytes).map_err(FileError::from)?;
     if expected == Expected::Nothing {
-        draft.create().map_err(failed)?;
+        draft.create()?;
     } else {
         // Check again: writing took time.
-        on_disk(&target, path, expected)?;
-        draft.replace().map_err(failed)?;
+        on_disk(&target, expected)?;
+        draft.replace()?;
     }
     Ok(Stamp::of(&bytes))
 }
@@ -230,58 +211,42 @@ impl SaveError {
     /// True if the scene can be saved in another format.
     #[must_use]
     pub fn is_about_format(&self) -> bool {
-        matches!(self, Self::UnknownExtension { .. } | Self::CannotWrite { .. } | Self::Lossy { .. })
-    }
-
-    fn from_file(path: &Path, error: FileError) -> Self {
-        let path = path.to_owned();
-        match error {
-            FileError::Kind(Kind::Folder) => Self::Folder { path },
-            FileError::Kind(kind) => Self::NoFile { path, kind },
-            error => match io::Error::from(error) {
-                e if e.kind() == io::ErrorKind::AlreadyExists => Self::Exists { path },
-                source => Self::Io { path, source },
-            },
-        }
+        use Unwritten::{CannotWrite, Lossy, UnknownExtension};
+        matches!(self.why, UnknownExtension(_) | CannotWrite(_) | Lossy(_))
     }
 }
 
 /// Examines the destination and compares it with the expectation. Returns its content, if there is any.
-fn on_disk(target: &Path, path: &Path, expected: Expected) -> Result<Option<Vec<u8>>, SaveError> {
-    let shown = || path.to_owned();
-    let io = |source| SaveError::Io { path: shown(), source };
+fn on_disk(target: &Path, expected: Expected) -> Result<Option<Vec<u8>>, Unwritten> {
     let metadata = match fs::metadata(target) {
         Ok(metadata) => metadata,
         Err(e) if e.kind() == io::ErrorKind::NotFound => {
             return match expected {
-                Expected::Unchanged(_) => Err(SaveError::Gone { path: shown() }),
+                Expected::Unchanged(_) => Err(Unwritten::Gone),
                 Expected::Nothing | Expected::Anything => Ok(None),
             };
         }
-        Err(e) => return Err(io(e)),
+        Err(e) => return Err(Unwritten::Io(e)),
     };
     match Kind::of(metadata.file_type()) {
         Kind::File => {}
-        kind => return Err(SaveError::from_file(path, FileError::Kind(kind))),
+        kind => return Err(FileError::Kind(kind).into()),
     }
     if expected == Expected::Nothing {
-        return Err(SaveError::Exists { path: shown() });
+        return Err(Unwritten::Exists);
     }
     if metadata.permissions().readonly() {
-        return Err(SaveError::ReadOnly { path: shown() });
+        return Err(Unwritten::ReadOnly);
     }
     let bytes = match files::read(target, MAX_FILE_BYTES) {
-        Ok(bytes) => bytes,
         // Not a scene.
         Err(FileError::TooLarge(_)) => Vec::new(),
-        Err(error) => return Err(SaveError::from_file(path, error)),
+        read => read?,
     };
-    if let Expected::Unchanged(stamp) = expected
-        && stamp != Stamp::of(&bytes)
-    {
-        return Err(SaveError::Changed { path: shown() });
+    match expected {
+        Expected::Unchanged(stamp) if stamp != Stamp::of(&bytes) => Err(Unwritten::Changed),
+        _ => Ok(Some(bytes)),
     }
-    Ok(Some(bytes))
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::{Chapter, Lab, StudyError, Table, fixed, percent, share};
+use crate::declared::from;
 
 /// A value in a text.
 pub(super) enum Value {
@@ -16,18 +17,8 @@ pub(super) enum Value {
     Html(Markup),
 }
 
-/// The types of values.
-macro_rules! of {
-    ($($type:ty: |$from:ident| $value:expr;)+) => {
-        $(impl From<$type> for Value {
-            fn from($from: $type) -> Self {
-                $value
-            }
-        })+
-    };
-}
-
-of! {
+from! {
+    Value;
     f64: |v| Self::Number(v);
     usize: |n| Self::Number(n as f64);
     bool: |is| Self::Flag(is);

@@ -238,22 +238,17 @@ impl CameraControl<'_, '_> {
     /// Turns to the selection, keeping the direction of view.
     pub(super) fn focus(&mut self, session: &Session, registry: &Registry) {
         let scene = &self.scene.0;
-        let (target, size) = match session.selection {
-            Selection::Object(i) => match scene.objects.get(i) {
-                Some(object) => (object.position, object.size),
-                None => return,
-            },
-            Selection::Light(i) => match scene.lights.get(i).and_then(|light| Some((light, light.position?)))
-            {
-                Some((light, position)) => {
-                    let span = registry.light(&light.light_type).map_or(0.0, |of| of.span(&light.parameters));
-                    (position, span.max(0.5))
-                }
-                None => return,
-            },
+        let corner = scene.scene_size.corner();
+        let found = match session.selection {
+            Selection::Object(i) => scene.objects.get(i).map(|object| (object.position, object.size)),
+            Selection::Light(i) => scene.lights.get(i).and_then(|light| {
+                let span = registry.light(&light.light_type).map_or(0.0, |of| of.span(&light.parameters));
+                Some((light.position?, span.max(0.5)))
+            }),
             Selection::Observer => return self.home(),
-            Selection::Room => (scene.scene_size.corner() * 0.5, scene.scene_size.corner().max_element()),
+            Selection::Room => Some((corner * 0.5, corner.max_element())),
         };
+        let Some((target, size)) = found else { return };
         for (mut orbit, mut transform, mut picture) in &mut self.cameras {
             picture.follows_observer = false;
             let distance = framing(size, scene.observer.field_of_view);

@@ -81,23 +81,16 @@ pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure>
     RUNNING.store(false, Ordering::SeqCst);
     match ended {
         Ok(AppExit::Success) => Ok(()),
-        Ok(AppExit::Error(_)) => {
-            let what = if display_answers() {
-                "the renderer failed and the window was closed"
-            } else {
-                "the connection to the display was lost"
-            };
-            Err(Failure::NoRenderer(lost(what, sentence())))
+        Ok(AppExit::Error(_)) if display_answers() => {
+            Err(Failure::NoRenderer(lost("the renderer failed and the window was closed", sentence())))
         }
-        Err(_) if !display_answers() => {
-            Err(Failure::NoRenderer(lost("the connection to the display was lost", sentence())))
-        }
-        Err(panic) => {
+        Err(panic) if display_answers() => {
             let culprit = caught::lock(&CULPRIT).take();
             let why = culprit.map_or_else(|| "a system panicked".to_owned(), |(_, why)| why);
             complain(&lost(&format!("the window was closed: {why}"), sentence()));
             panic::resume_unwind(panic)
         }
+        _ => Err(Failure::NoRenderer(lost("the connection to the display was lost", sentence()))),
     }
 }
 
@@ -125,10 +118,7 @@ fn culprit(trace: &str) -> Option<&str> {
 }
 
 fn lost(what: &str, kept: Option<String>) -> String {
-    match kept {
-        Some(sentence) => format!("{what}; {sentence}"),
-        None => format!("{what}; this window had no unsaved changes"),
-    }
+    format!("{what}; {}", kept.as_deref().unwrap_or("this window had no unsaved changes"))
 }
 
 /// False if the display named in the environment is gone.

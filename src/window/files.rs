@@ -19,7 +19,7 @@ use crate::{
         Scene,
         error::LoadError,
         load::{self, Defaults, Loaded, Stamp},
-        save::{self, Expected, SaveError},
+        save::{self, Expected, SaveError, Unwritten},
     },
 };
 
@@ -73,7 +73,7 @@ impl Files for DiskFiles {
                 self.seen = Some((path.to_owned(), stamp));
                 Saved::Done
             }
-            Err(SaveError::Changed { .. } | SaveError::Exists { .. } | SaveError::Gone { .. }) => {
+            Err(SaveError { why: Unwritten::Changed | Unwritten::Exists | Unwritten::Gone, .. }) => {
                 Saved::ChangedOnDisk
             }
             Err(error) if error.is_about_format() => Saved::OtherFormat(error.to_string()),

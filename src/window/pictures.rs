@@ -93,7 +93,9 @@ fn take(
             pictures.work.cancel();
         }
         let Effect::Picture { view, file, overwrite } = effect.clone() else { continue };
-        let file = file.map(as_png);
+        // The user need not type the extension of pictures.
+        let file =
+            file.map(|file| if file.extension().is_none() { file.with_extension("png") } else { file });
         match file.as_deref().map_or(Ok(true), |file| may_write(file, overwrite, &session, &registry)) {
             Ok(true) => {
                 announce(file.as_deref(), &mut session, &registry);
@@ -268,11 +270,6 @@ fn shown(session: &Session, cells: Vec<usize>, alone: Option<usize>) -> Vec<usiz
         }
         (None, _) => cells,
     }
-}
-
-/// Appends the extension of pictures, if the user typed none.
-fn as_png(file: PathBuf) -> PathBuf {
-    if file.extension().is_none() { file.with_extension("png") } else { file }
 }
 
 /// Returns false if the file exists, so that the user must be asked.

@@ -21,32 +21,38 @@ pub use slices::{GAP, SIDE, Slices, Tile};
 use bitmap::Bitmap;
 use svg::{Place, Svg};
 
+use crate::declared::{in_words, with_defaults};
+
 /// The colour of text and axes in stand-alone figures.
 const INK: [u8; 3] = [28, 29, 31];
 /// The colour of grid lines behind the curves.
 const GRID: [u8; 3] = [222, 222, 218];
 
-/// The line between the points of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Line {
-    /// A solid line.
-    Solid,
-    /// Dashes.
-    Dashed,
-    /// Dots.
-    Dotted,
-    /// Alternating dashes and dots.
-    DashDot,
-    /// Long dashes.
-    LongDashed,
-    /// Alternating dashes and pairs of dots.
-    DashDotDot,
-    /// Alternating long and short dashes.
-    LongShort,
-    /// Short dashes close together.
-    ShortDashed,
-    /// No line.
-    None,
+in_words! {
+    /// The line between the points of a series.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Line {
+        /// A solid line.
+        Solid = "solid",
+        /// Dashes.
+        Dashed = "dashed",
+        /// Dots.
+        Dotted = "dotted",
+        /// Alternating dashes and dots.
+        DashDot = "dash and dot",
+        /// Long dashes.
+        LongDashed = "long dashes",
+        /// Alternating dashes and pairs of dots.
+        DashDotDot = "dash and two dots",
+        /// Alternating long and short dashes.
+        LongShort = "long and short dashes",
+        /// Short dashes close together.
+        ShortDashed = "short dashes",
+        /// No line.
+        None = "none",
+    }
+    /// The line in words.
+    name
 }
 
 impl Line {
@@ -110,39 +116,26 @@ pub struct Series {
     pub mark: Mark,
 }
 
-/// A plot with two axes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plot {
-    /// The content, for screen readers.
-    pub title: String,
-    /// The line above the plot; often empty if there is a caption below.
-    pub heading: String,
-    /// The horizontal axis.
-    pub x: Axis,
-    /// The vertical axis.
-    pub y: Axis,
-    /// The curves.
-    pub series: Vec<Series>,
-    /// Width and height.
-    pub size: (u32, u32),
-    /// True if the plot has a legend, at the right.
-    pub legend: bool,
-    /// Remarks below the plot.
-    pub notes: Vec<String>,
-}
-
-impl Default for Plot {
-    fn default() -> Self {
-        Self {
-            title: String::new(),
-            heading: String::new(),
-            x: Axis::new("", 0.0, 1.0, 6),
-            y: Axis::new("", 0.0, 1.0, 6),
-            series: Vec::new(),
-            size: (960, 600),
-            legend: true,
-            notes: Vec::new(),
-        }
+with_defaults! {
+    /// A plot with two axes.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Plot {
+        /// The content, for screen readers.
+        pub title: String = String::new(),
+        /// The line above the plot; often empty if there is a caption below.
+        pub heading: String = String::new(),
+        /// The horizontal axis.
+        pub x: Axis = Axis::new("", 0.0, 1.0, 6),
+        /// The vertical axis.
+        pub y: Axis = Axis::new("", 0.0, 1.0, 6),
+        /// The curves.
+        pub series: Vec<Series> = Vec::new(),
+        /// Width and height.
+        pub size: (u32, u32) = (960, 600),
+        /// True if the plot has a legend, at the right.
+        pub legend: bool = true,
+        /// Remarks below the plot.
+        pub notes: Vec<String> = Vec::new(),
     }
 }
 

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use bevy_egui::egui::Key;
 
 use super::state::{Action, LessonCommand, Session, Shortcut};
-use crate::{registry::Registry, text::quoted};
+use crate::{declared::in_words, registry::Registry, text::quoted};
 
 mod edit;
 mod elsewhere;
@@ -33,49 +33,34 @@ pub(super) const EXAMPLES: &str = "Examples";
 pub(super) const LESSONS: &str = "Lessons";
 pub(super) const LOBE: &str = "Lobe at the explained point";
 
-/// The headings of the list of keys, in its order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Group {
-    /// Documents and pictures.
-    File,
-    /// Parts of the scene, and the history.
-    Edit,
-    /// Models.
-    Reflection,
-    /// The picture and the camera's subject.
-    #[default]
-    Picture,
-    /// Files of reflection models.
-    CustomModels,
-    /// Views beside each other.
-    Comparison,
-    /// Keys that steer the camera; with the focus in a panel they are the panel's.
-    Camera,
-    /// Handles in the picture.
-    Handles,
-    /// The window itself.
-    Window,
-    /// Lessons.
-    Lessons,
-}
-
-impl Group {
-    /// The heading.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::File => "File",
-            Self::Edit => "Edit",
-            Self::Reflection => "Reflection and shading",
-            Self::Picture => "Picture",
-            Self::CustomModels => "Custom models",
-            Self::Comparison => "Comparison",
-            Self::Camera => "Camera",
-            Self::Handles => "Handles",
-            Self::Window => "Window",
-            Self::Lessons => "Lessons",
-        }
+in_words! {
+    /// The headings of the list of keys, in its order.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Group {
+        /// Documents and pictures.
+        File = "File",
+        /// Parts of the scene, and the history.
+        Edit = "Edit",
+        /// Models.
+        Reflection = "Reflection and shading",
+        /// The picture and the camera's subject.
+        #[default]
+        Picture = "Picture",
+        /// Files of reflection models.
+        CustomModels = "Custom models",
+        /// Views beside each other.
+        Comparison = "Comparison",
+        /// Keys that steer the camera; with the focus in a panel they are the panel's.
+        Camera = "Camera",
+        /// Handles in the picture.
+        Handles = "Handles",
+        /// The window itself.
+        Window = "Window",
+        /// Lessons.
+        Lessons = "Lessons",
     }
+    /// The heading.
+    name
 }
 
 /// The form of a menu entry.

@@ -21,11 +21,11 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
         halves(ui, false, |ui, i| head(ui, sides[i], session));
         let seen = sides.map(|side| side.explanation.seen.as_ref());
         let [Some(a), Some(b)] = seen else {
-            rows::note(ui, "Only one of the views shows an object here.");
+            theme::note(ui, "Only one of the views shows an object here.");
             return;
         };
         if a.object.index != b.object.index {
-            rows::note(ui, "The views show different objects here.");
+            theme::note(ui, "The views show different objects here.");
         }
         // The same light on both sides: the brightest light may differ between views.
         let first = shown(ui.ctx(), a);
@@ -34,7 +34,7 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
         let other = spot.and_then(|spot| spot.lights.iter().find(|l| Some(l.light.index) == index));
         let lit = [first, other];
         let [Some(first), Some(second)] = lit else {
-            rows::note(ui, "No light is switched on here.");
+            theme::note(ui, "No light is switched on here.");
             return;
         };
         let name = session.name_of(Selection::Light(first.light.index), registry);
@@ -52,11 +52,11 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
                     let model = &[a, b][i].model;
                     drop(lights::written(ui, line, &|symbol| lights::meaning(model, symbol)));
                 }
-                None => drop(rows::note(ui, &format!("no line for {} here", pair.defines()))),
+                None => drop(theme::note(ui, format!("no line for {} here", pair.defines()))),
             });
         }
         halves(ui, first.contribution != second.contribution, |ui, i| {
-            rows::note(ui, "light to the observer");
+            theme::note(ui, "light to the observer");
             match lit[i].and_then(|lit| Some((lit.contribution, lit.error()?))) {
                 Some((light, error)) => rows::measured(ui, "=", light, error, true),
                 None => {
@@ -65,7 +65,7 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
             }
         });
         let count = all.iter().filter(|pair| pair.differs()).count();
-        rows::note(ui, &format!("≠ marks what differs: {count} of {} lines.", all.len()));
+        theme::note(ui, format!("≠ marks what differs: {count} of {} lines.", all.len()));
     });
 }
 

@@ -23,16 +23,16 @@ pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
     if display.encoding == Encoding::Off && !explanation.shows_backdrop() {
         let text = "Without encoding, the numbers themselves are to reach the display: clipped to 0–1 and decoded, since the \
                     last step encodes.";
-        rows::note(ui, text);
+        theme::note(ui, text);
         step(ui, "decoded", |steps| steps.input);
     }
     if !explanation.shows_backdrop() {
         step(ui, &format!("tone mapping, {}", display.tone_mapping.name()), |steps| steps.mapped);
     }
     if steps.mapped.is_nan() {
-        rows::note(ui, "What is no number is shown as 0.");
+        theme::note(ui, "What is no number is shown as 0.");
     } else if steps.mapped.max_element() > 1.0 || steps.mapped.min_element() < 0.0 {
-        rows::note(ui, "What is beyond 0–1 is clipped.");
+        theme::note(ui, "What is beyond 0–1 is clipped.");
     }
     // From here on, display values rather than light.
     let encoded = explanation.error_of(|steps| steps.encoded);

@@ -47,7 +47,7 @@ pub(super) fn factor(
                 clicked = rows::calculation(ui, numbers, &line.symbols, name);
             }
         } else {
-            rows::note(ui, "Calculated by the program: it has no equation that one could follow by hand.");
+            theme::note(ui, "Calculated by the program: it has no equation that one could follow by hand.");
         }
         if let Some(curve) = geometry.and_then(|geometry| curve(ui, model, geometry, line.defines())) {
             plot(ui, &curve, line);
@@ -57,7 +57,7 @@ pub(super) fn factor(
             source => source,
         };
         if !source.is_empty() {
-            rows::note(ui, &format!("Source: {source}"));
+            theme::note(ui, format!("Source: {source}"));
         }
         ui.add_space(4.0);
     });
@@ -88,15 +88,7 @@ fn head(ui: &mut Ui, line: &Line, open: bool) -> Response {
 fn curve(ui: &Ui, model: &Model, geometry: &Geometry, name: &str) -> Option<Arc<FactorCurve>> {
     let id = Id::new(("curve of a factor", name));
     let key = (probe::calculations(ui.ctx()), geometry.l.to_array().map(f32::to_bits));
-    type Kept = ((u64, [u32; 3]), Option<Arc<FactorCurve>>);
-    if let Some((known, curve)) = ui.data(|d| d.get_temp::<Kept>(id))
-        && known == key
-    {
-        return curve;
-    }
-    let curve = model.curve_of(name, geometry).map(Arc::new);
-    ui.data_mut(|d| d.insert_temp::<Kept>(id, (key, curve.clone())));
-    curve
+    kept::of_key(ui.ctx(), id, key, || model.curve_of(name, geometry).map(Arc::new))
 }
 
 /// A small plot with the current point.

@@ -93,33 +93,33 @@ pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, r
     ui.add_space(8.0);
     rows::heading(ui, "The hemisphere above the point");
     if seen.model.trouble.is_some() {
-        rows::note(ui, "The CPU cannot run this model: there is no picture of it.");
+        theme::note(ui, "The CPU cannot run this model: there is no picture of it.");
         return;
     }
     let question = (Same(explained.clone()), number);
     let discs = kept::shared(ui.ctx(), |work| answer(work, ui.ctx(), &question, (seen, spot), registry));
     let Some(discs) = discs else {
-        rows::note(ui, "Calculating…");
+        theme::note(ui, "Calculating…");
         return;
     };
     let text = "From straight above: area is projected solid angle, N is the middle, the rim is the horizon, the tangent points right.";
-    rows::note(ui, text);
+    theme::note(ui, text);
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
         let width = ((ui.available_width() - 2.0 * GAP) / 3.0).clamp(24.0, LARGEST * theme::scale_here(ui));
         for (i, disc) in DISCS.iter().enumerate() {
             ui.vertical(|ui| {
                 ui.set_width(width);
-                rows::note(ui, disc.name);
+                theme::note(ui, disc.name);
                 one(ui, &discs, i, width);
-                rows::note(ui, &format!("white: {}", discs.scales[i]));
+                theme::note(ui, format!("white: {}", discs.scales[i]));
             });
         }
     });
     // From the pixels of the disc, which give two digits; the integral of the samples is shown below its light.
     let integral = crate::explain::rounded_number_or_triple(discs.hemisphere.integral, 2);
     let text = format!("The mean of the product times π is the light to the observer: about {integral}");
-    rows::note(ui, &text);
+    theme::note(ui, text);
 }
 
 /// One disc with its marks. The pointer shows a direction and the light from there.

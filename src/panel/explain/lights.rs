@@ -25,7 +25,7 @@ pub(super) fn lights(ui: &mut Ui, explanation: &Explanation, seen: &Seen, name: 
     let (choice, spots) = (probe::choice(ui.ctx()), probe::spots(seen));
     let Some((shown, spot)) = probe::shown_spot(ui.ctx(), seen) else {
         rows::heading(ui, "Light by light");
-        rows::note(ui, "The shading model did not evaluate the reflection model.");
+        theme::note(ui, "The shading model did not evaluate the reflection model.");
         return;
     };
     if spots.len() > 1 {
@@ -35,7 +35,7 @@ pub(super) fn lights(ui: &mut Ui, explanation: &Explanation, seen: &Seen, name: 
     }
     place(ui, spot, seen);
     if spot.lights.is_empty() {
-        rows::note(ui, "No light is switched on, so there is no light here.");
+        theme::note(ui, "No light is switched on, so there is no light here.");
     }
     let unfolded = probe::shown_light(ui.ctx(), spot).map(|lit| lit.light.index);
     let lights = spot.brightest();
@@ -126,7 +126,7 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
     rows::vectors(ui, &seen.model, &[("N", spot.normal), ("V", spot.view)]);
     if spot.is_mirrored() {
         let text = "The normal faces away from the observer: V is the direction to the observer, mirrored in the surface.";
-        rows::note(ui, text);
+        theme::note(ui, text);
     }
 }
 
@@ -134,18 +134,18 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
 /// directions that both depend on.
 fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     if let Some(remark) = lit.remark() {
-        rows::note(ui, remark);
+        theme::note(ui, remark);
     }
     if !lit.is_dark() {
         terms(ui, explanation, seen, lit);
     }
     ui.add_space(4.0);
-    rows::note(ui, "light that arrives");
+    theme::note(ui, "light that arrives");
     linked::within(ui, Domain::Light, |ui| match &lit.integral {
         Some(integral) => {
             place_of(ui, lit);
-            rows::note(ui, &integral.basis());
-            rows::note(ui, &integral.filled());
+            theme::note(ui, integral.basis());
+            theme::note(ui, integral.filled());
         }
         None => arriving(ui, lit),
     });
@@ -154,7 +154,7 @@ fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     }
     if lit.geometry.is_some() {
         ui.add_space(4.0);
-        rows::note(ui, "directions and angles");
+        theme::note(ui, "directions and angles");
         directions(ui, seen, lit.geometry.as_ref());
     }
 }
@@ -163,7 +163,7 @@ fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
 /// direction.
 fn most(ui: &mut Ui, seen: &Seen, brightest: &Brightest) {
     ui.add_space(4.0);
-    rows::note(ui, "of the directions that were sampled, the one that gives most");
+    theme::note(ui, "of the directions that were sampled, the one that gives most");
     directions(ui, seen, Some(&brightest.geometry));
     rows::light(ui, "L(l) =", brightest.luminance, false);
     if probe::choice(ui.ctx()).level == Level::Factors {
@@ -202,7 +202,7 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
         origin(ui, &symbol, &lines);
     }
     ui.add_space(2.0);
-    rows::note(ui, "light to the observer");
+    theme::note(ui, "light to the observer");
     let sum = lit.sum(explanation.terms);
     match &lit.integral {
         Some(integral) => {
@@ -216,7 +216,7 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
         }
     }
     if !lit.is_finite() {
-        rows::note(ui, "Some of these are not finite numbers.");
+        theme::note(ui, "Some of these are not finite numbers.");
     }
 }
 
@@ -302,7 +302,7 @@ fn arriving(ui: &mut Ui, lit: &Lit) {
     };
     rows::equation(ui, Term::Total, equation, false, &name);
     for factor in lit.factors.iter().filter(|factor| !factor.from.is_empty()) {
-        rows::note(ui, &format!("{} for {}", factor.meaning, factor.givens(rows::short)));
+        theme::note(ui, format!("{} for {}", factor.meaning, factor.givens(rows::short)));
         let steps = factor.steps(rows::DIGITS);
         for step in &steps {
             let line = format!("{} = {} = {}", step.text, step.numbers, of_value(&step.value, rows::DIGITS));

@@ -8,7 +8,7 @@ use super::{
     keys, knob,
     prelude::*,
     segmented::segmented,
-    state::{EXPLAIN_TAB, Effect, Pin, ThemeChoice},
+    state::{Effect, Pin, ThemeChoice},
 };
 use crate::{
     explain::{Explanation, Lamp, Seen, Sight, sentence},
@@ -49,54 +49,47 @@ const SENTENCE: f32 = 20.0;
 const GAP: f32 = 24.0;
 
 /// The *Explain* panel; see the module.
-#[derive(Clone, Copy, Debug)]
-pub struct Explain;
-
-impl Panel for Explain {
-    is_panel!(EXPLAIN_TAB, "Explain", Place::Bottom);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let (session, registry) = (context.session(), context.registry());
-        let Some(explained) = probe::explained(ui.ctx()) else {
-            ui.add_space(8.0);
-            let key = keys::word(ui.ctx(), "explain");
-            let text = format!(
-                "Point at the picture: this panel says why the pixel has its colour, number by number. {key} pins the \
-                 pixel under the pointer, or the middle of the picture.",
-            );
-            ui.add(Label::new(RichText::new(text).color(Palette::here(ui).weak)).wrap());
-            return;
-        };
-        header(ui, &explained, context);
-        let name = |light: usize| session.name_of(Selection::Light(light), registry);
-        // A hidden point has no pixel.
-        let subject = match explained.sight {
-            None | Some(Sight::Clear) => "This pixel is",
-            Some(_) => "The pinned point would be",
-        };
-        let text = sentence(&explained.explanation, subject, &name);
-        let level = probe::choice(ui.ctx()).level;
-        let mut text = theme::strong(ui, text);
-        if level == Level::Sentence {
-            // Readable from the back of the room.
-            text = text.size(SENTENCE * theme::scale_here(ui));
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
+    let Some(explained) = probe::explained(ui.ctx()) else {
+        ui.add_space(8.0);
+        let key = keys::word(ui.ctx(), "explain");
+        let text = format!(
+            "Point at the picture: this panel says why the pixel has its colour, number by number. {key} pins the \
+             pixel under the pointer, or the middle of the picture.",
+        );
+        ui.add(Label::new(RichText::new(text).color(Palette::here(ui).weak)).wrap());
+        return;
+    };
+    header(ui, &explained, context);
+    let name = |light: usize| session.name_of(Selection::Light(light), registry);
+    // A hidden point has no pixel.
+    let subject = match explained.sight {
+        None | Some(Sight::Clear) => "This pixel is",
+        Some(_) => "The pinned point would be",
+    };
+    let text = sentence(&explained.explanation, subject, &name);
+    let level = probe::choice(ui.ctx()).level;
+    let mut text = theme::strong(ui, text);
+    if level == Level::Sentence {
+        // Readable from the back of the room.
+        text = text.size(SENTENCE * theme::scale_here(ui));
+    }
+    ui.add(Label::new(text).wrap().selectable(true));
+    for (severity, text) in remarks(&explained, session, registry) {
+        icon::remark(ui, [16.0, 18.0], severity, Label::new(text).wrap().selectable(true));
+    }
+    if level == Level::Sentence {
+        return;
+    }
+    ui.add_space(2.0);
+    match probe::other(ui.ctx()) {
+        Some(other) => {
+            let mut sides = [&*explained, &*other];
+            sides.sort_by_key(|side| side.view);
+            beside::beside(ui, sides, session, registry);
         }
-        ui.add(Label::new(text).wrap().selectable(true));
-        for (severity, text) in remarks(&explained, session, registry) {
-            icon::remark(ui, [16.0, 18.0], severity, Label::new(text).wrap().selectable(true));
-        }
-        if level == Level::Sentence {
-            return;
-        }
-        ui.add_space(2.0);
-        match probe::other(ui.ctx()) {
-            Some(other) => {
-                let mut sides = [&*explained, &*other];
-                sides.sort_by_key(|side| side.view);
-                beside::beside(ui, sides, session, registry);
-            }
-            None => columns(ui, &explained, context),
-        }
+        None => columns(ui, &explained, context),
     }
 }
 
@@ -340,9 +333,9 @@ fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, re
     rows::heading(ui, &session.name_of(Selection::Object(seen.object.index), registry));
     let d = seen.model.declaration;
     let author = if d.author.is_empty() { String::new() } else { format!(" · {}", d.author) };
-    rows::note(ui, &format!("{}{author}", d.name));
+    theme::note(ui, format!("{}{author}", d.name));
     if seen.model.interpreted {
-        rows::note(ui, "The CPU interprets the WGSL of this model.");
+        theme::note(ui, "The CPU interprets the WGSL of this model.");
     }
     ui.add_space(2.0);
     if let Some(shading) = registry.shading_model(seen.shading.id) {

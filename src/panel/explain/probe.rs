@@ -454,40 +454,24 @@ impl Probe {
         self.beside.clear();
     }
 
-    /// The scene of a view from the camera of the window.
-    fn scene(
-        &mut self,
-        question: &Question,
-        Shown { view, size, .. }: Shown,
-        session: &Session,
-        registry: &Registry,
-    ) -> Option<usize> {
-        self.scenes.retain(|(revision, ..)| *revision == question.revision);
-        let known = self.scenes.iter().position(|(_, of, _)| *of == view);
-        let at = match known {
-            Some(at) => at,
-            None => {
-                let (scene, _) = session.document.seen(view, registry)?;
-                self.scenes.push((question.revision, view, scene));
-                self.scenes.len() - 1
-            }
-        };
-        self.scenes[at].2.observer = question.observer.fitting(size, session.document.view_angle());
-        Some(at)
-    }
-
     fn explain(
         &mut self,
         question: &Question,
-        shown: Shown,
+        Shown { view, size, terms }: Shown,
         session: &Session,
         registry: &Registry,
     ) -> Option<Explained> {
         self.calculations += 1;
-        let at = self.scene(question, shown, session, registry)?;
         let Self { scenes, explainer, .. } = self;
-        let scene = &scenes[at].2;
-        let Shown { view, size, terms } = shown;
+        // The scene of the view, from the camera of the window.
+        scenes.retain(|(revision, ..)| *revision == question.revision);
+        if !scenes.iter().any(|(_, of, _)| *of == view) {
+            let (scene, _) = session.document.seen(view, registry)?;
+            scenes.push((question.revision, view, scene));
+        }
+        let (.., scene) = scenes.iter_mut().find(|(_, of, _)| *of == view)?;
+        scene.observer = question.observer.fitting(size, session.document.view_angle());
+        let scene = &*scene;
         let settings = Settings { width: size[0], height: size[1], samples: 1, terms };
         let ignored = || ignored_edits(registry, scene).into_iter().collect();
         let pixel = question.pin.pixel(size, session.document.view_angle());

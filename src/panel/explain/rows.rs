@@ -79,11 +79,6 @@ pub(super) fn heading(ui: &mut Ui, text: &str) {
     ui.add(Label::new(theme::strong(ui, text)).wrap());
 }
 
-/// A remark in small type.
-pub(super) fn note(ui: &mut Ui, text: &str) -> Response {
-    ui.add(Label::new(theme::small(ui, text)).wrap())
-}
-
 /// A colour sample for the given display code.
 pub(super) fn chip(ui: &mut Ui, [r, g, b]: [u8; 3], size: Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());

@@ -90,11 +90,11 @@ fn drawn(lens: &Lens, from: Vec3, lobe: &Lobe, scale: &Axis, colour: impl Fn(f32
             normals[*i as usize] += normal;
         }
         let middle = (a + b + c) / 3.0;
-        depths.push(middle.distance_squared(lens.eye()));
-        outside.push(normal.dot(lens.eye() - middle) > 0.0);
+        depths.push(middle.distance_squared(lens.eye));
+        outside.push(normal.dot(lens.eye - middle) > 0.0);
     }
     let shaded = |i: usize| {
-        let towards = (lens.eye() - points[i]).normalize_or_zero();
+        let towards = (lens.eye - points[i]).normalize_or_zero();
         let shade = SIDE + (1.0 - SIDE) * normals[i].normalize_or_zero().dot(towards).abs();
         let [r, g, b] = (255.0 * shade * colour(lengths[i])).to_array().map(|c| c.round() as u8);
         Color32::from_rgba_unmultiplied(r, g, b, (255.0 * OPACITY) as u8)

@@ -111,7 +111,7 @@ impl Drawing {
         let Some((_, spot)) = probe::shown_spot(ui.ctx(), seen) else { return };
         self.polygon(seen, spot);
         let lit = probe::shown_light(ui.ctx(), spot);
-        let lens = self.ink.lens();
+        let lens = self.ink.lens;
         let Some(origin) = lens.project(spot.position) else { return };
         let reach = lens.metres(spot.position, LENGTH);
         let mut all = arrows(spot, lit);
@@ -128,7 +128,7 @@ impl Drawing {
 
     /// The polygon, or the triangle between the vertices, with their weights.
     fn polygon(&mut self, seen: &Seen, spot: &Spot) {
-        let lens = self.ink.lens();
+        let lens = self.ink.lens;
         let triangle = seen.corners.map(|corner| corner.position);
         let (points, faint) = match seen.shading.stage {
             Stage::Polygon => (&seen.outline[..], false),

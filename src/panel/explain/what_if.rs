@@ -37,21 +37,21 @@ fn list(ui: &mut Ui, explained: &Explained, context: &mut PanelContext<'_>) {
     if explained.view != context.session().active() {
         let text =
             "Click the view of this pixel to make it the active one; then its numbers can be changed here.";
-        rows::note(ui, text);
+        theme::note(ui, text);
         return;
     }
     let all = probe::influences(ui.ctx(), context.registry());
     let order = probe::ranking(ui.ctx(), &all, MOST);
     let shown: Vec<_> = order.iter().filter_map(|knob| all.iter().find(|i| i.knob == *knob)).collect();
     if shown.is_empty() {
-        rows::note(ui, "No number of the material or of a light changes this pixel.");
+        theme::note(ui, "No number of the material or of a light changes this pixel.");
         return;
     }
     let most = shown.iter().map(|influence| influence.effect().abs()).fold(0.0, f32::max);
     for influence in shown {
         row(ui, influence, most, context);
     }
-    rows::note(ui, "Change of luminance for 1 % of the range, by differences. Colours are not in the list.");
+    theme::note(ui, "Change of luminance for 1 % of the range, by differences. Colours are not in the list.");
 }
 
 /// The pixel before and after changes made in this list.

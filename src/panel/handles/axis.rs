@@ -58,8 +58,8 @@ pub(super) static SORT: Sort = Sort {
 /// Arrows for an object that leaves no room around it, at an edge of the view where they cover the object least. They
 /// are dragged like any others: only the motion of the pointer counts.
 fn arrows_at_edge(at: Vec3, middle: Pos2, arm: f32, extent: Option<Extent>, lens: &Lens) -> Vec<Placed> {
-    let inset = (LONGEST * arm + LETTER + LETTER_RADIUS).min(0.5 * lens.rect().size().min_elem());
-    let inside = lens.rect().shrink(inset);
+    let inset = (LONGEST * arm + LETTER + LETTER_RADIUS).min(0.5 * lens.rect.size().min_elem());
+    let inside = lens.rect.shrink(inset);
     // Bottom corners first: badges and captions tend to be at the top.
     let places = [
         inside.left_bottom(),
@@ -112,7 +112,7 @@ fn arrows(
             (vec![origin + from * way, origin + to * way], origin + (to + LETTER) * way)
         };
         // A letter outside the view could not be grabbed.
-        let inside = lens.rect().shrink(LETTER);
+        let inside = lens.rect.shrink(LETTER);
         let beyond =
             Some(arrow(clear.map(|clear| clear.towards(way)))).filter(|(_, end)| inside.contains(*end));
         let (line, end) = beyond.unwrap_or_else(|| arrow(None));

@@ -88,7 +88,7 @@ fn way(light: &Light, entry: &LightEntry, size: Size, end: End, at: Vec3, lens: 
             let across = lens.across(at, direction);
             if across.dot(right) < 0.0 { -across } else { across }
         }
-        (_, None) => (right + up).reject_from(at - lens.eye()).normalize_or(right),
+        (_, None) => (right + up).reject_from(at - lens.eye).normalize_or(right),
     };
     if end == End::First { way } else { -way }
 }
@@ -114,7 +114,7 @@ fn at_end(handle: Handle, at: Vec3, middle: Pos2, arm: Vec3, way: Vec3, lens: &L
     if length < 10.0 * FLAT {
         return None;
     }
-    let view = lens.rect().shrink(INSET);
+    let view = lens.rect.shrink(INSET);
     let room = |from: f32, way: f32, [least, most]: [f32; 2]| {
         (if way > 0.0 { most - from } else { from - least }) / way.abs().max(1e-6)
     };

@@ -166,7 +166,7 @@ impl Grasp {
             direction: Vec3::NEG_Y,
             parameter: None,
             end: None,
-            near: is_near(placed.point - target.at, lens.eye() - target.at),
+            near: is_near(placed.point - target.at, lens.eye - target.at),
             off: false,
         };
         match target.body {
@@ -213,7 +213,7 @@ impl Grasp {
     /// The angle by which the pointer turns a ring about an axis, in radians.
     pub(super) fn turned_about(&self, lens: &Lens, pointer: Pos2, axis: Vec3) -> Option<f32> {
         let (start, now) = (lens.ray(self.pointer), lens.ray(pointer));
-        let to_eye = (lens.eye() - self.at).normalize_or_zero();
+        let to_eye = (lens.eye - self.at).normalize_or_zero();
         if axis.dot(to_eye).abs() < EDGE_ON {
             let [_, _, ahead] = lens.axes();
             let flat = |ray: Ray| on_plane(ray, self.at, ahead);
@@ -232,7 +232,7 @@ impl Grasp {
     /// Takes note of a place of the pointer: pulled off its sphere and back, a handle is on its other side.
     pub(super) fn follow(&mut self, lens: &Lens, pointer: Pos2) {
         let Some(end) = self.end(lens, pointer).filter(|_| self.handle.sort.is_on_sphere) else { return };
-        let (ray, to) = (lens.ray(end), self.at - lens.eye());
+        let (ray, to) = (lens.ray(end), self.at - lens.eye);
         let beside = to.reject_from_normalized(ray.way).length() / (self.point - self.at).length();
         if beside > OFF {
             self.off = true;
@@ -257,7 +257,7 @@ impl Grasp {
     pub(super) fn opened(&self, lens: &Lens, pointer: Pos2) -> Option<f32> {
         let side = (self.point - self.at).reject_from(self.direction).normalize_or_zero();
         let normal = self.direction.cross(side);
-        if normal.dot((lens.eye() - self.at).normalize_or_zero()).abs() < SIDEWAYS {
+        if normal.dot((lens.eye - self.at).normalize_or_zero()).abs() < SIDEWAYS {
             return Some(self.direction.angle_between(self.pulled(lens, pointer)?));
         }
         // Seen from the side, the cone opens in a plane.
@@ -485,7 +485,7 @@ mod tests {
         let lens = lens(&session);
         let middle = lens.project(grasp.at).expect("seen");
         let out = grasp.pointer - middle;
-        let to_eye = (lens.eye() - grasp.at).normalize();
+        let to_eye = (lens.eye - grasp.at).normalize();
         let pull = |grasp: &mut Grasp, part: f32| {
             let to = middle + part * out;
             grasp.follow(&lens, to);

@@ -50,7 +50,7 @@ fn colour_of(handle: Handle, state: State) -> Color32 {
 
 /// Paints the handles with the given opacity, each in its state; the one under the pointer is on top.
 pub(super) fn handles(ui: &Ui, lens: Lens, all: &[Placed], opacity: f32, state: impl Fn(Handle) -> State) {
-    let painter = ui.painter_at(lens.rect());
+    let painter = ui.painter_at(lens.rect);
     for hot in [false, true] {
         let mut ink = Ink::new(lens);
         let mut letters: Vec<(Pos2, &'static str, Color32)> = Vec::new();
@@ -134,21 +134,19 @@ pub(super) fn guide(ui: &Ui, lens: Lens, at: Vec3, axis: usize, room: SceneSize)
         end[axis] = v;
         end
     });
-    let mut ink = Ink::new(lens);
-    for run in lens.path(&ends) {
-        ink.stroke(run, 1.0, AXES[axis].gamma_multiply(0.6));
-    }
-    ink.paint(&ui.painter_at(lens.rect()));
+    thin(ui, lens, lens.path(&ends), AXES[axis].gamma_multiply(0.6));
 }
 
 /// The arms of an angle.
 pub(super) fn angle(ui: &Ui, lens: Lens, at: Vec3, ends: [Pos2; 2]) {
     let Some(middle) = lens.project(at) else { return };
+    thin(ui, lens, ends.map(|end| vec![middle, end]), WHITE.gamma_multiply(0.7));
+}
+
+fn thin(ui: &Ui, lens: Lens, lines: impl IntoIterator<Item = Vec<Pos2>>, colour: Color32) {
     let mut ink = Ink::new(lens);
-    for end in ends {
-        ink.stroke(vec![middle, end], 1.0, WHITE.gamma_multiply(0.7));
-    }
-    ink.paint(&ui.painter_at(lens.rect()));
+    lines.into_iter().for_each(|line| ink.stroke(line, 1.0, colour));
+    ink.paint(&ui.painter_at(lens.rect));
 }
 
 /// A plate with numbers beside the pointer.

@@ -29,7 +29,7 @@ pub(super) static SORT: Sort = Sort {
         if !matches!((&target.body, around.mode), (Body::Object(..), HandleMode::Turn)) {
             return Vec::new();
         }
-        let most = 0.5 * lens.rect().size().max_elem() - LETTER;
+        let most = 0.5 * lens.rect.size().max_elem() - LETTER;
         let around = |extent: Extent| (extent.most() + CLEAR).min(most).max(part * RING);
         let radius = extent.map_or(part * RING, around);
         (0..3).map(|axis| ring(target.at, axis, radius, lens).beyond(*middle, *extent)).collect()
@@ -59,7 +59,7 @@ pub(super) fn circle(at: Vec3, [first, second]: [Vec3; 2], length: f32, lens: &L
         let (y, x) = (k as f32 / SIDES as f32 * TAU).sin_cos();
         at + length * (x * first + y * second)
     };
-    let to_eye = (lens.eye() - at).normalize_or_zero();
+    let to_eye = (lens.eye - at).normalize_or_zero();
     let is_near = |p: Vec3| (p - at).dot(to_eye) >= -0.06 * length;
     let (mut lines, mut far) = (Vec::new(), Vec::new());
     for k in 0..SIDES {
@@ -84,7 +84,7 @@ fn ring(at: Vec3, axis: usize, radius: f32, lens: &Lens) -> Placed {
     // The letters are spread for legibility: at the top, at the right, and between them.
     let wanted = [vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(0.7, 0.7)][axis];
     let middle = lens.project(at).unwrap_or_default();
-    let inside = lens.rect().shrink(LETTER + LETTER_RADIUS);
+    let inside = lens.rect.shrink(LETTER + LETTER_RADIUS);
     let best = |within: bool| {
         let points = lines.iter().flatten().copied().filter(|p| !within || inside.contains(*p));
         points.max_by(|a, b| (*a - middle).dot(wanted).total_cmp(&(*b - middle).dot(wanted)))

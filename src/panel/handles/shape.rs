@@ -173,7 +173,7 @@ fn apart(p: Pos2, a: Pos2, b: Pos2) -> f32 {
 
 /// Relative size of the handles in a view: smaller in a small view.
 pub(super) fn part_of(lens: &Lens) -> f32 {
-    (0.0034 * lens.rect().size().min_elem()).min(1.0)
+    (0.0034 * lens.rect.size().min_elem()).min(1.0)
 }
 
 /// The surroundings in which handles are placed.
@@ -192,7 +192,7 @@ pub(super) struct Around<'a> {
 
 /// The handles of a target in a mode, in the order in which they are painted.
 pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens: &Lens) -> Vec<Placed> {
-    let Some(middle) = lens.project(target.at).filter(|p| lens.rect().contains(*p)) else {
+    let Some(middle) = lens.project(target.at).filter(|p| lens.rect.contains(*p)) else {
         return Vec::new();
     };
     let (part, extent) = (part_of(lens), Extent::of(target, middle, lens));
@@ -219,7 +219,7 @@ impl Extent {
     /// True if the picture has room for handles around the object.
     pub(super) fn leaves_room(&self, part: f32, lens: &Lens) -> bool {
         let needed = STUB * part * ARM + 2.0 * LETTER;
-        self.most() + needed < 0.5 * lens.rect().size().min_elem()
+        self.most() + needed < 0.5 * lens.rect.size().min_elem()
     }
 
     /// Distance from the centre, in a direction of the picture, beyond which a handle does not cover the object.

@@ -13,12 +13,12 @@ use super::{
 use crate::{
     document::{Edit, Selection},
     panel::{
-        marks::{self, Lens},
+        kept,
+        marks::{self, Asked, Lens, Sight},
         notice,
         state::{Action, HandleMode, Session},
     },
     parameter::Value,
-    registry::Registry,
     scene::{Field, Light, Object, rotation::rotation},
 };
 
@@ -43,25 +43,14 @@ struct Hold {
     moved: bool,
 }
 
-/// Key of the handle being dragged.
-fn held() -> Id {
-    Id::new("handle in the hand")
-}
-
-/// Shows the handles of the selection in a view. Returns the requested actions, and the rectangles that cover the
-/// picture.
-pub(in crate::panel) fn handles(
-    ui: &Ui,
-    rect: Rect,
-    written: &[Rect],
-    session: &Session,
-    registry: &Registry,
-) -> (Vec<Action>, Vec<Rect>) {
+/// Shows the handles of the selection in a view.
+pub(in crate::panel) fn handles(ui: &Ui, sight: Sight<'_>) -> Asked {
+    let Sight { rect, written, session, registry } = sight;
     let (mut actions, mut places) = (Vec::new(), Vec::new());
     let view = ui.id().with("handles");
-    let hold: Option<Hold> = ui.data(|data| data.get_temp(held()));
+    let hold: Option<Hold> = kept::get(ui.ctx());
     let lens = Lens::of(session, rect);
-    let seen = || marks::places_shown(ui.ctx(), &session.document, registry, &lens, written);
+    let seen = || marks::places_shown(ui.ctx(), sight, &lens);
     let target = Target::of(session, registry, seen)
         .filter(|_| session.view.show_handles && rect.size().min_elem() >= SMALLEST);
     let Some(target) = target else {
@@ -96,7 +85,7 @@ pub(in crate::panel) fn handles(
         ui.ctx().set_cursor_icon(if hold.is_some() { CursorIcon::Grabbing } else { CursorIcon::Grab });
     }
     if let Some(mine) = mine {
-        actions.extend(drag(ui, &lens, mine.clone(), &target, session, registry));
+        actions.extend(drag(ui, sight, &lens, mine.clone(), &target));
     } else if hold.is_none()
         && let Some(placed) = under
         && ui.input(|i| i.pointer.primary_pressed())
@@ -113,7 +102,7 @@ fn take(ui: &Ui, view: Id, placed: &Placed, target: &Target, grasp: Grasp) -> Op
     if let Selection::Light(i) = target.part {
         marks::hold(ui.ctx(), Some((i, target.at)));
     }
-    ui.data_mut(|data| data.insert_temp(held(), Hold { view, grasp, before, moved: false }));
+    kept::set(ui.ctx(), Some(Hold { view, grasp, before, moved: false }));
     ui.ctx().set_dragged_id(view.with(placed.handle));
     Some(Action::BeginDrag)
 }
@@ -161,7 +150,7 @@ fn opacity(ui: &Ui, view: Id, rect: Rect, what: (Selection, HandleMode), in_use:
 /// Ends the drag once the button is up.
 fn release(ui: &Ui) {
     if !ui.input(|i| i.pointer.primary_down()) {
-        ui.data_mut(|data| data.remove::<Hold>(held()));
+        kept::set(ui.ctx(), None::<Hold>);
         marks::hold(ui.ctx(), None);
     }
 }
@@ -219,20 +208,14 @@ fn is_same(edit: &Edit, now: Option<Edit>) -> bool {
 }
 
 /// Continues a drag, and paints its numbers.
-fn drag(
-    ui: &Ui,
-    lens: &Lens,
-    mut hold: Hold,
-    target: &Target,
-    session: &Session,
-    registry: &Registry,
-) -> Option<Action> {
+fn drag(ui: &Ui, sight: Sight<'_>, lens: &Lens, mut hold: Hold, target: &Target) -> Option<Action> {
+    let Sight { session, registry, .. } = sight;
     let (pointer, snap) = ui.input(|i| (i.pointer.latest_pos(), i.modifiers.command));
     let now = value(&hold.grasp, target);
     if ui.input(|i| i.key_pressed(Key::Escape)) {
         let undone = (now.and_then(|now| hold.grasp.edit(now)).as_ref() != Some(&hold.before))
             .then(|| Action::Edit(hold.before.clone()));
-        ui.data_mut(|data| data.remove::<Hold>(held()));
+        kept::set(ui.ctx(), None::<Hold>);
         marks::hold(ui.ctx(), None);
         return undone;
     }
@@ -250,11 +233,11 @@ fn drag(
         let Handle { sort, which } = grasp.handle;
         (sort.guide)(ui, *lens, which, target.at, [grasp.pointer, pointer], room);
         if let Some(shown) = shown {
-            paint::plate(ui, lens.rect(), pointer, grasp.words(shown, lens.metres(grasp.at, 1.0)));
+            paint::plate(ui, lens.rect, pointer, grasp.words(shown, lens.metres(grasp.at, 1.0)));
         }
     }
     let changed = legal.filter(|edit| !is_same(edit, now.and_then(|now| hold.grasp.edit(now))));
-    ui.data_mut(|data| data.insert_temp(held(), hold));
+    kept::set(ui.ctx(), Some(hold));
     release(ui);
     changed.map(Action::Edit)
 }

@@ -49,8 +49,8 @@ pub(super) static SORT: Sort = Sort {
 fn size(at: Vec3, middle: Pos2, radius: f32, clear: Option<Extent>, lens: &Lens) -> Option<Placed> {
     let way = vec2(1.0, -1.0).normalized();
     let clear = clear.map_or(GAP, |clear| clear.towards(way));
-    let edge = [lens.rect().right() - middle.x, middle.y - lens.rect().top()]
-        .map(|room| (room - 20.0) / way.x.abs());
+    let edge =
+        [lens.rect.right() - middle.x, middle.y - lens.rect.top()].map(|room| (room - 20.0) / way.x.abs());
     let most = edge[0].min(edge[1]).max(GAP + DISC);
     let points = (radius / lens.metres(at, 1.0)).max(NEAREST).min(most);
     let end = middle + points * way;

@@ -5,7 +5,7 @@ use crate::{
     light::LightEntry,
     optics::temperature,
     panel::{
-        knob::{self, Caption},
+        knob::{self, Amount, Caption},
         linked::{self, Domain},
         maths,
         prelude::*,
@@ -72,7 +72,7 @@ pub(super) fn light(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
 fn equation(ui: &mut Ui, entry: &LightEntry) {
     let d = entry.declaration;
     if !d.summary.is_empty() {
-        ui.add(Label::new(theme::small(ui, d.summary)).wrap());
+        theme::note(ui, d.summary);
     }
     maths::equation(ui, &[EquationPart { term: Term::Total, text: d.equation }], |symbol| match symbol {
         "I" => Some("the intensity of the light".to_owned()),
@@ -91,7 +91,7 @@ fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Opt
     let default = f64::from(d.default_intensity);
     let limits = limits::intensity(d);
     let Some(solid_angle) = entry.solid_angle(&light.parameters) else {
-        let new = knob::number_knob(ui, "intensity", &caption, intensity, Some(default), &limits);
+        let new = knob::number_knob(ui, &caption, Amount::new(intensity, Some(default), &limits));
         return new.map(|v| Edit::set(part, Light::intensity, v as f32));
     };
     // Rounded where it is converted, to what can be told apart.
@@ -117,15 +117,17 @@ fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Opt
     let mut other_unit = None;
     let units = [[d.unit, word], ["lm", "lumen"]];
     let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, usize::from(as_flux), &units);
-    let (salt, field, caption, value, default, limits) = if as_flux {
-        let caption = Caption { symbol: "Φ", ..Caption::of(&Light::luminous_flux, unit_help("lm")) };
+    let (field, caption, value, default, limits) = if as_flux {
+        let caption = Caption::of(&Light::luminous_flux, unit_help("lm"));
+        let caption = Caption { salt: "flux", symbol: "Φ", ..caption };
         let default = limits::significant(default * solid_angle, 3);
-        ("flux", Light::luminous_flux, caption, flux, default, limits::luminous_flux(d))
+        (Light::luminous_flux, caption, flux, default, limits::luminous_flux(d))
     } else {
-        ("intensity", Light::intensity, caption, intensity, default, limits)
+        (Light::intensity, caption, intensity, default, limits)
     };
-    let out = knob::number_knob_beside(ui, salt, &caption, value, Some(default), &limits, beside)
-        .map(|v| Edit::set(part, field, v as f32));
+    let amount = Amount::new(value, Some(default), &limits);
+    let out =
+        knob::number_knob_beside(ui, &caption, amount, beside).map(|v| Edit::set(part, field, v as f32));
     match other_unit {
         Some(0) => Some(Edit::set(part, Light::intensity, limits::significant(intensity, 6) as f32)),
         Some(_) => Some(Edit::set(part, Light::luminous_flux, flux as f32)),
@@ -174,17 +176,18 @@ fn light_colour(ui: &mut Ui, part: Part, light: &Light) -> Option<Edit> {
             let help = "The colour of a black body of this temperature: a candle has 1900 K, a light bulb 2700 K, the \
                         midday sun about 5500 K, a blue sky 10 000 K and more; 6500 K is white. The luminance stays \
                         that of a white light of this intensity.";
-            let caption = Caption { symbol: "T", ..Caption::of(&Light::colour_temperature, help) };
+            let caption = Caption::of(&Light::colour_temperature, help);
+            let caption = Caption { salt: "temperature", symbol: "T", ..caption };
             let default = Some(f64::from(temperature::WHITE_TEMPERATURE));
             let limits = Light::colour_temperature.limits();
-            knob::number_knob(ui, "temperature", &caption, f64::from(kelvin), default, &limits)
+            knob::number_knob(ui, &caption, Amount::new(kelvin.into(), default, &limits))
                 .map(|v| Edit::set(part, Light::colour_temperature, v as f32))
         }
         None => {
             let help = "The colour of the light; white leaves the materials as they are. Other colours are a filter: blue \
                         alone has 7 % of the luminance of white.";
             let caption = Caption::of(&Light::colour, help);
-            knob::colour_knob(ui, "colour", &caption, light.colour, Some([255; 3]))
+            knob::colour_knob(ui, &caption, light.colour, Some([255; 3]))
                 .map(|rgb| Edit::set(part, Light::colour, rgb))
         }
     };

@@ -43,7 +43,8 @@ pub(super) fn measured(
     };
     let present = offered.iter().position(is);
     let shown = present.map_or("none", |i| offered[i].name());
-    let chosen = knob::list_knob(ui, "measured material", &Caption::new(label, "", help), shown, |ui, id| {
+    let caption = Caption { salt: "measured material", ..Caption::new(label, "", help) };
+    let chosen = knob::list_knob(ui, &caption, shown, |ui, id| {
         let height = 0.45 * ui.ctx().content_rect().height();
         let find = |search: &str| -> Vec<(usize, Offer)> {
             let hit = |(_, offer): &(usize, Offer)| chooser::matches(&offer.words(), search);

@@ -15,29 +15,22 @@ mod row;
 mod variant;
 
 /// See the module.
-#[derive(Clone, Copy, Debug)]
-pub struct Inspector;
-
-impl Panel for Inspector {
-    is_panel!("inspector", "Properties", Place::Right);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let part = context.session().selection;
-        // Each part has fields of its own: what is typed about one must not turn up in another.
-        ui.push_id(part, |ui| {
-            // The scroll bar floats over a margin, so that nothing moves when it comes.
-            ui.spacing_mut().scroll.floating_allocated_width = 0.0;
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                ui.set_max_width(ui.available_width() - 8.0);
-                variant::variant(ui, context);
-                match part {
-                    Selection::Room => room(ui, context),
-                    Selection::Observer => observer(ui, context),
-                    Selection::Light(i) => light(ui, i, context),
-                    Selection::Object(i) => object(ui, i, context),
-                }
-                ui.add_space(16.0);
-            });
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let part = context.session().selection;
+    // Each part has fields of its own: what is typed about one must not turn up in another.
+    ui.push_id(part, |ui| {
+        // The scroll bar floats over a margin, so that nothing moves when it comes.
+        ui.spacing_mut().scroll.floating_allocated_width = 0.0;
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.set_max_width(ui.available_width() - 8.0);
+            variant::variant(ui, context);
+            match part {
+                Selection::Room => room(ui, context),
+                Selection::Observer => observer(ui, context),
+                Selection::Light(i) => light(ui, i, context),
+                Selection::Object(i) => object(ui, i, context),
+            }
+            ui.add_space(16.0);
         });
-    }
+    });
 }

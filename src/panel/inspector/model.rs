@@ -26,7 +26,7 @@ pub(super) fn model_name(ui: &mut Ui, model: &ModelEntry) {
 pub(super) fn model_author(ui: &mut Ui, model: &ModelEntry) {
     let author = model.declaration.author;
     if !author.is_empty() {
-        ui.add(Label::new(theme::small(ui, author)).wrap()).on_hover_ui(|ui| about(ui, model));
+        theme::note(ui, author).on_hover_ui(|ui| about(ui, model));
     }
 }
 

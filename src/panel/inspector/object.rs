@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     panel::{
-        knob::{self, Caption},
+        knob::{self, Amount, Caption},
         linked::{self, Domain},
         model_override,
         prelude::*,
@@ -123,7 +123,7 @@ impl Shown<'_> {
             let default = f64::from(d.default_tessellation);
             let chosen = marked(ui, Variant::tessellation, context, |ui| {
                 let limits = limits::tessellation(d);
-                knob::number_knob(ui, "tessellation", &caption, value, Some(default), &limits)
+                knob::number_knob(ui, &caption, Amount::new(value, Some(default), &limits))
             });
             let number = |v: f64| Some(v as u32).filter(|n| *n != d.default_tessellation);
             context.edits(chosen.map(|v| Edit::put(part, Object::tessellation, number(v))));

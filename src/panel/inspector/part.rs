@@ -5,7 +5,7 @@ use bevy_egui::egui::{CollapsingHeader, TextEdit};
 use crate::{
     panel::{
         keys,
-        knob::{self, Caption},
+        knob::{self, Amount, Caption},
         lesson::point,
         prelude::*,
         state::Effect,
@@ -135,7 +135,7 @@ pub(super) fn vector(
         _ => field.limits(),
     });
     let caption = Caption::of(&field, help);
-    knob::vector_knob(ui, field.label(), &caption, value, &limits).map(|v| Edit::set(part, field, v))
+    knob::vector_knob(ui, &caption, value, &limits).map(|v| Edit::set(part, field, v))
 }
 
 /// The knob of a number of a part, with its default.
@@ -148,9 +148,8 @@ pub(super) fn number(
     limits: &Limits,
 ) -> Option<Edit> {
     let caption = Caption::of(&field, help);
-    let (value, default) = (f64::from(value), Some(default.into()));
-    knob::number_knob(ui, field.label(), &caption, value, default, limits)
-        .map(|v| Edit::set(part, field, v as f32))
+    let amount = Amount::new(value.into(), Some(default.into()), limits);
+    knob::number_knob(ui, &caption, amount).map(|v| Edit::set(part, field, v as f32))
 }
 
 /// The choice of a type from the id, name and summary of each. Returns the id of another one.
@@ -163,7 +162,7 @@ pub(super) fn type_knob<'t>(
     let names: Vec<_> = types.iter().map(|[_, name, _]| *name).collect();
     let chosen = types.iter().position(|[known, ..]| *known == id);
     let caption = Caption::new("type", "", chosen.map_or("", |k| types[k][2]));
-    knob::choice_knob(ui, "type", &caption, chosen.unwrap_or(usize::MAX), &names).map(|k| types[k][0])
+    knob::choice_knob(ui, &caption, chosen.unwrap_or(usize::MAX), &names).map(|k| types[k][0])
 }
 
 /// The knob of a declared parameter of a part with these values; disabled if they leave it unused.

@@ -33,7 +33,7 @@ pub(super) fn room(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let help = "Width along x, height along y, depth along z. One corner of the room is the origin; everything stands in it.";
         let limits = [0, 1, 2].map(|axis| session.document.dimension_limits(axis, registry));
         let caption = Caption::new("size", "m", help);
-        if let Some(c) = knob::vector_knob(ui, "size", &caption, size.corner(), &limits) {
+        if let Some(c) = knob::vector_knob(ui, &caption, size.corner(), &limits) {
             [size.width, size.height, size.depth] = c.to_array();
             context.edit(Edit::from(size));
         }
@@ -45,7 +45,7 @@ pub(super) fn room(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.add_space(8.0);
     let text = format!("{} · {}", plural(s.lights.len(), "light"), plural(objects, "object"));
     let text = if own > 0 { format!("{text}, {own} with an override of model or shading") } else { text };
-    ui.add(Label::new(theme::small(ui, text)).wrap());
+    theme::note(ui, text);
 }
 
 /// Exposure, tone mapping and encoding, which a view may override.
@@ -62,7 +62,7 @@ fn display(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let help = "How light brighter than the display can show is brought into its range. None: it is cut off, and values stay comparable.";
     let caption = Caption::of(&Display::tone_mapping, help);
     if let Some(i) = marked(ui, Variant::tone_mapping, context, |ui| {
-        knob::choice_with_help(ui, "tone mapping", &caption, chosen, &options)
+        knob::choice_with_help(ui, &caption, chosen, &options)
     }) {
         let edit = Edit::set(Part::Display, Display::tone_mapping, ToneMapping::ALL[i]);
         context.edit(edit);
@@ -74,9 +74,9 @@ fn display(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let chosen = Encoding::ALL.iter().position(|e| *e == d.encoding).unwrap_or(0);
     let help = "sRGB: colours are decoded to linear light, the picture is encoded for the display. Off: neither; deliberately wrong, for comparison.";
     let caption = Caption::of(&Variant::encoding, help);
-    if let Some(i) = marked(ui, Variant::encoding, context, |ui| {
-        knob::choice_knob(ui, "encoding", &caption, chosen, &names)
-    }) {
+    if let Some(i) =
+        marked(ui, Variant::encoding, context, |ui| knob::choice_knob(ui, &caption, chosen, &names))
+    {
         context.edit(Edit::set(Part::Display, Display::encoding, Encoding::ALL[i]));
     }
 }

@@ -99,7 +99,10 @@ fn row(
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 if mine {
-                    bar(ui, ui.max_rect(), mark);
+                    // The mark of what is overridden.
+                    let rect = ui.max_rect();
+                    let length = rect.shrink2(vec2(0.0, 3.0)).y_range();
+                    ui.painter().vline(rect.left() + 1.5, length, Stroke::new(3.0, mark));
                 }
                 ui.add_space(8.0);
                 let room = ui.available_width();
@@ -139,12 +142,6 @@ fn uses(session: &Session, name: &str, registry: &Registry) -> bool {
         let parameter = model.and_then(|model| Some((model, model.parameter(name)?)));
         parameter.is_some_and(|(model, p)| unused(model.parameters, p, &object.material).is_none())
     })
-}
-
-/// The mark of what is overridden.
-fn bar(ui: &Ui, rect: Rect, ink: Color32) {
-    let x = rect.left() + 1.5;
-    ui.painter().vline(x, rect.shrink2(vec2(0.0, 3.0)).y_range(), Stroke::new(3.0, ink));
 }
 
 /// Something that a variant overrides: its name, its value, and its key.

@@ -17,12 +17,12 @@ impl Knob for Choice {
         let symbol = if of.parameter.symbol == of.parameter.name { "" } else { of.caption.symbol };
         let caption = Caption { symbol, ..of.caption };
         if let Some(on) = value.truth() {
-            return flag_knob(ui, of.salt, &caption, on).map(Value::flag);
+            return flag_knob(ui, &caption, on).map(Value::flag);
         }
         let Value::Choice(id) = value else { return None };
         let chosen = self.options.iter().position(|(option, _)| option == id).unwrap_or(0);
         let names: Vec<_> = self.options.iter().map(|(_, name)| *name).collect();
-        let new = choice_knob(ui, of.salt, &caption, chosen, &names)?;
+        let new = choice_knob(ui, &caption, chosen, &names)?;
         Some(Value::Choice(self.options[new].0.into()))
     }
 }
@@ -31,12 +31,11 @@ impl Knob for Choice {
 /// that returns a value.
 pub fn list_knob<R>(
     ui: &mut Ui,
-    salt: &str,
     caption: &Caption,
     shown: &str,
     list: impl FnOnce(&mut Ui, Id) -> Option<R>,
 ) -> Option<R> {
-    let id = ui.make_persistent_id(salt);
+    let id = ui.make_persistent_id(caption.salt);
     let (label, button) = button(ui, caption, shown, "▾", WidgetType::ComboBox);
     explain(label, |ui| tooltip(ui, caption, "", ""));
     let out = drop_down(&button, id, WIDE, list);
@@ -75,27 +74,20 @@ pub(in crate::panel) fn drop_down<R>(
 }
 
 /// A choice among several options: label at the left, list at the right. Returns the index of a new choice.
-pub fn choice_knob(
-    ui: &mut Ui,
-    salt: &str,
-    caption: &Caption,
-    chosen: usize,
-    options: &[&str],
-) -> Option<usize> {
+pub fn choice_knob(ui: &mut Ui, caption: &Caption, chosen: usize, options: &[&str]) -> Option<usize> {
     let plain: Vec<_> = options.iter().map(|name| [*name, "", ""]).collect();
-    choice_with_help(ui, salt, caption, chosen, &plain)
+    choice_with_help(ui, caption, chosen, &plain)
 }
 
 /// A choice with tooltips: each option has a name, an author and a summary; the latter two may be empty.
 pub fn choice_with_help(
     ui: &mut Ui,
-    salt: &str,
     caption: &Caption,
     chosen: usize,
     options: &[[&str; 3]],
 ) -> Option<usize> {
-    knob(ui, salt, caption, |ui| {
-        let id = ui.make_persistent_id(salt);
+    knob(ui, caption, |ui| {
+        let id = ui.make_persistent_id(caption.salt);
         let (label, out) = head(ui, caption, Words::Leave(CHOICE), |ui| {
             let width = choice_width(ui);
             let now = options.get(chosen).copied();

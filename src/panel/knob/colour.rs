@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Color32, Id, Response, Sense, Stroke, Ui, WidgetInfo
 
 use super::{
     Declared, Knob,
-    field::{complaint, field, text_field},
+    field::{Entry, complaint, field, text_field},
     line::{Caption, NUMBER, Words, explain, head, knob, tooltip, unit},
     picker::picker,
     vector::axis_letter,
@@ -19,20 +19,19 @@ use crate::{
 impl Knob for Colour {
     fn show(&self, ui: &mut Ui, of: &Declared, value: &Value) -> Option<Value> {
         let Value::Colour(rgb) = *value else { return None };
-        colour_knob(ui, of.salt, &of.caption, rgb, Some(self.default)).map(Value::Colour)
+        colour_knob(ui, &of.caption, rgb, Some(self.default)).map(Value::Colour)
     }
 }
 
 /// A knob for a colour, sRGB-encoded: swatch with picker, three integers, hexadecimal.
 pub fn colour_knob(
     ui: &mut Ui,
-    salt: &str,
     caption: &Caption,
     value: [u8; 3],
     default: Option<[u8; 3]>,
 ) -> Option<[u8; 3]> {
-    let id = ui.make_persistent_id(salt);
-    let out = knob(ui, salt, caption, |ui| {
+    let id = ui.make_persistent_id(caption.salt);
+    let out = knob(ui, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let [r, g, b] = value;
         let (label, hex) = head(ui, caption, Words::Leave(NUMBER), |ui| {
@@ -43,7 +42,8 @@ pub fn colour_knob(
                 parse_hex(text)
                     .ok_or_else(|| "is not a colour; must be # and six hexadecimal digits".to_owned())
             };
-            text_field(ui, id.with("hex"), &name, &shown, "", 72.0, read)
+            let id = id.with("hex");
+            text_field(ui, Entry { id, name: &name, shown: &shown, hint: "", width: 72.0 }, read)
         });
         let default_text = default.map(|[r, g, b]| format!("{r}, {g}, {b}")).unwrap_or_default();
         let rule = format!(

@@ -67,7 +67,8 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
     let problem = |draft: &Draft| read(&draft.text, limits).err();
     let wrong = draft.as_ref().and_then(problem).is_some();
     let steps = steps(ui, id);
-    let mut response = text_edit(ui, id, name, &whole, "", &mut text, width, wrong);
+    let entry = Entry { id, name, shown: &whole, hint: "", width };
+    let mut response = text_edit(ui, entry, &mut text, wrong);
     if cut && !response.has_focus() {
         response = response.on_hover_text(&whole);
     }
@@ -178,18 +179,21 @@ pub(super) fn complaint(ui: &Ui, field: &Response, error: &str, kept: &str) {
     });
 }
 
-/// The framed text field; gaining the focus selects all text. `name` and `shown` are for screen readers.
-#[allow(clippy::too_many_arguments)]
-fn text_edit(
-    ui: &mut Ui,
-    id: Id,
-    name: &str,
-    shown: &str,
-    hint: &str,
-    text: &mut String,
-    width: f32,
-    wrong: bool,
-) -> Response {
+/// The place of a text.
+#[derive(Clone, Copy)]
+pub(super) struct Entry<'a> {
+    pub(super) id: Id,
+    /// The name, for screen readers.
+    pub(super) name: &'a str,
+    /// The text while nobody types.
+    pub(super) shown: &'a str,
+    pub(super) hint: &'a str,
+    pub(super) width: f32,
+}
+
+/// The framed text field; gaining the focus selects all text.
+fn text_edit(ui: &mut Ui, entry: Entry, text: &mut String, wrong: bool) -> Response {
+    let Entry { id, name, shown, hint, width } = entry;
     let palette = Palette::here(ui);
     let line = if wrong {
         palette.error
@@ -223,22 +227,15 @@ fn text_edit(
 }
 
 /// A field for a value other than a number: `read` parses the text or explains the error. Invalid text is dropped when
-/// the field loses the focus. `name` is for screen readers.
-pub(super) fn text_field<T>(
-    ui: &mut Ui,
-    id: Id,
-    name: &str,
-    shown: &str,
-    hint: &str,
-    width: f32,
-    read: impl Fn(&str) -> Result<T, String>,
-) -> Field<T> {
+/// the field loses the focus.
+pub(super) fn text_field<T>(ui: &mut Ui, entry: Entry, read: impl Fn(&str) -> Result<T, String>) -> Field<T> {
+    let Entry { id, shown, .. } = entry;
     let draft_id = id.with("draft");
     let draft: Option<String> = ui.data(|d| d.get_temp(draft_id));
     let focused = ui.memory(|m| m.has_focus(id));
     let mut text = draft.filter(|_| focused).unwrap_or_else(|| shown.to_owned());
     let wrong = focused && text != shown && read(&text).is_err();
-    let response = text_edit(ui, id, name, shown, hint, &mut text, width, wrong);
+    let response = text_edit(ui, entry, &mut text, wrong);
     let mut value = None;
     if response.changed() {
         value = read(&text).ok();

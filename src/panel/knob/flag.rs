@@ -5,9 +5,9 @@ use bevy_egui::egui::{Ui, WidgetInfo, WidgetType};
 use super::line::{CHOICE, Caption, Words, explain, head, knob, tooltip};
 
 /// A flag: label at the left, checkbox at the right. Returns the new value.
-pub fn flag_knob(ui: &mut Ui, salt: &str, caption: &Caption, on: bool) -> Option<bool> {
+pub fn flag_knob(ui: &mut Ui, caption: &Caption, on: bool) -> Option<bool> {
     let mut next = on;
-    knob(ui, salt, caption, |ui| {
+    knob(ui, caption, |ui| {
         let (label, check) = head(ui, caption, Words::Leave(CHOICE), |ui| {
             ui.add_space(22.0);
             ui.checkbox(&mut next, "")

@@ -17,9 +17,11 @@ use crate::{
     text::capitalised,
 };
 
-/// Symbol and texts of a knob.
+/// Name, symbol and texts of a knob.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Caption<'a> {
+    /// The name among the knobs of a panel, by which lessons point at it; usually the label.
+    pub salt: &'a str,
     /// Symbol in the equation; empty for none.
     pub symbol: &'a str,
     /// Label.
@@ -38,7 +40,7 @@ impl<'a> Caption<'a> {
     /// A label with a unit and a description, either of which may be empty, for a value without a symbol.
     #[must_use]
     pub fn new(label: &'a str, unit: &'a str, help: &'a str) -> Self {
-        Self { label, unit, help, ..Self::default() }
+        Self { salt: label, label, unit, help, ..Self::default() }
     }
 
     /// The caption of a field of a scene.
@@ -58,10 +60,10 @@ pub(super) enum Words {
 }
 
 /// A knob with its lines. It can be disabled; the equation and a lesson can point at it.
-pub(super) fn knob<R>(ui: &mut Ui, salt: &str, caption: &Caption, add: impl FnOnce(&mut Ui) -> R) -> R {
+pub(super) fn knob<R>(ui: &mut Ui, caption: &Caption, add: impl FnOnce(&mut Ui) -> R) -> R {
     let shown = ui.add_enabled_ui(caption.disabled.is_none(), add);
     linked::touch(ui, shown.response.rect, &[caption.symbol]);
-    point::knob(ui, salt, shown.response.rect);
+    point::knob(ui, caption.salt, shown.response.rect);
     shown.inner
 }
 

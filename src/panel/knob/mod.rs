@@ -26,11 +26,11 @@ pub use line::Caption;
 pub(super) use line::symbol_column;
 pub(super) use picker::picker;
 pub use readout::readout;
+pub use slider::Amount;
 pub use vector::vector_knob;
 
 /// A parameter with a knob.
 struct Declared<'a> {
-    salt: &'a str,
     parameter: &'a Parameter,
     caption: Caption<'a>,
 }
@@ -64,8 +64,8 @@ pub fn parameter_knob(
     disabled: Option<&str>,
 ) -> Option<Value> {
     let Parameter { symbol, label, unit, help, .. } = *parameter;
-    let caption = Caption { symbol, label, unit, help, disabled, ..Caption::default() };
-    let new = of(&parameter.kind).show(ui, &Declared { salt, parameter, caption }, value);
+    let caption = Caption { salt, symbol, label, unit, help, disabled, indent: 0.0 };
+    let new = of(&parameter.kind).show(ui, &Declared { parameter, caption }, value);
     // The limits are f32: rounding to f64 must not push a value at an end out of range.
     new.filter(|new| parameter.allows(new))
 }

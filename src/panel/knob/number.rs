@@ -6,12 +6,12 @@ use super::{
     Declared, Knob,
     field::{complaint, field},
     line::{Caption, NUMBER, Words, explain, head, knob, range, tooltip, unit},
-    slider::slider,
+    slider::{Amount, slider},
 };
 use crate::{
     panel::{menu, theme::Palette},
     parameter::{Value, kind::number::Number},
-    scene::limits::{Limits, number},
+    scene::limits::number,
     text::capitalised,
 };
 
@@ -25,7 +25,7 @@ impl Knob for Number {
 pub(super) fn of_parameter(ui: &mut Ui, of: &Declared, value: &Value, default: f64) -> Option<Value> {
     let kind = &of.parameter.kind;
     let (now, limits) = (kind.number_of(value)?, kind.limits()?);
-    let new = number_knob(ui, of.salt, &of.caption, now, Some(default), &limits)?;
+    let new = number_knob(ui, &of.caption, Amount::new(now, Some(default), &limits))?;
     Some(kind.of_numbers([new; 3]))
 }
 
@@ -66,29 +66,20 @@ pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<
 }
 
 /// A knob for a number. Returns a new valid value.
-pub fn number_knob(
-    ui: &mut Ui,
-    salt: &str,
-    caption: &Caption,
-    value: f64,
-    default: Option<f64>,
-    limits: &Limits,
-) -> Option<f64> {
-    number_knob_beside(ui, salt, caption, value, default, limits, |ui| unit(ui, caption.unit))
+pub fn number_knob(ui: &mut Ui, caption: &Caption, amount: Amount) -> Option<f64> {
+    number_knob_beside(ui, caption, amount, |ui| unit(ui, caption.unit))
 }
 
 /// A knob for a number with other widgets in place of the unit.
 pub fn number_knob_beside(
     ui: &mut Ui,
-    salt: &str,
     caption: &Caption,
-    value: f64,
-    default: Option<f64>,
-    limits: &Limits,
+    amount: Amount,
     beside: impl FnOnce(&mut Ui),
 ) -> Option<f64> {
-    let id = ui.make_persistent_id(salt);
-    knob(ui, salt, caption, |ui| {
+    let Amount { value, default, limits } = amount;
+    let id = ui.make_persistent_id(caption.salt);
+    knob(ui, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let finite = limits.slider_min.is_finite() && limits.slider_max.is_finite();
         let words = if finite { Words::Column } else { Words::Leave(NUMBER) };
@@ -96,7 +87,7 @@ pub fn number_knob_beside(
             beside(ui);
             let field = field(ui, id, caption.label, value, limits, 56.0);
             let width = (ui.available_width() - 2.0).max(24.0);
-            (field, finite.then(|| slider(ui, caption.label, value, default, limits, width)))
+            (field, finite.then(|| slider(ui, caption.label, amount, width)))
         });
         let mut out = field.value;
         let (rule, default_text) = (range(limits), default.map(number).unwrap_or_default());

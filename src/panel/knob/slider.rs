@@ -7,6 +7,25 @@ use crate::{
     scene::limits::Limits,
 };
 
+/// The value of a number, its default and its limits.
+#[derive(Clone, Copy, Debug)]
+pub struct Amount<'a> {
+    /// The value.
+    pub value: f64,
+    /// The default, if there is one.
+    pub default: Option<f64>,
+    /// The limits.
+    pub limits: &'a Limits,
+}
+
+impl<'a> Amount<'a> {
+    /// A value with a default and limits.
+    #[must_use]
+    pub fn new(value: f64, default: Option<f64>, limits: &'a Limits) -> Self {
+        Self { value, default, limits }
+    }
+}
+
 /// Step of an arrow key: about a hundredth of the range, rounded.
 pub(super) fn nudge(limits: &Limits, value: f64) -> f64 {
     if limits.whole {
@@ -50,34 +69,21 @@ fn from_slider(limits: &Limits, t: f64) -> f64 {
 const RADIUS: f32 = 6.0;
 
 /// A slider. A double-click sets the default; arrow keys step; Home and End go to the ends.
-pub(super) fn slider(
-    ui: &mut Ui,
-    name: &str,
-    value: f64,
-    default: Option<f64>,
-    limits: &Limits,
-    width: f32,
-) -> (Response, Option<f64>) {
+pub(super) fn slider(ui: &mut Ui, name: &str, amount: Amount, width: f32) -> (Response, Option<f64>) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, 16.0), Sense::click_and_drag());
+    let Amount { value, limits, .. } = amount;
     response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), value, name));
     let rail = rect.shrink2(vec2(RADIUS, 6.5));
-    let out = asked(ui, &response, rail, value, default, limits);
+    let out = asked(ui, &response, rail, amount);
     if ui.is_rect_visible(rect) {
-        paint(ui, &response, rail, (value, out.unwrap_or(value)), default, limits);
+        paint(ui, &response, rail, out.unwrap_or(value), amount);
     }
     let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
     (response, out.filter(|v| limits.allows(*v) && *v as f32 != value as f32))
 }
 
 /// The value that pointer or keys ask for.
-fn asked(
-    ui: &Ui,
-    response: &Response,
-    rail: Rect,
-    value: f64,
-    default: Option<f64>,
-    limits: &Limits,
-) -> Option<f64> {
+fn asked(ui: &Ui, response: &Response, rail: Rect, Amount { value, default, limits }: Amount) -> Option<f64> {
     let mut out = None;
     if let Some(pointer) = response.interact_pointer_pos()
         && (response.dragged() || response.clicked())
@@ -108,14 +114,7 @@ fn asked(
 }
 
 /// Paints the slider of a value, with its handle at `now`.
-fn paint(
-    ui: &Ui,
-    response: &Response,
-    rail: Rect,
-    (value, now): (f64, f64),
-    default: Option<f64>,
-    limits: &Limits,
-) {
+fn paint(ui: &Ui, response: &Response, rail: Rect, now: f64, Amount { value, default, limits }: Amount) {
     let (palette, painter) = (Palette::here(ui), ui.painter());
     let x = |v: f64| rail.left() + to_slider(limits, v) as f32 * rail.width();
     painter.rect_filled(rail, 1.5, palette.line);

@@ -4,7 +4,7 @@ use bevy_egui::egui::Ui;
 
 use super::{
     Declared, Knob,
-    field::{complaint, read, text_field},
+    field::{Entry, complaint, read, text_field},
     line::{Caption, NUMBER, Words, explain, head, knob, tooltip, unit},
     vector::three_fields,
 };
@@ -17,21 +17,20 @@ use crate::{
 impl Knob for Triple {
     fn show(&self, ui: &mut Ui, of: &Declared, value: &Value) -> Option<Value> {
         let (Value::Triple(v), limits) = (value, of.parameter.kind.limits()?) else { return None };
-        triple_knob(ui, of.salt, &of.caption, *v, self.default, &limits).map(Value::Triple)
+        triple_knob(ui, &of.caption, *v, self.default, &limits).map(Value::Triple)
     }
 }
 
 /// A knob for a number in red, green and blue: one field for all three, and one for each.
 pub fn triple_knob(
     ui: &mut Ui,
-    salt: &str,
     caption: &Caption,
     value: [f32; 3],
     default: [f32; 3],
     limits: &Limits,
 ) -> Option<[f32; 3]> {
-    let id = ui.make_persistent_id(salt);
-    let out = knob(ui, salt, caption, |ui| {
+    let id = ui.make_persistent_id(caption.salt);
+    let out = knob(ui, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let plain = |v: f32| number(f64::from(v));
         let list = |v: [f32; 3]| v.map(plain).join(", ");
@@ -41,7 +40,8 @@ pub fn triple_knob(
             let shown = if same { plain(value[0]) } else { String::new() };
             let read = |text: &str| read(text, limits).map(|v| [v as f32; 3]);
             let name = format!("{}: all three", caption.label);
-            text_field(ui, id.with("all"), &name, &shown, "all", 64.0, read)
+            let id = id.with("all");
+            text_field(ui, Entry { id, name: &name, shown: &shown, hint: "all", width: 64.0 }, read)
         });
         let mut out = all.value;
         let rule = format!("each {}. Default {}", limits.rule(), list(default));

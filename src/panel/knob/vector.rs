@@ -90,16 +90,10 @@ pub(super) fn three_fields(
 }
 
 /// A knob for three numbers, each with its own limits.
-pub fn vector_knob(
-    ui: &mut Ui,
-    salt: &str,
-    caption: &Caption,
-    value: Vec3,
-    limits: &[Limits; 3],
-) -> Option<Vec3> {
+pub fn vector_knob(ui: &mut Ui, caption: &Caption, value: Vec3, limits: &[Limits; 3]) -> Option<Vec3> {
     const LETTERS: [&str; 3] = ["x", "y", "z"];
-    let id = ui.make_persistent_id(salt);
-    knob(ui, salt, caption, |ui| {
+    let id = ui.make_persistent_id(caption.salt);
+    knob(ui, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let font = TextStyle::Body.resolve(ui.style());
         let colour = Palette::here(ui).text;

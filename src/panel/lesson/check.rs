@@ -35,13 +35,6 @@ struct Checked {
     unmet: Option<String>,
 }
 
-impl Question {
-    /// True if the learner did something since `entered`. Explanations, which follow by themselves, do not count.
-    fn follows_a_deed(&self, entered: &Self) -> bool {
-        *self != Self { explained: self.explained, ..entered.clone() }
-    }
-}
-
 /// Number of checks so far.
 #[must_use]
 pub fn evaluations(ctx: &Context) -> u64 {
@@ -77,11 +70,9 @@ pub(in crate::panel) fn update(ctx: &Context, session: &Session, registry: &Regi
     let explained = explain::explained(ctx);
     let situation = situation(session, registry, explained.as_deref());
     let holds = goal.until.holds(&situation);
-    let unmet = if question.follows_a_deed(&entered) {
-        goal.until.unmet(&situation)
-    } else {
-        goal.until.missing(&situation)
-    };
+    // Explanations, which follow by themselves, are no deed of the learner.
+    let idle = question == Question { explained: question.explained, ..entered.clone() };
+    let unmet = if idle { goal.until.missing(&situation) } else { goal.until.unmet(&situation) };
     kept::set(ctx, Checks(count + 1, Some(Checked { question, entered, unmet })));
     holds.then_some(Action::Lesson(LessonCommand::Solved(open.step)))
 }

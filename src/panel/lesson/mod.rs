@@ -23,17 +23,10 @@ const PRESENTED: f32 = 0.0235;
 pub(super) const SHARE: f32 = 0.31;
 
 /// The *Lesson* panel.
-#[derive(Clone, Copy, Debug)]
-pub struct LessonPanel;
-
-impl Panel for LessonPanel {
-    is_panel!("lesson", "Lesson", Place::Left);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let session = context.session();
-        if let Some(open) = &session.lesson {
-            lesson(ui, session, open, &mut context.actions);
-        }
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
+    if let Some(open) = &session.lesson {
+        lesson(ui, session, open, &mut context.actions);
     }
 }
 

@@ -6,16 +6,13 @@ use bevy_egui::egui::{
 };
 
 use super::{
+    Asked, Sight,
     ink::{OUTLINE, RIM},
     place::at_edge,
 };
 use crate::{
     document::Selection,
-    panel::{
-        state::{Action, Session},
-        theme,
-    },
-    registry::Registry,
+    panel::{state::Action, theme},
 };
 
 /// Half the height of an arrow at the edge, points.
@@ -66,19 +63,16 @@ fn paint(painter: &Painter, at: Pos2, way: Vec2, count: usize, colour: Color32) 
 /// The arrows. Where many would overlap, one stands for them and says how many.
 pub(super) fn arrows(
     ui: &Ui,
-    painter: &Painter,
-    (rect, overlays): (Rect, &[Rect]),
+    Sight { rect, written, session, registry }: Sight<'_>,
     outside: &[Outside],
-    session: &Session,
-    registry: &Registry,
     colour_of: impl Fn(usize) -> Color32,
-) -> (Vec<Action>, Vec<Rect>) {
+) -> Asked {
     let frame = rect.shrink(INSET);
     let (mut actions, mut places) = (Vec::new(), Vec::new());
     if !frame.is_positive() {
         return (actions, places);
     }
-    let mut ends: Vec<_> = outside.iter().map(|o| (o, clear_end(frame, overlays, o))).collect();
+    let mut ends: Vec<_> = outside.iter().map(|o| (o, clear_end(frame, written, o))).collect();
     // Around the picture, so that neighbours come one after the other.
     ends.sort_by(|a, b| a.0.way.angle().total_cmp(&b.0.way.angle()));
     let mut groups: Vec<(Vec2, Pos2, Vec<usize>)> = Vec::new();
@@ -94,7 +88,7 @@ pub(super) fn arrows(
         // A light that shines goes before those that are off.
         let lit = lights.iter().position(|i| session.document.lights[*i].enabled);
         let colour = colour_of(lights[chosen.or(lit).unwrap_or(0)]);
-        paint(painter, at, way, lights.len(), colour);
+        paint(&ui.painter_at(rect), at, way, lights.len(), colour);
         let place = Rect::from_center_size(at, Vec2::splat(3.0 * ARROW));
         let id = Id::new(("light outside the view", lights[0]));
         let response = ui.interact(place, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);

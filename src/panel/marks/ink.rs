@@ -14,7 +14,8 @@ pub(super) const RIM: f32 = 1.5;
 
 /// Lines with their outlines; no outline covers another line.
 pub(in crate::panel) struct Ink {
-    pub(super) lens: Lens,
+    /// The way from the room to the picture.
+    pub(in crate::panel) lens: Lens,
     below: Vec<Shape>,
     above: Vec<Shape>,
 }
@@ -27,11 +28,6 @@ fn rim(colour: Color32) -> Color32 {
 impl Ink {
     pub(in crate::panel) fn new(lens: Lens) -> Self {
         Self { lens, below: Vec::new(), above: Vec::new() }
-    }
-
-    /// The way from the room to the picture.
-    pub(in crate::panel) fn lens(&self) -> Lens {
-        self.lens
     }
 
     pub(super) fn line(&mut self, points: Vec<Pos2>, colour: Color32) {

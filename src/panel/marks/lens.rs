@@ -30,9 +30,11 @@ impl Ray {
 /// The way from the room to the picture, and back: what the camera of the window shows in a rectangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
-    eye: Vec3,
+    /// The place of the camera.
+    pub(in crate::panel) eye: Vec3,
     to_camera: Quat,
-    rect: Rect,
+    /// The rectangle of the picture.
+    pub(in crate::panel) rect: Rect,
     /// Points per unit of the tangent.
     scale: f32,
 }
@@ -66,11 +68,6 @@ impl Lens {
         (seen.z < -NEAR).then(|| self.flat(seen))
     }
 
-    /// The rectangle of the picture.
-    pub(in crate::panel) fn rect(&self) -> Rect {
-        self.rect
-    }
-
     /// The length in metres, at a point of the room, of so many points of the picture.
     pub(in crate::panel) fn metres(&self, p: Vec3, points: f32) -> f32 {
         points * (-self.seen(p).z).max(NEAR) / self.scale
@@ -97,11 +94,6 @@ impl Lens {
     /// The directions of the picture in the room: to its right, to its top, and ahead.
     pub(in crate::panel) fn axes(&self) -> [Vec3; 3] {
         [Vec3::X, Vec3::Y, Vec3::NEG_Z].map(|axis| self.to_camera.inverse() * axis)
-    }
-
-    /// The place of the camera.
-    pub(in crate::panel) fn eye(&self) -> Vec3 {
-        self.eye
     }
 
     /// The direction in the picture in which a point outside it lies.

@@ -9,13 +9,15 @@ use std::sync::Arc;
 use bevy_egui::egui::{Color32, Context, Id, Rect, Ui, Vec2, pos2, vec2};
 use glam::{Quat, Vec3};
 
-use super::state::{Action, Session};
+use super::{
+    kept,
+    state::{Action, Session},
+};
 use crate::{
     document::Selection,
     light::LightEntry,
     registry::Registry,
     scene::{Light, Object, Observer, Scene, observer::rotation as look_along, rotation::rotation},
-    shape::MeshKey,
 };
 use edge::Outside;
 use place::{CROWD, SHORT};
@@ -56,21 +58,30 @@ const SMALL: f32 = 12.0;
 /// Distance of the frame around the selected object from what it frames, points.
 const FRAME: f32 = 7.0;
 
-/// Paints the marks into the rectangle of the picture. Returns what was asked for, and the places that can be
-/// clicked, which do not belong to the picture.
-pub fn marks(
-    ui: &Ui,
-    rect: Rect,
-    overlays: &[Rect],
-    session: &Session,
-    registry: &Registry,
-) -> (Vec<Action>, Vec<Rect>) {
+/// A picture on the screen.
+#[derive(Clone, Copy)]
+pub struct Sight<'a> {
+    /// Its rectangle.
+    pub rect: Rect,
+    /// The rectangles that are written over it.
+    pub written: &'a [Rect],
+    /// The session that it shows.
+    pub session: &'a Session,
+    /// The known types and models.
+    pub registry: &'a Registry,
+}
+
+/// What was asked for, and the places that can be clicked, which do not belong to the picture.
+pub type Asked = (Vec<Action>, Vec<Rect>);
+
+/// Paints the marks into a picture.
+pub fn marks(ui: &Ui, sight: Sight<'_>) -> Asked {
+    let Sight { rect, written, session, registry } = sight;
     if !session.view.show_gizmos {
         return (Vec::new(), Vec::new());
     }
     let scene = &session.document;
     let lens = Lens::of(session, rect);
-    let painter = ui.painter_at(rect);
     let mut ink = Ink::new(lens);
     let mut outside = Vec::new();
     let crowd = scene.lights.len() > CROWD;
@@ -80,7 +91,7 @@ pub fn marks(
         true => LIGHT,
         false => OFF,
     };
-    let places = places_shown(ui.ctx(), scene, registry, &lens, overlays);
+    let places = places_shown(ui.ctx(), sight, &lens);
     // The selected one is drawn last, over the others.
     let mut order: Vec<usize> = (0..scene.lights.len()).collect();
     order.sort_by_key(|i| chosen(*i));
@@ -94,7 +105,7 @@ pub fn marks(
         };
         match lens.project(at).filter(|at| rect.contains(*at)) {
             None => outside.push(Outside { light: i, way: lens.towards(at), covered: None }),
-            Some(p) if overlays.iter().any(|r| r.contains(p)) => {
+            Some(p) if written.iter().any(|r| r.contains(p)) => {
                 let way = (p - rect.center()).normalized();
                 outside.push(Outside { light: i, way, covered: Some(p) });
             }
@@ -104,7 +115,7 @@ pub fn marks(
                     false if crowd => Size::Dot,
                     false => Size::Short,
                 };
-                lamp(&mut ink, light, entry, at, scene, colour_of(i), size);
+                lamp(&mut ink, &Lamp { light, entry, position: at, colour: colour_of(i), size }, scene);
             }
         }
     }
@@ -116,34 +127,25 @@ pub fn marks(
     {
         frame(ui, &mut ink, object, registry);
     }
-    ink.paint(&painter);
-    edge::arrows(ui, &painter, (rect, overlays), &outside, session, registry, colour_of)
+    ink.paint(&ui.painter_at(rect));
+    edge::arrows(ui, sight, &outside, colour_of)
 }
 
-/// The key of the mark that is held.
-fn held() -> Id {
-    Id::new("mark that is held")
-}
+/// The light whose mark is held, and the place of the mark.
+#[derive(Clone, Copy, Default)]
+struct Held(Option<(usize, Vec3)>);
 
 /// Keeps the mark of a light in its place, or lets all go: light from a direction would move its own away from the
 /// pointer that turns it.
 pub(super) fn hold(ctx: &Context, light: Option<(usize, Vec3)>) {
-    ctx.data_mut(|data| match light {
-        Some(light) => drop(data.insert_temp(held(), light)),
-        None => data.remove::<(usize, Vec3)>(held()),
-    });
+    kept::set(ctx, Held(light));
 }
 
 /// The [`places`] of the marks, and of the one that is held.
-pub(super) fn places_shown(
-    ctx: &Context,
-    scene: &Scene,
-    registry: &Registry,
-    lens: &Lens,
-    overlays: &[Rect],
-) -> Vec<Option<Vec3>> {
-    let mut all = places(scene, registry, lens, overlays);
-    let held = ctx.data(|data| data.get_temp::<(usize, Vec3)>(held()));
+pub(super) fn places_shown(ctx: &Context, sight: Sight<'_>, lens: &Lens) -> Vec<Option<Vec3>> {
+    let scene = &sight.session.document;
+    let mut all = places(scene, sight.registry, lens, sight.written);
+    let Held(held) = kept::get(ctx);
     let moves = |light: usize| scene.lights.get(light).is_some_and(|light| light.position.is_none());
     if let Some((light, at)) = held.filter(|(light, _)| moves(*light)) {
         all[light] = Some(at);
@@ -171,20 +173,22 @@ enum Size {
     Long,
 }
 
-fn lamp(
-    ink: &mut Ink,
-    light: &Light,
-    entry: &LightEntry,
+/// The mark of a light.
+struct Lamp<'a> {
+    light: &'a Light,
+    entry: &'a LightEntry,
     position: Vec3,
-    scene: &Scene,
     colour: Color32,
     size: Size,
-) {
+}
+
+fn lamp(ink: &mut Ink, lamp: &Lamp<'_>, scene: &Scene) {
+    let Lamp { light, position, colour, size, .. } = *lamp;
     let direction = light.direction.and_then(Vec3::try_normalize);
     if let Some(direction) = direction {
         let points = if size == Size::Long { LONG } else { SHORT };
         let reach = reach_of(&ink.lens, position, points, scene);
-        beam(ink, light, entry, (position, direction, reach), colour, size);
+        beam(ink, lamp, direction, reach);
     }
     let Some(at) = ink.lens.project(position) else { return };
     if size == Size::Dot {
@@ -204,14 +208,8 @@ fn lamp(
 }
 
 /// The cone or the arrows of a light that shines in a direction, from its position and as far as `reach`.
-fn beam(
-    ink: &mut Ink,
-    light: &Light,
-    entry: &LightEntry,
-    (position, direction, reach): (Vec3, Vec3, f32),
-    colour: Color32,
-    size: Size,
-) {
+fn beam(ink: &mut Ink, lamp: &Lamp<'_>, direction: Vec3, reach: f32) {
+    let Lamp { light, entry, position, colour, size } = *lamp;
     let turn = Quat::from_rotation_arc(Vec3::Z, direction);
     match entry.cone_angle(&light.parameters) {
         _ if size == Size::Dot => ink.path(&[position, position + direction * (0.5 * reach)], colour),
@@ -253,7 +251,7 @@ fn beam(
 /// True if the pyramid of the observer would frame the picture, seen from within, or cover objects, seen over its shoulder.
 fn is_in_the_way(lens: &Lens, scene: &Scene) -> bool {
     let Observer { position, direction, .. } = scene.observer;
-    if lens.eye().distance(position) <= OBSERVER_MARK {
+    if lens.eye.distance(position) <= OBSERVER_MARK {
         return true;
     }
     let (way, [.., ahead]) = (look_along(direction) * Vec3::NEG_Z, lens.axes());
@@ -291,14 +289,10 @@ fn frame(ui: &Ui, ink: &mut Ink, object: &Object, registry: &Registry) {
     let count = shape.tessellation(object.tessellation).min(shape.declaration.default_tessellation);
     // Only the last one is kept: a drag of a knob makes hundreds.
     let (id, key) = (Id::new("mesh of what is selected"), shape.key(&object.shape, Some(count)));
-    let known = ui.data(|d| d.get_temp::<(MeshKey, Arc<[Vec3]>)>(id)).filter(|(known, _)| *known == key);
-    let mesh = known.map(|(_, mesh)| mesh).unwrap_or_else(|| {
-        let mesh: Arc<[Vec3]> = shape.mesh(&object.shape, count).positions.into();
-        ui.data_mut(|d| d.insert_temp(id, (key, mesh.clone())));
-        mesh
-    });
+    let make = || shape.mesh(&object.shape, count).positions.into();
+    let mesh: Arc<[Vec3]> = kept::of_key(ui.ctx(), id, key, make);
     let (lens, turn) = (ink.lens, rotation(object.rotation));
-    let view = lens.rect().shrink(FRAME);
+    let view = lens.rect.shrink(FRAME);
     let seen = mesh.iter().map(|p| lens.project(object.position + turn * (object.size * *p)));
     // A part that reaches behind the camera is all around it.
     let around = match seen.collect::<Option<Vec<_>>>() {

@@ -10,7 +10,7 @@ use crate::{
 pub(super) fn outline(ink: &mut Ink, light: &Light, scene: &Scene, registry: &Registry) {
     let Some(entry) = registry.light(&light.light_type) else { return };
     let record = record(light, registry, scene.display.encoding);
-    for points in entry.outlines(&light.parameters, &record, ink.lens.eye()) {
+    for points in entry.outlines(&light.parameters, &record, ink.lens.eye) {
         let hull = ink.lens.hull(&points);
         ink.ring(hull, SELECTED);
     }
@@ -58,7 +58,7 @@ mod tests {
             ..LightRecord::default()
         };
         let lens = lens(turn);
-        let outlines = entry.outlines(outlined, &record, lens.eye());
+        let outlines = entry.outlines(outlined, &record, lens.eye);
         assert_eq!(outlines.len(), 1, "{light_type}");
         let hull = lens.hull(&outlines[0]);
         let mut solid = vec![((entry.instantiate)(values, Encoding::default()), record)];
@@ -76,7 +76,7 @@ mod tests {
             (0..60).flat_map(|y| (0..80).map(move |x| pos2(105.0 + 10.0 * x as f32, 55.0 + 10.0 * y as f32)))
         {
             let way = lens.ray(at).way;
-            let shines = solid.iter().any(|(one, record)| one.seen(record, lens.eye(), way).distance > 0.0);
+            let shines = solid.iter().any(|(one, record)| one.seen(record, lens.eye, way).distance > 0.0);
             let depth = depth(&hull, at);
             lit += usize::from(shines);
             different += usize::from(depth.abs() > 1.0 && shines != (depth > 0.0));

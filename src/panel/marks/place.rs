@@ -63,9 +63,9 @@ fn outlines(scene: &Scene, registry: &Registry, lens: &Lens) -> Vec<Rect> {
             lens.project(object.position + turn * (half * Vec3::new(sign(1), sign(2), sign(4))))
         };
         let corners: Vec<Pos2> = (0..8).map(corner).collect::<Option<_>>()?;
-        let seen = Rect::from_points(&corners).intersect(lens.rect());
+        let seen = Rect::from_points(&corners).intersect(lens.rect);
         // Beside a floor there is no place.
-        Some(seen).filter(|r| r.is_positive() && r.area() < FLOOR * lens.rect().area())
+        Some(seen).filter(|r| r.is_positive() && r.area() < FLOOR * lens.rect.area())
     };
     scene.shown().filter_map(outline).take(OBJECTS).collect()
 }
@@ -93,12 +93,12 @@ fn place(
     let count = scene.objects.len().max(1) as f32;
     let middle = scene.objects.iter().map(|o| o.position).sum::<Vec3>() / count;
     let depth = lens.seen(middle).length();
-    let ahead = lens.at(lens.rect().center(), depth);
+    let ahead = lens.at(lens.rect.center(), depth);
     let free = |p: Vec3, beside: bool| {
         // Not so near to the camera that the mark is out of its depth.
         let room = room(p, direction, lens).filter(|_| -lens.seen(p).z > 0.3 * depth)?;
         let hidden = |by: &[Rect]| by.iter().any(|r| r.intersects(room));
-        let free = lens.rect().contains_rect(room) && !hidden(taken) && !(beside && hidden(objects));
+        let free = lens.rect.contains_rect(room) && !hidden(taken) && !(beside && hidden(objects));
         free.then_some((p, Some(room)))
     };
     // First along the way that the light takes to the objects, then along the edge of the picture.
@@ -106,7 +106,7 @@ fn place(
         let steps = (0..=STEPS).rev().map(move |k| from - direction * (depth * k as f32 / STEPS as f32));
         steps.filter(|p| scene.scene_size.contains(*p))
     };
-    let edge = || border(lens.rect(), lens.towards(ahead - direction * depth)).map(|at| lens.at(at, depth));
+    let edge = || border(lens.rect, lens.towards(ahead - direction * depth)).map(|at| lens.at(at, depth));
     let all = || [far].into_iter().chain(along(middle)).chain(along(ahead)).chain(edge());
     let find = |beside: bool| all().find_map(|p| free(p, beside));
     find(true).or_else(|| find(false)).or(Some((far, None)))

@@ -6,7 +6,7 @@ use super::{
     Entry, PlotPanel, Recipe, Request, links,
     reading::{self, Reading},
     request::Drawn,
-    surface::{right_end, sample, sample_size, small_lines},
+    surface::{right_end, sample, sample_size},
 };
 use crate::{
     curves::{
@@ -24,20 +24,6 @@ use crate::{
 
 /// The colours of curves, as they are called.
 const COLOUR_NAMES: [&str; COLOURS.len()] = ["blue", "vermilion", "green", "purple", "orange", "sky blue"];
-
-fn dash_name(line: Line) -> &'static str {
-    match line {
-        Line::Solid => "solid",
-        Line::Dashed => "dashed",
-        Line::Dotted => "dotted",
-        Line::DashDot => "dash and dot",
-        Line::LongDashed => "long dashes",
-        Line::DashDotDot => "dash and two dots",
-        Line::LongShort => "long and short dashes",
-        Line::ShortDashed => "short dashes",
-        Line::None => "none",
-    }
-}
 
 /// Shows the list in all the room that there is, with the row of a curve that stands out. Returns the one that the pointer
 /// is at.
@@ -73,7 +59,7 @@ pub(super) fn show(
         let notes = panel.figure.as_ref().map_or(&[][..], |built| &built.notes);
         if !notes.is_empty() {
             ui.add_space(6.0);
-            notes.iter().for_each(|note| small_lines(ui, note));
+            notes.iter().for_each(|note| _ = theme::note(ui, note));
         }
     });
     pointed
@@ -178,7 +164,7 @@ fn row(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, kind: Kind, context: &mut 
                     && let Some(i) = scene.objects.iter().position(|o| std::ptr::eq(o, object))
                 {
                     let of = session.name_of(Selection::Object(i), context.registry());
-                    small_lines(ui, &format!("now: {of}"));
+                    theme::note(ui, format!("now: {of}"));
                 }
                 if let Some(Err(why)) = known.filter(|_| entry.shown) {
                     let text = RichText::new(format!("{why}.")).small().color(palette.warning);
@@ -233,7 +219,7 @@ fn style(
     let (place, response) = ui.allocate_exact_size(sample_size(), Sense::click());
     let Style { colour, line } = entry.style;
     let colour = COLOUR_NAMES.get(colour).copied().unwrap_or_default();
-    let says = format!("Colour and dash of {name}: {colour}, {}", dash_name(line));
+    let says = format!("Colour and dash of {name}: {colour}, {}", line.name());
     theme::says(&response, WidgetType::ComboBox, says);
     if theme::is_hot(&response) {
         ui.painter().rect_filled(place, 4.0, Palette::here(ui).hovered);
@@ -269,7 +255,7 @@ fn picked(ui: &mut Ui, now: Style, plain: &Series, by_key: &mut bool) -> Option<
     }
     ui.separator();
     for line in Line::ALL {
-        offer(ui, dash_name(line), Style { line, ..now });
+        offer(ui, line.name(), Style { line, ..now });
     }
     picked
 }

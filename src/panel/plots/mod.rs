@@ -4,11 +4,7 @@
 //! The figure is that of [`curves`](crate::curves), drawn by another pen: what the window shows is what
 //! its files show.
 
-use super::{
-    linked,
-    prelude::*,
-    state::{PLOTS_TAB, Slot},
-};
+use super::{linked, prelude::*, state::Slot};
 use crate::curves::{
     Channel, Kind, Setup, Sheet, Style,
     draw::{Figure, Series},
@@ -61,10 +57,9 @@ struct Built {
     slots: Vec<Slot>,
 }
 
-impl Panel for PlotPanel {
-    is_panel!(PLOTS_TAB, "Plots", Place::Bottom);
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+impl PlotPanel {
+    /// Shows the panel.
+    pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (session, registry) = (context.session(), context.registry());
         let request = Request::of(session, registry);
         self.follow(ui.ctx(), &request, registry);
@@ -91,9 +86,7 @@ impl Panel for PlotPanel {
             ui.ctx().request_repaint();
         }
     }
-}
 
-impl PlotPanel {
     /// Takes what was calculated, and asks for what is missing.
     fn follow(&mut self, ctx: &Context, request: &Request, registry: &Registry) {
         self.worker.shown(ctx);

@@ -244,8 +244,3 @@ pub(super) fn right_end(row: Rect) -> Rect {
     let size = sample_size();
     Rect::from_min_size(pos2(row.right() - size.x - 6.0, row.center().y - 0.5 * size.y), size)
 }
-
-/// Text of less weight, in lines.
-pub(super) fn small_lines(ui: &mut Ui, text: &str) {
-    ui.add(Label::new(theme::small(ui, text)).wrap());
-}

@@ -3,7 +3,7 @@
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::{BODY, Block, CAPTION, Definition, columns, kept, padding, since};
+use super::{BODY, Block, CAPTION, Definition, columns, padding, since};
 use crate::{
     caption::{Part, single},
     panel::{
@@ -72,7 +72,8 @@ impl Footer {
         let sides: Vec<_> = views.into_iter().map(|view| Side::of(session, view, registry)).collect();
         let mut hasher = DefaultHasher::new();
         format!("{sides:?} {whole:?}").hash(&mut hasher);
-        kept(ui, "footer of the presentation", hasher.finish(), |ui| Self::laid_out(ui, whole, sides))
+        let (ctx, id) = (ui.ctx().clone(), Id::new("footer of the presentation"));
+        kept::of_key(&ctx, id, hasher.finish(), || Self::laid_out(ui, whole, sides))
     }
 
     fn laid_out(ui: &mut Ui, whole: Rect, sides: Vec<Side>) -> Self {

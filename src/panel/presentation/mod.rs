@@ -80,15 +80,17 @@ impl Stage {
     /// Lays out the texts for a screen.
     #[must_use]
     pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
-        let equation = equation_shown(session, registry);
+        // None with several models, since it would seem to apply to all of them.
+        let equation =
+            model_of(session, registry).map(|model| maths::definitions(model.declaration.equation));
+        let equation = equation.unwrap_or_default();
         let parts = caption::parts(session, registry);
         // A turning camera must not move the layout: its position at the start counts.
         let mut hasher = DefaultHasher::new();
         let objects: Vec<_> = session.scene().shown().map(|o| (o.position, o.size)).collect();
         format!("{equation:?} {parts:?} {whole:?} {objects:?} {}", since(ui)).hash(&mut hasher);
-        kept(ui, "stage of the presentation", hasher.finish(), |ui| {
-            Self::laid_out(ui, whole, session, equation, parts)
-        })
+        let (ctx, id) = (ui.ctx().clone(), Id::new("stage of the presentation"));
+        kept::of_key(&ctx, id, hasher.finish(), || Self::laid_out(ui, whole, session, equation, parts))
     }
 
     fn laid_out(
@@ -176,30 +178,9 @@ impl Stage {
     }
 }
 
-/// The equation of the active view's model; empty with several models, since it would seem to apply to all of them.
-fn equation_shown(session: &Session, registry: &Registry) -> Vec<Definition> {
-    model_of(session, registry).map_or_else(Vec::new, |model| maths::definitions(model.declaration.equation))
-}
-
 fn model_of<'r>(session: &Session, registry: &'r Registry) -> Option<&'r ModelEntry> {
     let models = models_shown(session);
     models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1)
-}
-
-/// Returns the value cached under a name if it has the same key, otherwise makes it.
-fn kept<T: Clone + Send + Sync + 'static>(
-    ui: &mut Ui,
-    name: &str,
-    key: u64,
-    make: impl FnOnce(&mut Ui) -> T,
-) -> T {
-    let id = Id::new(name);
-    if let Some((_, known)) = ui.data(|d| d.get_temp::<(u64, T)>(id)).filter(|(of, _)| *of == key) {
-        return known;
-    }
-    let made = make(ui);
-    ui.data_mut(|d| d.insert_temp(id, (key, made.clone())));
-    made
 }
 
 /// Shows the equation of a model in columns from a corner on.
@@ -306,13 +287,9 @@ fn discs(session: &Session, rect: Rect) -> Vec<(Pos2, f32)> {
 
 /// The share of the discs that rectangles hide, by their areas.
 fn hidden(discs: &[(Pos2, f32)], plates: [Rect; 2]) -> f32 {
-    let share = |d: &(Pos2, f32)| if plates.iter().any(|p| covers(*p, *d)) { d.1 * d.1 } else { 0.0 };
+    let covered = |at: Pos2, r: f32| plates.iter().any(|p| p.is_positive() && at.distance(p.clamp(at)) < r);
+    let share = |d: &(Pos2, f32)| if covered(d.0, d.1) { d.1 * d.1 } else { 0.0 };
     discs.iter().map(share).sum::<f32>() / discs.iter().map(|d| d.1 * d.1).sum::<f32>().max(1.0)
-}
-
-/// True if a rectangle hides part of a disc.
-fn covers(rect: Rect, (at, radius): (Pos2, f32)) -> bool {
-    rect.is_positive() && at.distance(rect.clamp(at)) < radius
 }
 
 /// Start time of the presentation, in seconds.

@@ -1,6 +1,6 @@
 //! The shader panel: the files behind the picture, and their errors.
 
-use super::{author, export, laws, prelude::*, state::SHADER_TAB};
+use super::{author, export, laws, prelude::*};
 use crate::{custom::source_path, text::sentence};
 use {files::files, trouble::troubles};
 
@@ -10,39 +10,33 @@ mod trouble;
 pub use files::words;
 pub use trouble::{Excerpt, consequence, excerpt, report};
 
+/// The note on its tab: the number of errors.
+pub(super) fn note(session: &Session) -> Option<(Severity, String)> {
+    let count = session.shaders.troubles.len();
+    (count > 0).then(|| (Severity::Error, plural(count, "error")))
+}
+
 /// The *Shaders* panel.
-#[derive(Clone, Copy, Debug)]
-pub struct Shader;
-
-impl Panel for Shader {
-    is_panel!(SHADER_TAB, "Shader", Place::Bottom);
-
-    fn note(&self, session: &Session) -> Option<(Severity, String)> {
-        let count = session.shaders.troubles.len();
-        (count > 0).then(|| (Severity::Error, plural(count, "error")))
-    }
-
-    fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let session = context.session();
-        let whole = ui.available_rect_before_wrap();
-        let gap = 12.0;
-        // Problems get more width.
-        let share = if session.shaders.troubles.is_empty() { 0.5 } else { 0.4 };
-        let left = (share * whole.width()).clamp(240.0, 620.0);
-        let columns = whole.split_left_right_at_x(whole.left() + left + gap);
-        ui.painter().vline(columns.1.left(), whole.y_range(), Stroke::new(1.0, Palette::here(ui).line));
-        let (mut list, mut text) = columns;
-        list.max.x -= gap;
-        text.min.x = (text.min.x + gap).min(text.max.x - 64.0);
-        theme::column(ui, list, |ui| files(ui, context));
-        theme::column(ui, text, |ui| {
-            if session.shaders.troubles.is_empty() {
-                well(ui, context);
-            } else {
-                troubles(ui, context);
-            }
-        });
-    }
+pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
+    let whole = ui.available_rect_before_wrap();
+    let gap = 12.0;
+    // Problems get more width.
+    let share = if session.shaders.troubles.is_empty() { 0.5 } else { 0.4 };
+    let left = (share * whole.width()).clamp(240.0, 620.0);
+    let columns = whole.split_left_right_at_x(whole.left() + left + gap);
+    ui.painter().vline(columns.1.left(), whole.y_range(), Stroke::new(1.0, Palette::here(ui).line));
+    let (mut list, mut text) = columns;
+    list.max.x -= gap;
+    text.min.x = (text.min.x + gap).min(text.max.x - 64.0);
+    theme::column(ui, list, |ui| files(ui, context));
+    theme::column(ui, text, |ui| {
+        if session.shaders.troubles.is_empty() {
+            well(ui, context);
+        } else {
+            troubles(ui, context);
+        }
+    });
 }
 
 /// The message about a missing model that a scene refers to.

@@ -3,43 +3,31 @@
 use bevy::ecs::resource::Resource;
 use bevy_egui::egui;
 
-/// The area of the picture between the panels, and the input that belongs to the picture. Written by the panels.
-#[derive(Clone, Debug, PartialEq, Resource)]
-pub struct PictureArea {
-    /// Rectangle of the picture, in points of the panels.
-    pub rect: egui::Rect,
-    /// The part of the picture that the observer sees; the picture extends around it.
-    pub frame: egui::Rect,
-    /// The visible views, if there are several or one has overrides.
-    pub cells: Vec<Cell>,
-    /// Rectangle of the difference map.
-    pub map: Option<egui::Rect>,
-    /// Points of the window per point of the panels.
-    pub zoom: f32,
-    /// True if the pointer is over the picture and no panel, menu or dialog is in between. Anything that moves the
-    /// camera must check this first.
-    pub has_pointer: bool,
-    /// True if keys may steer the picture: no field has the focus and no question is open.
-    pub has_keys: bool,
-    /// True if a menu or a list is open, which the next click elsewhere only closes.
-    pub popup_open: bool,
-    /// Rectangles of badges, caption and axes, which marks avoid.
-    pub written: Vec<egui::Rect>,
-}
+use crate::declared::with_defaults;
 
-impl Default for PictureArea {
-    fn default() -> Self {
-        Self {
-            rect: egui::Rect::NOTHING,
-            frame: egui::Rect::NOTHING,
-            cells: Vec::new(),
-            map: None,
-            zoom: 1.0,
-            has_pointer: false,
-            has_keys: true,
-            popup_open: false,
-            written: Vec::new(),
-        }
+with_defaults! {
+    /// The area of the picture between the panels, and the input that belongs to the picture. Written by the panels.
+    #[derive(Clone, Debug, PartialEq, Resource)]
+    pub struct PictureArea {
+        /// Rectangle of the picture, in points of the panels.
+        pub rect: egui::Rect = egui::Rect::NOTHING,
+        /// The part of the picture that the observer sees; the picture extends around it.
+        pub frame: egui::Rect = egui::Rect::NOTHING,
+        /// The visible views, if there are several or one has overrides.
+        pub cells: Vec<Cell> = Vec::new(),
+        /// Rectangle of the difference map.
+        pub map: Option<egui::Rect> = None,
+        /// Points of the window per point of the panels.
+        pub zoom: f32 = 1.0,
+        /// True if the pointer is over the picture and no panel, menu or dialog is in between. Anything that moves the
+        /// camera must check this first.
+        pub has_pointer: bool = false,
+        /// True if keys may steer the picture: no field has the focus and no question is open.
+        pub has_keys: bool = true,
+        /// True if a menu or a list is open, which the next click elsewhere only closes.
+        pub popup_open: bool = false,
+        /// Rectangles of badges, caption and axes, which marks avoid.
+        pub written: Vec<egui::Rect> = Vec::new(),
     }
 }
 

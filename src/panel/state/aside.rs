@@ -28,15 +28,8 @@ pub(super) struct Shown {
 
 impl Shown {
     pub(super) fn of(view: &View) -> Self {
-        Self {
-            terms: view.terms,
-            channels: view.channels,
-            active: view.active,
-            pinned: view.pinned,
-            pin_number: view.pin_number,
-            bottom_open: view.bottom_open,
-            bottom_tab: view.bottom_tab.clone(),
-        }
+        let View { terms, channels, active, pinned, pin_number, bottom_open, bottom_tab, .. } = view.clone();
+        Self { terms, channels, active, pinned, pin_number, bottom_open, bottom_tab }
     }
 
     pub(super) fn put(self, view: &mut View) {

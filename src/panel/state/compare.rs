@@ -213,7 +213,8 @@ impl Session {
                 let mut all = self.document.variants.clone();
                 let Some(variant) = view.checked_sub(1).and_then(|i| all.get_mut(i)) else { return };
                 *variant = Variant { name: variant.name.take(), ..Variant::default() };
-                self.set_views(all, comparison, "Make a view like A", registry);
+                let step = "Make a view like A";
+                self.edit_here(Edit::Views { variants: all, comparison, step }, registry);
             }
             CompareCommand::Swap(view) => self.swap_views(view, registry),
             CompareCommand::Blink(on) => self.view.blinking = on,
@@ -232,16 +233,6 @@ impl Session {
         }
     }
 
-    fn set_views(
-        &mut self,
-        variants: Vec<Variant>,
-        comparison: Comparison,
-        step: &'static str,
-        registry: &Registry,
-    ) {
-        self.edit_here(Edit::Views { variants, comparison, step }, registry);
-    }
-
     fn add_view(&mut self, layout: Layout, registry: &Registry) {
         let mut all = self.document.variants.clone();
         if all.len() >= MAX_VARIANTS {
@@ -253,7 +244,8 @@ impl Session {
         all.push(Variant { name: None, ..copied });
         let with = all.len();
         let layout = if layout == Layout::Single { Layout::SideBySide } else { layout };
-        self.set_views(all, Comparison { layout, with, ..self.document.comparison }, "Add a view", registry);
+        let comparison = Comparison { layout, with, ..self.document.comparison };
+        self.edit_here(Edit::Views { variants: all, comparison, step: "Add a view" }, registry);
         self.view.active = with.min(self.document.variants.len());
     }
 
@@ -274,7 +266,7 @@ impl Session {
         if all.is_empty() {
             comparison.layout = Layout::Single;
         }
-        self.set_views(all, comparison, "Remove a view", registry);
+        self.edit_here(Edit::Views { variants: all, comparison, step: "Remove a view" }, registry);
         self.view.active = 0;
         let text = format!("Removed view {}.", LETTERS[view]);
         let step = self.last_step();

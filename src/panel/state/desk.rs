@@ -1,8 +1,6 @@
 //! What belongs to the open document besides its scene and file; a lesson sets it aside with the document.
 
-use std::ops::{Deref, DerefMut};
-
-use super::{ModelSlots, OnDisk, Plots, Session, StashedValues};
+use super::{ModelSlots, OnDisk, Plots, StashedValues};
 
 /// What belongs to the open document besides its scene and file.
 #[derive(Clone, Debug, Default)]
@@ -17,16 +15,11 @@ pub struct Desk {
     pub model_slots: ModelSlots,
 }
 
-impl Deref for Session {
-    type Target = Desk;
-
-    fn deref(&self) -> &Desk {
-        &self.desk
-    }
-}
-
-impl DerefMut for Session {
-    fn deref_mut(&mut self) -> &mut Desk {
-        &mut self.desk
+impl Desk {
+    /// The desk of a document with this reflection model.
+    pub(super) fn with(model: &str) -> Self {
+        let mut desk = Self::default();
+        desk.model_slots.take(model);
+        desk
     }
 }

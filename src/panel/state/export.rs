@@ -42,14 +42,17 @@ impl Session {
         self.note(Note::new(Severity::Info, text).offering("Open the folder", reveal));
     }
 
+    /// Says what there is to say about a file that was written, and that it was.
+    pub(super) fn note_written(&mut self, notes: Vec<String>, text: String, path: &Path) {
+        notes.into_iter().for_each(|note| self.say(Severity::Info, note));
+        self.note_file(text, path);
+    }
+
     /// Reports the end of an export: its notes, or why it failed, one sentence each.
     pub fn exported(&mut self, id: &str, path: PathBuf, outcome: Result<Vec<String>, Vec<String>>) {
         let name = form(id).map_or("", |form: &Form| form.name);
         match outcome {
-            Ok(notes) => {
-                notes.into_iter().for_each(|note| self.say(Severity::Info, note));
-                self.note_file(format!("Exported as {name} to {}.", path.shown()), &path);
-            }
+            Ok(notes) => self.note_written(notes, format!("Exported as {name} to {}.", path.shown()), &path),
             // The latest message is on top.
             Err(reasons) => {
                 reasons.into_iter().rev().for_each(|reason| self.say(Severity::Error, reason));

@@ -119,19 +119,15 @@ impl Session {
     /// the scene's new folder.
     fn keep_files(&mut self, path: &Path) {
         let folder = path.parent().unwrap_or(Path::new(""));
-        let name = "Place of a file";
-        for i in 0..self.document.lights.len() {
-            let mut light = self.document.lights[i].clone();
-            if see_from(&mut light.parameters, folder) {
-                self.document.change(name, Extent::Light(i), self.selection, |scene| scene.lights[i] = light);
-            }
-        }
-        for i in 0..self.document.objects.len() {
-            let mut object = self.document.objects[i].clone();
-            if see_from(&mut object.shape, folder) {
-                self.document
-                    .change(name, Extent::Object(i), self.selection, |scene| scene.objects[i] = object);
-            }
+        let mut scene = self.document.scene().clone();
+        let lights = scene.lights.iter_mut().map(|light| &mut light.parameters).enumerate();
+        let lights = lights.map(|(i, values)| (Extent::Light(i), values));
+        let objects = scene.objects.iter_mut().map(|object| &mut object.shape).enumerate();
+        let objects = objects.map(|(i, values)| (Extent::Object(i), values));
+        let moved =
+            lights.chain(objects).filter_map(|(part, values)| see_from(values, folder).then_some(part));
+        for part in moved.collect::<Vec<_>>() {
+            self.document.change("Place of a file", part, self.selection, |to| part.copy(&scene, to));
         }
         self.outside.allow(self.document.files());
     }

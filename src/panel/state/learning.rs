@@ -8,7 +8,7 @@ use std::{
 
 use super::{
     Action, Aside, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Note, OpenLesson,
-    PLOTS_TAB, Pin, Plots, Session, Severity, View,
+    PLOTS_TAB, Pin, Plots, Progress, Session, Severity, View,
     aside::Shown,
     follow::follow_registry,
     open_lesson::{Entered, problem_of},
@@ -55,18 +55,12 @@ impl Session {
             LessonCommand::Previous => self.return_to(step - 1, registry),
             LessonCommand::Again => self.return_to(step, registry),
             LessonCommand::GoTo(step) => self.return_to(step, registry),
-            LessonCommand::Answer(answer) => {
-                let progress = &mut self.progress;
-                self.requested.extend(self.lesson.iter_mut().flat_map(|open| open.choose(answer, progress)));
-            }
+            LessonCommand::Answer(answer) => self.record(|open, progress| open.choose(answer, progress)),
             LessonCommand::Point(pin) => {
                 self.view.pin(Some(pin));
                 self.view.unfold(EXPLAIN_TAB);
             }
-            LessonCommand::Solved(step) => {
-                let progress = &mut self.progress;
-                self.requested.extend(self.lesson.iter_mut().flat_map(|open| open.solve(step, progress)));
-            }
+            LessonCommand::Solved(step) => self.record(|open, progress| open.solve(step, progress)),
             LessonCommand::Hint => {
                 self.lesson.iter_mut().for_each(|lesson| lesson.hint = !lesson.hint);
             }
@@ -74,6 +68,12 @@ impl Session {
                 self.lesson.iter_mut().for_each(|lesson| lesson.tree_open = open);
             }
         }
+    }
+
+    /// Records what happened in the open lesson.
+    fn record(&mut self, what: impl FnOnce(&mut OpenLesson, &mut Progress) -> Vec<Effect>) {
+        let effects = self.lesson.as_mut().map(|open| what(open, &mut self.progress));
+        self.requested.extend(effects.into_iter().flatten());
     }
 
     /// Opens a lesson at the learner's last step; a finished lesson starts again.
@@ -176,8 +176,7 @@ impl Session {
         };
         let Some(open) = &mut self.lesson else { return };
         open.entered.insert(open.step, entered);
-        let noted = open.note_step(&mut self.progress);
-        self.requested.extend(noted);
+        self.record(OpenLesson::note_step);
     }
 
     /// Shows a scene with a new history, unless it is shown already.
@@ -250,8 +249,7 @@ impl Session {
         entered.shown.put(&mut self.view);
         self.plots = entered.plots;
         self.select(entered.selection);
-        let progress = &mut self.progress;
-        self.requested.extend(self.lesson.iter_mut().flat_map(|open| open.note_step(progress)));
+        self.record(OpenLesson::note_step);
     }
 
     /// The task of the current step, unless it is done.

@@ -80,10 +80,30 @@ impl Session {
         registry: &Registry,
     ) {
         let letter = LETTERS.get(view).copied().unwrap_or("?");
-        let found = match self.applicable(scene, letter, what, outcome) {
-            Ok(found) => found,
-            Err((severity, text)) => return self.say(severity, text),
+        let unit = what.unit();
+        // The arrangement of the views does not matter.
+        let is_same = || Scene { comparison: self.document.comparison, ..scene.clone() } == *self.document;
+        let (severity, text) = match outcome {
+            None => (Severity::Error, format!("The match of view {letter} failed: an internal error.")),
+            Some(Err(MatchError::Cancelled)) => {
+                (Severity::Info, format!("The match of view {letter} was cancelled; nothing was changed."))
+            }
+            Some(Err(why)) => (Severity::Error, format!("View {letter} was not matched: {why}.")),
+            Some(Ok(_)) if !is_same() => {
+                let what = format!("The scene was changed while view {letter} was matched");
+                (Severity::Warning, format!("{what}, so nothing was applied. Match it again."))
+            }
+            Some(Ok(found)) if found.values.is_empty() => {
+                let what = format!("View {letter} stays as it is: no other values come nearer to view A.");
+                (Severity::Info, format!("{what} Error: {} ({unit}).", digits(found.before)))
+            }
+            Some(Ok(found)) => return self.apply_match(view, what, found, registry),
         };
+        self.say(severity, text);
+    }
+
+    fn apply_match(&mut self, view: usize, what: What, found: Match, registry: &Registry) {
+        let letter = LETTERS.get(view).copied().unwrap_or("?");
         let label = |name: &&'static str| registry.material_parameter(name).map_or(*name, |p| p.label);
         let values: Vec<_> =
             found.values.iter().map(|(name, value)| format!("{} {value}", label(name))).collect();
@@ -107,41 +127,6 @@ impl Session {
             );
             let step = self.last_step();
             self.messages.offer_undo(text, step);
-        }
-    }
-
-    /// The match of a view, unless there is nothing to apply; then why.
-    fn applicable(
-        &self,
-        scene: &Scene,
-        letter: &str,
-        what: What,
-        outcome: Option<Result<Match, MatchError>>,
-    ) -> Result<Match, (Severity, String)> {
-        // The arrangement of the views does not matter.
-        let is_same = || Scene { comparison: self.document.comparison, ..scene.clone() } == *self.document;
-        match outcome {
-            None => Err((Severity::Error, format!("The match of view {letter} failed: an internal error."))),
-            Some(Err(MatchError::Cancelled)) => Err((
-                Severity::Info,
-                format!("The match of view {letter} was cancelled; nothing was changed."),
-            )),
-            Some(Err(why)) => Err((Severity::Error, format!("View {letter} was not matched: {why}."))),
-            Some(Ok(_)) if !is_same() => Err((
-                Severity::Warning,
-                format!(
-                    "The scene was changed while view {letter} was matched, so nothing was applied. Match it again."
-                ),
-            )),
-            Some(Ok(found)) if found.values.is_empty() => Err((
-                Severity::Info,
-                format!(
-                    "View {letter} stays as it is: no other values come nearer to view A. Error: {} ({}).",
-                    digits(found.before),
-                    what.unit()
-                ),
-            )),
-            Some(Ok(found)) => Ok(found),
         }
     }
 }

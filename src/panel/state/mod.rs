@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 
-use bevy::ecs::resource::Resource;
+use bevy::prelude::{Deref, DerefMut, Resource};
 
 pub use action::{Action, Answer, ExportCommand, ModelCommand};
 pub use area::{Cell, PictureArea};
@@ -43,10 +43,11 @@ pub use view::{HandleChange, HandleMode, Labels, MESSAGES_TAB, PLOTS_TAB, SHADER
 use seen::Seen;
 
 use crate::{
+    declared::with_defaults,
     document::{Document, Selection},
     library::status::ShaderStatus,
     parameter::Outside,
-    scene::Scene,
+    scene::{Observer, Scene},
 };
 
 mod action;
@@ -91,59 +92,56 @@ mod taking;
 mod terms;
 mod view;
 
-/// The state of the window. What belongs to the open document besides its scene and file stands in the [`Desk`].
-#[derive(Clone, Debug, Resource)]
-pub struct Session {
-    /// The document: the scene and its edit history.
-    pub document: Document,
-    /// The file that the document came from or was last saved to.
-    pub path: Option<PathBuf>,
-    /// The part shown in the properties panel.
-    pub selection: Selection,
-    desk: Desk,
-    /// The part being renamed in the scene list.
-    pub renaming: Option<Selection>,
-    /// View settings.
-    pub view: View,
-    /// The open lesson; its scene is shown while the user's own document is set aside.
-    pub lesson: Option<OpenLesson>,
-    /// A lesson that is interrupted by a question about the user's own document.
-    parked: Option<Box<OpenLesson>>,
-    /// Progress in the lessons.
-    pub progress: Progress,
-    /// Messages to the user.
-    pub messages: Messages,
-    /// Questions to the user.
-    pub questions: Questions,
-    /// The files outside their folders that scenes may name.
-    pub outside: Outside,
-    /// What is kept between sessions.
-    pub settings: Settings,
-    /// The keys of the user's own that are in force.
-    pub keys: OwnKeys,
-    /// Facts that the app provides without marking the session as changed.
-    pub facts: Facts,
-    /// Folders and problems of the shaders, provided by the app.
-    pub shaders: ShaderStatus,
-    /// The writing of custom models and shaders.
-    pub authoring: Authoring,
-    /// The match that is about to start.
-    pub match_draft: Option<MatchDraft>,
-    /// The options of a picture or a sheet that is about to be saved.
-    pub take_draft: Option<TakeDraft>,
-    /// The available panels, for the menus; updated when they are shown.
-    pub panels: Vec<PanelInfo>,
-    /// A dialog to open on behalf of code other than the panels: an action that was pending until the document was
-    /// saved.
-    pub wanted_dialog: Option<Effect>,
-    seen: Seen,
-    /// The effects that the action has requested so far.
-    requested: Vec<Effect>,
-}
-
-impl Default for Session {
-    fn default() -> Self {
-        Self::new(Scene::default())
+with_defaults! {
+    /// The state of the window. What belongs to the open document besides its scene and file stands in the [`Desk`].
+    #[derive(Clone, Debug, Deref, DerefMut, Resource)]
+    pub struct Session {
+        /// The document: the scene and its edit history.
+        pub document: Document = Document::new(Scene::default()),
+        /// The file that the document came from or was last saved to.
+        pub path: Option<PathBuf> = None,
+        /// The part shown in the properties panel.
+        pub selection: Selection = Selection::Object(0),
+        #[deref]
+        desk: Desk = Desk::with(&Scene::default().reflection_model),
+        /// The part being renamed in the scene list.
+        pub renaming: Option<Selection> = None,
+        /// View settings.
+        pub view: View = View::default(),
+        /// The open lesson; its scene is shown while the user's own document is set aside.
+        pub lesson: Option<OpenLesson> = None,
+        /// A lesson that is interrupted by a question about the user's own document.
+        parked: Option<Box<OpenLesson>> = None,
+        /// Progress in the lessons.
+        pub progress: Progress = Progress::default(),
+        /// Messages to the user.
+        pub messages: Messages = Messages::default(),
+        /// Questions to the user.
+        pub questions: Questions = Questions::default(),
+        /// The files outside their folders that scenes may name.
+        pub outside: Outside = Outside::default(),
+        /// What is kept between sessions.
+        pub settings: Settings = Settings::default(),
+        /// The keys of the user's own that are in force.
+        pub keys: OwnKeys = OwnKeys::default(),
+        /// Facts that the app provides without marking the session as changed.
+        pub facts: Facts = Facts::at(&Observer::default()),
+        /// Folders and problems of the shaders, provided by the app.
+        pub shaders: ShaderStatus = ShaderStatus::default(),
+        /// The writing of custom models and shaders.
+        pub authoring: Authoring = Authoring::default(),
+        /// The match that is about to start.
+        pub match_draft: Option<MatchDraft> = None,
+        /// The options of a picture or a sheet that is about to be saved.
+        pub take_draft: Option<TakeDraft> = None,
+        /// The available panels, for the menus; updated when they are shown.
+        pub panels: Vec<PanelInfo> = Vec::new(),
+        /// A dialog to open on behalf of code other than the panels: an action that was pending until the document was
+        /// saved.
+        pub wanted_dialog: Option<Effect> = None,
+        seen: Seen = Seen::default(),
+        /// The effects that the action has requested so far.
+        requested: Vec<Effect> = Vec::new(),
     }
 }
 
@@ -151,33 +149,9 @@ impl Session {
     /// A session with a scene that has no file.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
-        let mut session = Self {
-            facts: Facts::at(&scene.observer),
-            document: Document::new(scene),
-            path: None,
-            selection: Selection::Room,
-            desk: Desk::default(),
-            renaming: None,
-            view: View::default(),
-            lesson: None,
-            parked: None,
-            progress: Progress::default(),
-            messages: Messages::default(),
-            questions: Questions::default(),
-            outside: Outside::default(),
-            settings: Settings::default(),
-            keys: OwnKeys::default(),
-            shaders: ShaderStatus::default(),
-            authoring: Authoring::default(),
-            match_draft: None,
-            take_draft: None,
-            panels: Vec::new(),
-            wanted_dialog: None,
-            seen: Seen::default(),
-            requested: Vec::new(),
-        };
+        let (facts, desk) = (Facts::at(&scene.observer), Desk::with(&scene.reflection_model));
+        let mut session = Self { document: Document::new(scene), facts, desk, ..Self::default() };
         session.select_first();
-        session.desk.model_slots.take(&session.document.reflection_model);
         session
     }
 }

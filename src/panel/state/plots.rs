@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::{Session, Severity};
 use crate::{
     curves::{Channel, Kind, Style, draw::Line},
+    declared::with_defaults,
     document::Selection,
     files::Shown as _,
     optics::colour::Encoding,
@@ -53,41 +54,27 @@ pub struct PinnedCurve {
     pub style: Style,
 }
 
-/// Display options of the plots.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plots {
-    /// The plotted quantity.
-    pub kind: Kind,
-    /// Angle between light and normal, in degrees.
-    pub theta_i: f64,
-    /// Azimuth of the plane from the tangent, in degrees.
-    pub phi_i: f64,
-    /// The channel; `None` for luminance in curves and for colour in slices.
-    pub channel: Option<Channel>,
-    /// True for a logarithmic axis.
-    pub log: bool,
-    /// True if the curve of the selected object is shown.
-    pub live: bool,
-    /// Colour and dash pattern of that curve.
-    pub live_style: Style,
-    /// Pinned and added curves.
-    pub pins: Vec<PinnedCurve>,
-    next: u64,
-}
-
-impl Default for Plots {
-    fn default() -> Self {
-        Self {
-            kind: Kind::Polar,
-            theta_i: 45.0,
-            phi_i: 0.0,
-            channel: None,
-            log: false,
-            live: true,
-            live_style: Style::nth(0),
-            pins: Vec::new(),
-            next: 0,
-        }
+with_defaults! {
+    /// Display options of the plots.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Plots {
+        /// The plotted quantity.
+        pub kind: Kind = Kind::Polar,
+        /// Angle between light and normal, in degrees.
+        pub theta_i: f64 = 45.0,
+        /// Azimuth of the plane from the tangent, in degrees.
+        pub phi_i: f64 = 0.0,
+        /// The channel; `None` for luminance in curves and for colour in slices.
+        pub channel: Option<Channel> = None,
+        /// True for a logarithmic axis.
+        pub log: bool = false,
+        /// True if the curve of the selected object is shown.
+        pub live: bool = true,
+        /// Colour and dash pattern of that curve.
+        pub live_style: Style = Style::nth(0),
+        /// Pinned and added curves.
+        pub pins: Vec<PinnedCurve> = Vec::new(),
+        next: u64 = 0,
     }
 }
 
@@ -183,8 +170,7 @@ impl Session {
     pub fn plot_written(&mut self, path: PathBuf, outcome: Result<Vec<String>, String>) {
         match outcome {
             Ok(notes) => {
-                notes.into_iter().for_each(|note| self.say(Severity::Info, note));
-                self.note_file(format!("The plot was written to {}.", path.shown()), &path);
+                self.note_written(notes, format!("The plot was written to {}.", path.shown()), &path);
             }
             Err(why) => self.say(Severity::Error, format!("The plot was not written: {why}.")),
         }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::{GivenKeys, OwnKeys, PictureOptions, Session, SheetOptions};
+use crate::declared::with_defaults;
 
 /// Maximum length of the list of recent files.
 pub const RECENT_FILES: usize = 10;
@@ -29,40 +30,42 @@ pub enum ThemeChoice {
     Light,
 }
 
-/// Settings that are kept between sessions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Settings {
-    /// Light or dark theme.
-    pub theme: ThemeChoice,
-    /// Interface scale, in per cent: one of [`SCALES`]. Earlier versions stored only whether type was large.
-    #[serde(alias = "large_type", deserialize_with = "scale")]
-    pub scale: u16,
-    /// Width of the scene list, in points.
-    pub left_width: f32,
-    /// Width of a lesson, in points.
-    pub lesson_width: f32,
-    /// Width of the properties panel, in points.
-    pub right_width: f32,
-    /// Height of the bottom strip, in points.
-    pub bottom_height: f32,
-    /// Ids of hidden guest panels.
-    pub hidden_panels: Vec<String>,
-    /// Ids of folded guest panels.
-    pub folded_panels: Vec<String>,
-    /// Id of the guest panel that the user chose in the bottom strip. The panel may be unknown to this window.
-    pub guest_tab: Option<String>,
-    /// True if saved or copied pictures have a caption.
-    pub picture_caption: bool,
-    /// The other options of saved pictures.
-    pub picture: PictureOptions,
-    /// Options of saved sheets.
-    pub sheet: SheetOptions,
-    /// Files opened or saved, latest first.
-    pub recent_files: Vec<PathBuf>,
-    /// Keys of the user's own, by the ids of commands. The window only reads them.
-    #[serde(skip_serializing_if = "GivenKeys::is_empty")]
-    pub keys: GivenKeys,
+with_defaults! {
+    /// Settings that are kept between sessions.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct Settings {
+        /// Light or dark theme.
+        pub theme: ThemeChoice = ThemeChoice::Dark,
+        /// Interface scale, in per cent: one of [`SCALES`]. Earlier versions stored only whether type was large.
+        #[serde(alias = "large_type", deserialize_with = "scale")]
+        pub scale: u16 = 100,
+        /// Width of the scene list, in points.
+        pub left_width: f32 = 208.0,
+        /// Width of a lesson, in points.
+        pub lesson_width: f32 = 340.0,
+        /// Width of the properties panel, in points.
+        pub right_width: f32 = 344.0,
+        /// Height of the bottom strip, in points.
+        pub bottom_height: f32 = 144.0,
+        /// Ids of hidden guest panels.
+        pub hidden_panels: Vec<String> = Vec::new(),
+        /// Ids of folded guest panels.
+        pub folded_panels: Vec<String> = Vec::new(),
+        /// Id of the guest panel that the user chose in the bottom strip. The panel may be unknown to this window.
+        pub guest_tab: Option<String> = None,
+        /// True if saved or copied pictures have a caption.
+        pub picture_caption: bool = true,
+        /// The other options of saved pictures.
+        pub picture: PictureOptions = PictureOptions::default(),
+        /// Options of saved sheets.
+        pub sheet: SheetOptions = SheetOptions::default(),
+        /// Files opened or saved, latest first.
+        pub recent_files: Vec<PathBuf> = Vec::new(),
+        /// Keys of the user's own, by the ids of commands. The window only reads them.
+        #[serde(skip_serializing_if = "GivenKeys::is_empty")]
+        pub keys: GivenKeys = GivenKeys::default(),
+    }
 }
 
 fn scale<'de, D: Deserializer<'de>>(value: D) -> Result<u16, D::Error> {
@@ -82,27 +85,6 @@ fn scale<'de, D: Deserializer<'de>>(value: D) -> Result<u16, D::Error> {
         }
         Scale::Percent(percent) => percent,
     }))
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            theme: ThemeChoice::Dark,
-            scale: 100,
-            left_width: 208.0,
-            lesson_width: 340.0,
-            right_width: 344.0,
-            bottom_height: 144.0,
-            hidden_panels: Vec::new(),
-            folded_panels: Vec::new(),
-            guest_tab: None,
-            picture_caption: true,
-            picture: PictureOptions::default(),
-            sheet: SheetOptions::default(),
-            recent_files: Vec::new(),
-            keys: GivenKeys::default(),
-        }
-    }
 }
 
 impl Settings {

@@ -1,24 +1,18 @@
 //! Severities.
 
-/// Severity of a message.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Severity {
-    /// Information.
-    Info,
-    /// Something is not as requested, but the picture is correct.
-    Warning,
-    /// Something failed.
-    Error,
-}
+use crate::declared::in_words;
 
-impl Severity {
-    /// Name of the severity.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Info => "note",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        }
+in_words! {
+    /// Severity of a message.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum Severity {
+        /// Information.
+        Info = "note",
+        /// Something is not as requested, but the picture is correct.
+        Warning = "warning",
+        /// Something failed.
+        Error = "error",
     }
+    /// Name of the severity.
+    name
 }

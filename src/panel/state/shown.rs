@@ -90,19 +90,15 @@ impl Session {
     /// The edit that selects a reflection model at the top of the window.
     #[must_use]
     pub fn edit_model(&self, id: &str) -> Edit {
-        match self.model_override() {
-            Some((i, _)) => Edit::set(Part::Object(i), Object::reflection_model, id.to_owned()),
-            None => Edit::set(Part::Scene, Scene::reflection_model, id.to_owned()),
-        }
+        let part = self.model_override().map_or(Part::Scene, |(i, _)| Part::Object(i));
+        Edit::set(part, Scene::reflection_model, id)
     }
 
     /// The edit that selects a shading model at the top of the window.
     #[must_use]
     pub fn edit_shading_model(&self, id: &str) -> Edit {
-        match self.shading_override() {
-            Some((i, _)) => Edit::set(Part::Object(i), Object::shading_model, id.to_owned()),
-            None => Edit::set(Part::Scene, Scene::shading_model, id.to_owned()),
-        }
+        let part = self.shading_override().map_or(Part::Scene, |(i, _)| Part::Object(i));
+        Edit::set(part, Scene::shading_model, id)
     }
 
     /// The terms that the picture can isolate, and all of them together; terms that are 0 everywhere are left out.

@@ -5,7 +5,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::{
     Effect, LobeChoice, Pin, Place, SCALES, Session, Settings, ThemeChoice, nearest_scale, probe::EXPLAIN_TAB,
 };
-use crate::{channel::DebugChannel, declared::choice, optics::TermSelection, scene::variant::MAX_VARIANTS};
+use crate::{
+    channel::DebugChannel,
+    declared::{choice, with_defaults},
+    optics::TermSelection,
+    scene::variant::MAX_VARIANTS,
+};
 
 /// Id of the panel that shows the messages.
 pub const MESSAGES_TAB: &str = "messages";
@@ -43,93 +48,62 @@ choice! {
     }
 }
 
-/// View settings.
-#[derive(Clone, Debug, PartialEq)]
-pub struct View {
-    /// True if the strip of examples is shown below the picture.
-    pub examples_open: bool,
-    /// True if the picture fills the screen, with the equation over it and without panels.
-    pub presenting: bool,
-    /// True if the window fills the screen.
-    pub fullscreen: bool,
-    /// Value of `fullscreen` before the presentation started.
-    pub fullscreen_before: bool,
-    /// True if lights have markers in the picture.
-    pub show_gizmos: bool,
-    /// True if the selection has handles in the picture.
-    pub show_handles: bool,
-    /// Effect of the handles.
-    pub handles: HandleMode,
-    /// True if the outline of the room is drawn.
-    pub show_room: bool,
-    /// When objects have labels.
-    pub labels: Labels,
-    /// True if only parameters that differ from their defaults have knobs.
-    pub only_changed: bool,
-    /// True if clipped pixels are marked.
-    pub show_clipping: bool,
-    /// Visible terms of the equation.
-    pub terms: TermSelection,
-    /// Debug channels that replace the pictures of the views, view A first.
-    pub channels: [Option<DebugChannel>; MAX_VARIANTS + 1],
-    /// The active view, which the panels show and change: 0 is the scene, 1 view B.
-    pub active: usize,
-    /// True while the other view is shown instead of view A.
-    pub blinking: bool,
-    /// True if the strip at the bottom is unfolded.
-    pub bottom_open: bool,
-    /// Id of the panel in the bottom strip.
-    pub bottom_tab: String,
-    /// True if the scene list at the left is shown.
-    pub left_open: bool,
-    /// True if the properties at the right are shown.
-    pub right_open: bool,
-    /// The pinned pixel, which stays explained wherever the pointer is.
-    pub pinned: Option<Pin>,
-    /// Unique number of the pin.
-    pub pin_number: u64,
-    /// Display options of the lobe at the explained point.
-    pub lobe: LobeChoice,
-    /// True if the list of keyboard shortcuts is open.
-    pub keys_open: bool,
-    /// True if the *About* window is open.
-    pub about_open: bool,
-    /// True if the chooser of reflection models is open.
-    pub chooser_open: bool,
-    /// True if the finder of commands is open.
-    pub finder_open: bool,
-}
-
-impl Default for View {
-    fn default() -> Self {
-        Self {
-            examples_open: false,
-            presenting: false,
-            fullscreen: false,
-            fullscreen_before: false,
-            show_gizmos: true,
-            show_handles: true,
-            handles: HandleMode::Move,
-            show_room: true,
-            labels: Labels::Off,
-            only_changed: false,
-            show_clipping: false,
-            terms: TermSelection::All,
-            channels: [None; MAX_VARIANTS + 1],
-            active: 0,
-            blinking: false,
-            bottom_open: false,
-            bottom_tab: MESSAGES_TAB.to_owned(),
-            left_open: true,
-            right_open: true,
-            pinned: None,
-            pin_number: 0,
-            lobe: LobeChoice::default(),
-            keys_open: false,
-            about_open: false,
-            chooser_open: false,
-            finder_open: false,
-        }
+with_defaults! {
+    /// View settings.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct View {
+        /// True if the strip of examples is shown below the picture.
+        pub examples_open: bool = false,
+        /// True if the picture fills the screen, with the equation over it and without panels.
+        pub presenting: bool = false,
+        /// True if the window fills the screen.
+        pub fullscreen: bool = false,
+        /// Value of `fullscreen` before the presentation started.
+        pub fullscreen_before: bool = false,
+        /// True if lights have markers in the picture.
+        pub show_gizmos: bool = true,
+        /// True if the selection has handles in the picture.
+        pub show_handles: bool = true,
+        /// Effect of the handles.
+        pub handles: HandleMode = HandleMode::Move,
+        /// True if the outline of the room is drawn.
+        pub show_room: bool = true,
+        /// When objects have labels.
+        pub labels: Labels = Labels::Off,
+        /// True if only parameters that differ from their defaults have knobs.
+        pub only_changed: bool = false,
+        /// True if clipped pixels are marked.
+        pub show_clipping: bool = false,
+        /// Visible terms of the equation.
+        pub terms: TermSelection = TermSelection::All,
+        /// Debug channels that replace the pictures of the views, view A first.
+        pub channels: [Option<DebugChannel>; MAX_VARIANTS + 1] = [None; MAX_VARIANTS + 1],
+        /// The active view, which the panels show and change: 0 is the scene, 1 view B.
+        pub active: usize = 0,
+        /// True while the other view is shown instead of view A.
+        pub blinking: bool = false,
+        /// True if the strip at the bottom is unfolded.
+        pub bottom_open: bool = false,
+        /// Id of the panel in the bottom strip.
+        pub bottom_tab: String = MESSAGES_TAB.to_owned(),
+        /// True if the scene list at the left is shown.
+        pub left_open: bool = true,
+        /// True if the properties at the right are shown.
+        pub right_open: bool = true,
+        /// The pinned pixel, which stays explained wherever the pointer is.
+        pub pinned: Option<Pin> = None,
+        /// Unique number of the pin.
+        pub pin_number: u64 = 0,
+        /// Display options of the lobe at the explained point.
+        pub lobe: LobeChoice = LobeChoice::default(),
+        /// True if the list of keyboard shortcuts is open.
+        pub keys_open: bool = false,
+        /// True if the *About* window is open.
+        pub about_open: bool = false,
+        /// True if the chooser of reflection models is open.
+        pub chooser_open: bool = false,
+        /// True if the finder of commands is open.
+        pub finder_open: bool = false,
     }
 }
 

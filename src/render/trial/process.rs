@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 use super::verdict::Verdict;
 use crate::{
     caught::{lock, unpoisoned},
+    declared::with_defaults,
     files::{self, Shown as _, words},
     shader::{
         check::{ShaderProblem, locate},
@@ -38,19 +39,14 @@ const PACE: Duration = Duration::from_millis(50);
 /// Maximum number of answers kept in case they are requested again.
 const KEPT: usize = 256;
 
-/// The limits of one trial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Budget {
-    /// Time from the request to the answer.
-    pub time: Duration,
-    /// Memory of the process in bytes; known only on Linux.
-    pub memory: u64,
-}
-
-impl Default for Budget {
-    /// A hundred times the needs of the shipped models.
-    fn default() -> Self {
-        Self { time: Duration::from_secs(10), memory: 1 << 30 }
+with_defaults! {
+    /// The limits of one trial; by default a hundred times the needs of the shipped models.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Budget {
+        /// Time from the request to the answer.
+        pub time: Duration = Duration::from_secs(10),
+        /// Memory of the process in bytes; known only on Linux.
+        pub memory: u64 = 1 << 30,
     }
 }
 

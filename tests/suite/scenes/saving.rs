@@ -12,7 +12,7 @@ use lights_camera_models::{
     scene::{
         Object, Scene,
         load::{self, Defaults, Stamp},
-        save::{self, Expected, SaveError},
+        save::{self, Expected, SaveError, Unwritten},
     },
 };
 
@@ -47,14 +47,14 @@ fn a_file_that_changed_on_disk_is_not_overwritten_unless_the_user_says_so() {
     let other = full_scene().to_string();
     fs::write(&file, &other).expect("written");
     let error = write(&file, &Scene::default(), Expected::Unchanged(stamp)).expect_err("changed");
-    assert!(matches!(error, SaveError::Changed { .. }), "{error}");
+    assert!(matches!(error, SaveError { why: Unwritten::Changed, .. }), "{error}");
     assert!(error.to_string().ends_with("changed on disk since it was read; it was not overwritten"));
     assert_eq!(fs::read_to_string(&file).expect("readable"), other);
     write(&file, &Scene::default(), Expected::Anything).expect("forced");
     assert_eq!(load(&file).scene, Scene::default());
     fs::remove_file(&file).expect("removed");
     let error = write(&file, &Scene::default(), Expected::Unchanged(stamp)).expect_err("gone");
-    assert!(matches!(error, SaveError::Gone { .. }), "{error}");
+    assert!(matches!(error, SaveError { why: Unwritten::Gone, .. }), "{error}");
     assert_eq!(names(folder.path()), [""; 0]);
 }
 

@@ -7,6 +7,7 @@ use super::{
     problems::Problems,
 };
 use crate::{
+    declared::in_words,
     parameter::Parameter,
     registry::Registry,
     scene::{
@@ -22,35 +23,24 @@ use crate::{
 /// The name of the first column.
 pub(super) const PART: &str = "part";
 
-/// The kinds of rows, by the names in the first column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
-    Scene,
-    Light,
-    Observer,
-    Object,
+in_words! {
+    /// The kinds of rows, by the names in the first column.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(super) enum Part {
+        Scene = "scene",
+        Light = "light",
+        Observer = "observer",
+        Object = "object",
+    }
+    name
 }
 
 impl Part {
     pub(super) const ALL: [Self; 4] = [Self::Scene, Self::Light, Self::Observer, Self::Object];
 
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Scene => "scene",
-            Self::Light => "light",
-            Self::Observer => "observer",
-            Self::Object => "object",
-        }
-    }
-
     /// The fields of the part.
     fn fields(self) -> &'static [&'static Field] {
-        match self {
-            Self::Scene => Scene::FIELDS,
-            Self::Light => Light::FIELDS,
-            Self::Observer => Observer::FIELDS,
-            Self::Object => Object::FIELDS,
-        }
+        [Scene::FIELDS, Light::FIELDS, Observer::FIELDS, Object::FIELDS][self as usize]
     }
 }
 

@@ -8,20 +8,23 @@ use super::{
     rows::decimal_commas,
 };
 use crate::{
+    declared::with_defaults,
     registry::Registry,
     text::json::{self, Ast, STRICT},
 };
 
-/// The properties of an existing table that are kept when it is written again.
-struct Manner {
-    separator: char,
-    line_end: &'static str,
-    has_mark: bool,
-    decimal_comma: bool,
-    /// The names of the columns.
-    columns: Vec<String>,
-    /// The remarks, each with the part and index of the row after it; `None` for those at the end.
-    remarks: Vec<(Option<Place>, String)>,
+with_defaults! {
+    /// The properties of an existing table that are kept when it is written again.
+    struct Manner {
+        separator: char = ',',
+        line_end: &'static str = "\n",
+        has_mark: bool = false,
+        decimal_comma: bool = false,
+        /// The names of the columns.
+        columns: Vec<String> = Vec::new(),
+        /// The remarks, each with the part and index of the row after it; `None` for those at the end.
+        remarks: Vec<(Option<Place>, String)> = Vec::new(),
+    }
 }
 
 /// The position of a row: the heading, or the n-th row of a part.
@@ -29,19 +32,6 @@ struct Manner {
 enum Place {
     Heading,
     Row(Part, usize),
-}
-
-impl Default for Manner {
-    fn default() -> Self {
-        Self {
-            separator: ',',
-            line_end: "\n",
-            has_mark: false,
-            decimal_comma: false,
-            columns: Vec::new(),
-            remarks: Vec::new(),
-        }
-    }
 }
 
 impl Manner {
@@ -167,8 +157,9 @@ fn flatten(
             let column = known.iter().find(|column| column.name == name);
             let each = column.map_or_else(Vec::new, Column::components);
             let has = |name: &str| manner.columns.iter().any(|column| column == name);
-            let is_spread = column.is_some_and(Column::is_spread);
-            if each.iter().any(|name| has(name)) || is_spread && !has(name) {
+            let is_spread =
+                each.iter().any(|name| has(name)) || column.is_some_and(Column::is_spread) && !has(name);
+            if is_spread {
                 cells.extend(each.into_iter().zip(list.elements.iter().map(number)));
             } else {
                 let all: Vec<_> = list.elements.iter().map(number).collect();
