@@ -377,7 +377,7 @@ fn fits(arguments: &Arguments, file: &Path) -> Outcome {
     if arguments.caption {
         return usage(format!("--caption draws display codes, but {name} holds light; use -o {png}"));
     }
-    let Size { width, height } = arguments.size;
+    let [width, height] = arguments.size;
     if width as usize * height as usize > MAX_PIXELS {
         return usage(format!(
             "{width}x{height} are more pixels than {name} can hold; at most {MAX_PIXELS} are possible"
@@ -396,7 +396,7 @@ fn holds(arguments: &Arguments, plan: &Plan, file: &Path, registry: &Registry) -
             "{name} holds the light of one view, but the scene shows {count}; --view A draws one alone"
         ));
     };
-    let Size { width, height } = arguments.size;
+    let [width, height] = arguments.size;
     let layers = layers(&part.scene, part.terms, arguments.kinds(), registry);
     match too_large(&layers, format, [width, height]) {
         Some(why) => Err(format!("{}: {why}; choose fewer --layers or a smaller --size", file.shown())),

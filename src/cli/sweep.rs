@@ -9,7 +9,7 @@ use super::{
     Options, Outcome, gauged,
     light_samples::Sampling,
     outputs,
-    render::{Size, cpu_can_draw, samples},
+    render::{cpu_can_draw, samples, sides},
     scenes::Source,
     views::{self, Maps},
     workshop::{Workshop, drawable},
@@ -54,8 +54,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "RATE", default_value = "12", value_parser = rate)]
     fps: u32,
     /// Size of each picture in pixels; by default 1280x720 in a folder, 640x360 in a film, and 320x180 among others
-    #[arg(long, value_name = "WxH")]
-    size: Option<Size>,
+    #[arg(long, value_name = "WxH", value_parser = sides)]
+    size: Option<[u32; 2]>,
     /// Samples per pixel: 1, or 4 for smooth edges
     #[arg(long, default_value = "4", value_parser = samples)]
     samples: u32,
@@ -199,7 +199,7 @@ impl Job<'_> {
     fn settings(&self) -> Settings {
         let Arguments { size, samples, sampling, .. } = self.arguments;
         let usual = Settings::default();
-        Settings { size: size.map_or(usual.size, sides), samples: *samples, until: sampling.until() }
+        Settings { size: size.unwrap_or(usual.size), samples: *samples, until: sampling.until() }
     }
 
     /// Fails if a scene cannot be drawn by the CPU renderer.
@@ -237,7 +237,7 @@ impl Job<'_> {
         let compared = arguments.maps.applied(Comparison::default());
         let look = Look {
             format,
-            size: arguments.size.map(sides),
+            size: arguments.size,
             columns: arguments.columns.map(|columns| columns as usize),
             against: arguments.against.map(|column| (column as usize - 1, compared)),
             words: !arguments.no_labels,
@@ -260,10 +260,6 @@ impl Job<'_> {
         options.tell(format_args!("wrote {}: {}{kept}", output.shown(), plural(sweep.count(), "picture")));
         Ok(())
     }
-}
-
-fn sides(size: Size) -> [u32; 2] {
-    [size.width, size.height]
 }
 
 /// The end of a message about pictures that were there already.

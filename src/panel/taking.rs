@@ -204,7 +204,7 @@ fn background(ui: &mut Ui, colour: &mut Option<[u8; 3]>) {
     }
     if let Some(rgb) = colour {
         let caption = knob::Caption::new("background of the picture", "", "The colour behind objects.");
-        *rgb = knob::colour_knob(ui, "take background", &caption, *rgb, Some(WHITE)).unwrap_or(*rgb);
+        *rgb = knob::colour_knob(ui, &caption, *rgb, Some(WHITE)).unwrap_or(*rgb);
     }
 }
 

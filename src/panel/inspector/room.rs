@@ -87,13 +87,13 @@ fn background(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let options: Vec<_> = Background::ALL.iter().map(|b| [b.name(), "", b.summary()]).collect();
     let chosen = Background::ALL.iter().position(|b| *b == d.background).unwrap_or(0);
     let help = "What the picture shows behind everything, in all views. It lights nothing.";
-    let caption = Caption::of(&Display::background, help);
-    if let Some(i) = knob::choice_with_help(ui, "background", &caption, chosen, &options) {
+    let caption = Caption { salt: "background", ..Caption::of(&Display::background, help) };
+    if let Some(i) = knob::choice_with_help(ui, &caption, chosen, &options) {
         context.edit(Edit::set(Part::Display, Display::background, Background::ALL[i]));
     }
     let mut colour = |field: Field, label: &str, help: &str, now: [u8; 3], default: [u8; 3]| {
-        let caption = Caption { label, ..Caption::of(&field, help) };
-        let new = knob::colour_knob(ui, field.key, &caption, now, Some(default));
+        let caption = Caption { salt: field.key, label, ..Caption::of(&field, help) };
+        let new = knob::colour_knob(ui, &caption, now, Some(default));
         context.edits(new.map(|rgb| Edit::set(Part::Display, field, rgb)));
     };
     let usual = Display::default();

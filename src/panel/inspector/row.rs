@@ -2,7 +2,7 @@
 
 use crate::{
     panel::{
-        knob::{self, Caption},
+        knob::{self, Amount, Caption},
         prelude::*,
     },
     parameter::Value,
@@ -89,8 +89,8 @@ impl Shown<'_> {
         let count = |ui: &mut Ui, field: Field, value: u32, other: u32| {
             let limits = Limits::between(1.0, (MAX_OBJECTS / other.max(1) as usize) as f64).whole();
             let limits = limits.slider(1.0, SLIDER);
-            let caption = Caption::of(&field, field.help.trim());
-            knob::number_knob(ui, field.key, &caption, value.into(), None, &limits).map(|v| v as u32)
+            let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
+            knob::number_knob(ui, &caption, Amount::new(value.into(), None, &limits)).map(|v| v as u32)
         };
         let columns = count(ui, Repeat::columns, repeat.columns, repeat.rows);
         let rows = count(ui, Repeat::rows, repeat.rows, repeat.columns);
@@ -105,8 +105,8 @@ impl Shown<'_> {
         let repeat = self.row.repeat;
         let step = |ui: &mut Ui, field: Field, value: Vec3| {
             let limits = [0, 1, 2].map(|_| field.limits());
-            let caption = Caption::of(&field, field.help.trim());
-            knob::vector_knob(ui, field.key, &caption, value, &limits)
+            let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
+            knob::vector_knob(ui, &caption, value, &limits)
         };
         let mut edit = step(ui, Repeat::spacing, repeat.spacing)
             .map(|way| self.with("Spacing", |row| row.spacing = way));
@@ -115,7 +115,7 @@ impl Shown<'_> {
             edit = edit.or(changed.map(|way| self.with("Spacing of rows", |row| row.row_spacing = way)));
         }
         let caption = Caption::new("labels", "", Repeat::labels.help.trim());
-        let labels = knob::flag_knob(ui, "labels", &caption, repeat.labels);
+        let labels = knob::flag_knob(ui, &caption, repeat.labels);
         edit.or(labels.map(|on| self.with("Labels", |row| row.labels = on)))
     }
 
@@ -178,8 +178,7 @@ impl Shown<'_> {
                 }
                 ui.with_layout(Layout::top_down(Align::Min), |ui| {
                     let caption = Caption::new("varies", "", Varied::parameter.help.trim());
-                    let new =
-                        knob::choice_knob(ui, "parameter", &caption, now.unwrap_or(numbers.len()), &names);
+                    let new = knob::choice_knob(ui, &caption, now.unwrap_or(numbers.len()), &names);
                     let new = new.and_then(|k| numbers.get(k)).and_then(|one| one.over_its_range());
                     if let Some(new) = new {
                         let along = varied.along;
@@ -197,9 +196,9 @@ impl Shown<'_> {
         let known = self.numbers().into_iter().find(|one| one.path() == varied.parameter);
         let limits = known.and_then(Variable::limits).unwrap_or_else(|| Varied::from.limits());
         let end = |ui: &mut Ui, field: Field, value: Option<f32>| {
-            let caption = Caption::of(&field, field.help.trim());
+            let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
             let value = f64::from(value.unwrap_or_default());
-            knob::number_knob(ui, field.key, &caption, value, None, &limits).map(|v| v as f32)
+            knob::number_knob(ui, &caption, Amount::new(value, None, &limits)).map(|v| v as f32)
         };
         let from = end(ui, Varied::from, varied.from)
             .map(|v| self.varying("First value", j, |varied| varied.from = Some(v)));
@@ -234,6 +233,6 @@ impl Shown<'_> {
 fn choice<T: Word + PartialEq>(ui: &mut Ui, field: Field, now: T, all: &[T]) -> Option<T> {
     let options: Vec<_> = all.iter().map(|one| one.about()).map(|[_, name, help]| [name, "", help]).collect();
     let chosen = all.iter().position(|one| *one == now).unwrap_or(0);
-    let caption = Caption::of(&field, field.help.trim());
-    knob::choice_with_help(ui, field.key, &caption, chosen, &options).and_then(|k| all.get(k)).copied()
+    let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
+    knob::choice_with_help(ui, &caption, chosen, &options).and_then(|k| all.get(k)).copied()
 }

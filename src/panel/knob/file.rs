@@ -22,8 +22,8 @@ impl Knob for File {
 /// file.
 pub fn file_knob(ui: &mut Ui, p: &Parameter, file: &NamedFile, disabled: Option<&str>) -> bool {
     let symbol = if p.symbol == p.name { "" } else { p.symbol };
-    let caption = Caption { symbol, disabled, ..Caption::new(p.label, "", p.help) };
-    knob(ui, p.name, &caption, |ui| {
+    let caption = Caption { salt: p.name, symbol, disabled, ..Caption::new(p.label, "", p.help) };
+    knob(ui, &caption, |ui| {
         let (label, button) = button(ui, &caption, file.name(), "…", WidgetType::Button);
         explain(label, |ui| tooltip(ui, &caption, "", ""));
         let place = file.path().map_or("part of the program".to_owned(), |path| path.shown().to_string());
