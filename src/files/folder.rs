@@ -130,6 +130,16 @@ impl FolderDraft {
     }
 }
 
+/// Removes the files of a folder that are the program's own, and the folder if it is then empty. Nothing depends on
+/// whether this succeeds.
+pub fn clear(folder: &Path, is_own: impl Fn(&Path) -> bool) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for path in entries.flatten().map(|entry| entry.path()).filter(|path| is_own(path)) {
+        let _ = fs::remove_file(path);
+    }
+    let _ = fs::remove_dir(folder);
+}
+
 /// Writes something into a folder, which is created first, with its parents. If writing fails, the new
 /// folders are removed.
 ///

@@ -219,7 +219,7 @@ mod tests {
                         let i = i as f32;
                         let pixel =
                             Vec4::new(0.01 * i, 0.003 * i, 2.0 / (i + 1.0), [0.0, 1.0, 0.5][i as usize % 3]);
-                        let behind = (i as u32 % 2 == 0).then_some(Vec3::new(0.2, 0.5, 0.9));
+                        let behind = (i as u32).is_multiple_of(2).then_some(Vec3::new(0.2, 0.5, 0.9));
                         let steps = transform.steps(pixel, behind);
                         assert_eq!(steps.codes, transform.apply(pixel, behind), "{tone_mapping:?} {pixel}");
                         // Rounding is the last step: the code differs by at most a half.

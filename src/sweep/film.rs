@@ -82,7 +82,7 @@ mod tests {
     fn many_colours_become_the_nearest() {
         let picture: Vec<u8> =
             (0..64 * 64).flat_map(|i| [(i % 64 * 4) as u8, (i / 64 * 4) as u8, 90]).collect();
-        let bytes = gif(&[picture.clone()], [64, 64], 10).expect("encoded");
+        let bytes = gif(std::slice::from_ref(&picture), [64, 64], 10).expect("encoded");
         let mut options = gif::DecodeOptions::new();
         options.set_color_output(gif::ColorOutput::RGBA);
         let mut decoder = options.read_info(bytes.as_slice()).expect("a GIF");

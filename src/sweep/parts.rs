@@ -1,7 +1,6 @@
 //! Finished pictures of a sweep that was interrupted: in the files of its folder, or in a folder beside its one file.
 
 use std::{
-    fs,
     hash::{DefaultHasher, Hash as _, Hasher as _},
     io,
     path::{Path, PathBuf},
@@ -114,17 +113,10 @@ impl Parts {
 
     /// Removes the pictures, once nobody needs them.
     pub fn remove(&self) {
-        let Ok(entries) = fs::read_dir(&self.folder) else { return };
-        for entry in entries.flatten() {
-            let path = entry.path();
+        files::clear(&self.folder, |path| {
             let is_number =
                 path.file_stem().is_some_and(|stem| stem.to_string_lossy().parse::<usize>().is_ok());
-            // Nothing depends on whether this succeeds.
-            if is_number && path.extension().is_some_and(|end| end == "png") && png::has_text(&path, KEYWORD)
-            {
-                let _ = fs::remove_file(&path);
-            }
-        }
-        let _ = fs::remove_dir(&self.folder);
+            is_number && path.extension().is_some_and(|end| end == "png") && png::has_text(path, KEYWORD)
+        });
     }
 }

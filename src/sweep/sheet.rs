@@ -297,7 +297,7 @@ mod tests {
         }
         // Ink outside of the pictures, smooth at its edges.
         let inked = |sheet: &[u8]| {
-            let plain = |p: &[u8; 3]| p[0] == GROUND[0] || p[0] % 40 == 0;
+            let plain = |p: &[u8; 3]| p[0] == GROUND[0] || p[0].is_multiple_of(40);
             sheet.as_chunks::<3>().0.iter().filter(|p| !plain(p)).count()
         };
         assert!(inked(&sheet) > 20);
