@@ -1,6 +1,6 @@
 //! What others changed in the entities of parts. [`absorb`](super::absorb::absorb) [takes](take) it, and [gives
 //! back](give_back) what it does not absorb. [`reconcile`](super::reconcile::reconcile) writes to few entities:
-//! it [keeps](keep) what others changed in each of them before, and [lists](wrote) them afterwards. So neither
+//! it [keeps](keep) what others changed in them before, and [lists](wrote) them afterwards. So neither
 //! sees what it or the other wrote, and all parts are searched only once per frame.
 
 use bevy::{
@@ -109,9 +109,9 @@ pub(super) fn begin(world: &mut World) -> Touched {
     }
 }
 
-/// Keeps what others changed in an entity before it is written.
-pub(super) fn keep(world: &mut World, entity: Entity, touched: &mut Touched) {
-    with_watches(world, |world, watches| watches.find(world, watches.known, Some(&[entity]), touched));
+/// Keeps what others changed in entities before they are written.
+pub(super) fn keep(world: &mut World, entities: &[Entity], touched: &mut Touched) {
+    with_watches(world, |world, watches| watches.find(world, watches.known, Some(entities), touched));
 }
 
 /// Ends writing: gives back what was noticed, and lists the written entities.
@@ -245,5 +245,19 @@ mod tests {
         change(&mut world, |scene| scene.objects[1].size = 0.5);
         noticed(&mut world);
         assert_eq!(searches.load(Ordering::Relaxed), 1);
+    }
+
+    #[test]
+    fn parts_of_a_list_are_searched_together_before_they_are_written() {
+        let mut world = world();
+        let searches = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&searches);
+        world.resource_mut::<Watches>().add(Box::new(move |_, among, _| {
+            let several = among.is_some_and(|among| !among.is_empty());
+            counted.fetch_add(usize::from(several), Ordering::Relaxed);
+        }));
+        change(&mut world, |scene| scene.objects.iter_mut().for_each(|object| object.size = 0.5));
+        assert_eq!(searches.load(Ordering::Relaxed), 1);
+        assert!(noticed(&mut world).is_empty());
     }
 }

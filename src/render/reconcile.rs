@@ -72,9 +72,19 @@ struct Writer<'w> {
 }
 
 impl Writer<'_> {
+    /// Keeps what others changed in entities that are written next.
+    fn keep(&mut self, entities: &[Entity]) {
+        noticed::keep(self.world, entities, &mut self.touched);
+    }
+
     /// Writes the differences of a part from `old` into its entity, or everything.
     fn write<T: Part>(&mut self, entity: Entity, part: &T, old: Option<&T>) {
-        noticed::keep(self.world, entity, &mut self.touched);
+        self.keep(&[entity]);
+        self.put(entity, part, old);
+    }
+
+    /// Writes into an entity that is kept.
+    fn put<T: Part>(&mut self, entity: Entity, part: &T, old: Option<&T>) {
         // If it is gone, `absorb` decides what happens.
         if let Ok(mut entity) = self.world.get_entity_mut(entity) {
             part.write(&mut entity, old, &self.types);
@@ -99,11 +109,14 @@ fn follow<T: Part>(
     new: &[T],
     way: &Alignment,
 ) -> Vec<Entity> {
+    // Together: each search has a cost of its own.
+    let known: Vec<_> = way.from.iter().flatten().map(|i| entities[*i]).collect();
+    to.keep(&known);
     let mut changed = Vec::with_capacity(way.come.len());
     for (part, from) in new[way.come.clone()].iter().zip(&way.from) {
         changed.push(match from {
             Some(i) => {
-                to.write(entities[*i], part, old.get(*i));
+                to.put(entities[*i], part, old.get(*i));
                 entities[*i]
             }
             None => to.spawn(part),
