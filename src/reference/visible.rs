@@ -156,11 +156,12 @@ impl VisibleLights {
             Some(joined(known, light.sight(radiance, f32::INFINITY, 1.0)))
         });
         let known = match same {
-            Some(same) => vec![(same, around.len()); edge * edge],
+            Some(_) => Vec::new(),
             None => self.surroundings(&around, origin, edge, samples),
         };
         let throughout = same.flatten().filter(|_| bounded.is_empty()).map(|sight| sight.radiance);
-        Some(Part { of: self, lights: [around, bounded].concat(), origin, edge, known, throughout })
+        let same = same.map(|same| (same, around.len()));
+        Some(Part { of: self, lights: [around, bounded].concat(), origin, edge, same, known, throughout })
     }
 
     /// For each pixel of a part, the light of its surroundings and their number, or nothing if it differs between the
@@ -202,7 +203,9 @@ pub(super) struct Part<'a> {
     lights: Vec<&'a Visible>,
     origin: [usize; 2],
     edge: usize,
-    /// The light known at all samples of a pixel, and the number of lights that it is from.
+    /// The light known in the whole part, and the number of lights that it is from.
+    same: Option<(Option<Sight>, usize)>,
+    /// The same for each pixel, if it is not known in the whole part.
     known: Vec<(Option<Sight>, usize)>,
     /// The radiance of the lights, if it is the same in the whole part.
     pub(super) throughout: Option<Vec3>,
@@ -215,7 +218,7 @@ impl Part<'_> {
         [x, y]: [usize; 2],
         samples: [[f32; 2]; S],
     ) -> [Option<Sight>; S] {
-        let (known, count) = self.known[y * self.edge + x];
+        let (known, count) = self.same.unwrap_or_else(|| self.known[y * self.edge + x]);
         let others = &self.lights[count..];
         if others.is_empty() {
             return [known; S];
