@@ -69,7 +69,8 @@ fn both_renderers_show_a_background_alike_under_every_curve() {
                 let case = format!("{samples}, {background:?}, {tone_mapping:?}");
                 let gpu = on_gpu(&mut renderer, &scene);
                 let right = off(&gpu, &on_cpu(&scene, samples.into()), 1 + u8::from(samples > 1));
-                assert!(right < 0.01, "{case}: {right}");
+                // At edges the renderers weight the samples of a pixel differently.
+                assert!(right < 0.015, "{case}: {right}");
                 // As it is picked, at the corners of the picture.
                 let down = (SIZE as f32 - 0.5) / SIZE as f32;
                 let ends = [scene.display.behind(0.5 / SIZE as f32), scene.display.behind(down)];
