@@ -10,7 +10,7 @@ mod words;
 
 pub use heading::{header, header_parts, view_parts};
 pub use part::{Part, line};
-pub use rows::{of_row, row_labels};
+pub use rows::{of_copy, of_row, row_labels};
 pub use sampled::{Sampled, sampled};
 pub use strip::{draw, draw_line, line_width, type_size};
 pub(crate) use words::{display, single, terms_alone, value};

@@ -25,11 +25,14 @@ pub fn row_labels(scene: &Scene, registry: &Registry) -> Vec<(usize, Vec<Part>)>
 #[must_use]
 pub fn of_row(scene: &Scene, row: &Row, registry: &Registry) -> Vec<Vec<Part>> {
     let variables: Vec<_> = row.variables(registry).collect();
-    let of_copy = |object: &Object| {
-        let said = |v: &Variable| said(*v, &v.of_object(object)?, registry);
-        variables.iter().filter_map(said).collect()
-    };
-    scene.objects[row.range()].iter().map(of_copy).collect()
+    scene.objects[row.range()].iter().map(|object| of_copy(object, &variables, registry)).collect()
+}
+
+/// The values of a copy that vary in its row.
+#[must_use]
+pub fn of_copy(object: &Object, variables: &[Variable], registry: &Registry) -> Vec<Part> {
+    let said = |v: &Variable| said(*v, &v.of_object(object)?, registry);
+    variables.iter().filter_map(said).collect()
 }
 
 /// A value with its symbol or name.

@@ -75,7 +75,8 @@ impl Pixels for Light {
         let Some(pixel) = pixels.get_mut(row * *width as usize + column) else { return };
         let light = (DVec3::new(r.into(), g.into(), b.into()) * self.scale).as_vec3();
         self.is_opaque |= a.is_nan();
-        *pixel = light.extend(if a.is_nan() { 1.0 } else { a });
+        // Other programs may write anything as opacity.
+        *pixel = light.extend(if a.is_nan() { 1.0 } else { a.clamp(0.0, 1.0) });
         let odd = light.to_array().into_iter().find(|number| !number.is_finite());
         if let Some(number) = odd.filter(|_| self.odd.is_none_or(|(r, c, _)| (row, column) < (r, c))) {
             self.odd = Some((row, column, number));

@@ -208,6 +208,11 @@ impl Patch {
             + self.objects.iter().map(Splice::parts).sum::<usize>()
     }
 
+    /// Changes of single objects, each of another one, in the order of the scene.
+    pub(super) fn of_each(patches: impl Iterator<Item = Self>) -> Self {
+        Self { objects: patches.flat_map(|patch| patch.objects).collect(), ..Self::default() }
+    }
+
     /// Merges this change and a later one into a single change, which may be empty.
     pub(super) fn join(&mut self, later: Self) {
         self.rest = match (self.rest.take(), later.rest) {

@@ -1,7 +1,10 @@
 //! The names of the parts of a scene. A part without a name is called by its type and number, and keeps that
 //! name permanently: if others were added or removed, it is written into the file.
 
-use std::collections::{HashMap, HashSet};
+use std::{
+    cell::OnceCell,
+    collections::{HashMap, HashSet},
+};
 
 use super::{Document, Extent, Selection, history::Label};
 use crate::{registry::Registry, scene::Scene};
@@ -43,9 +46,7 @@ pub(super) fn object_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
 pub fn free_name(scene: &Scene, name: &str) -> String {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
     let stem = if stem.is_empty() { name } else { stem };
-    let names: HashSet<_> = (scene.lights.iter().filter_map(|l| l.name.as_deref()))
-        .chain(scene.objects.iter().filter_map(|o| o.name.as_deref()))
-        .collect();
+    let names = given_names(scene);
     (2..).map(|n| format!("{stem} {n}")).find(|name| !names.contains(name.as_str())).unwrap_or_default()
 }
 
@@ -68,6 +69,12 @@ fn number<'a>(labels: &mut [Label], type_of: impl Fn(usize) -> &'a str, taken: i
     }
 }
 
+/// The names that parts of the scene were given.
+fn given_names(scene: &Scene) -> HashSet<&str> {
+    let lights = scene.lights.iter().filter_map(|l| l.name.as_deref());
+    lights.chain(scene.objects.iter().filter_map(|o| o.name.as_deref())).collect()
+}
+
 /// True if a part of the scene was given this name.
 fn is_given(scene: &Scene, name: &str) -> bool {
     scene.lights.iter().any(|l| l.name.as_deref() == Some(name))
@@ -79,7 +86,12 @@ impl Document {
     /// given to other parts.
     pub(super) fn number_parts(&mut self, registry: Option<&Registry>) {
         let Self { scene, labels, .. } = self;
-        let given = |type_name: &str, n: usize| is_given(scene, &format!("{type_name} {n}"));
+        let scene: &Scene = scene;
+        // All at once, since the copies of a row may be thousands.
+        let names = OnceCell::new();
+        let given = |type_name: &str, n: usize| {
+            names.get_or_init(|| given_names(scene)).contains(format!("{type_name} {n}").as_str())
+        };
         let light = |id: &str, n| registry.is_some_and(|r| given(light_type(id, r), n));
         let object = |id: &str, n| registry.is_some_and(|r| given(object_type(id, r), n));
         number(&mut labels.lights, |i| &scene.lights[i].light_type, light);
@@ -105,8 +117,13 @@ impl Document {
     }
 
     /// The name that an unnamed part needs in a file, since a reader would otherwise give it another: parts
-    /// of the same type were removed or added before it.
-    fn written_name(&self, part: Extent, registry: &Registry) -> Option<String> {
+    /// of the same type were removed or added before it. `in_row` is true for the index of a copy.
+    fn written_name(
+        &self,
+        part: Extent,
+        in_row: impl Fn(usize) -> bool,
+        registry: &Registry,
+    ) -> Option<String> {
         let (own, number, read, part) = match part {
             Extent::Light(i) => {
                 let label = self.labels.lights.get(i)?;
@@ -119,22 +136,27 @@ impl Document {
             Extent::Rest | Extent::All => return None,
         };
         // Copies have that of their entry.
-        let is_copy = || matches!(part, Selection::Object(i) if self.row(i).is_some());
+        let is_copy = || matches!(part, Selection::Object(i) if in_row(i));
         (own.is_none() && number != read && !is_copy()).then(|| self.name_of(part, registry))
     }
 
     /// All names that exist only in the file.
     pub(super) fn written_names(&self, registry: &Registry) -> Vec<(Extent, String)> {
+        let mut in_row = vec![false; self.objects.len()];
+        self.rows().for_each(|row| in_row[row.range()].fill(true));
         let lights = (0..self.lights.len()).map(Extent::Light);
         let parts = lights.chain((0..self.objects.len()).map(Extent::Object));
-        parts.filter_map(|part| Some((part, self.written_name(part, registry)?))).collect()
+        parts.filter_map(|part| Some((part, self.written_name(part, |i| in_row[i], registry)?))).collect()
     }
 
     /// Writes the names that exist only in the file into a copy of the scene.
     pub fn write_names(&self, part: Extent, copy: &mut Scene, registry: &Registry) {
         let names = match part {
             Extent::All => self.written_names(registry),
-            one => self.written_name(one, registry).map(|name| (one, name)).into_iter().collect(),
+            one => {
+                let name = self.written_name(one, |i| self.row(i).is_some(), registry);
+                name.map(|name| (one, name)).into_iter().collect()
+            }
         };
         names.into_iter().for_each(|(part, name)| part.set_name(copy, name));
     }

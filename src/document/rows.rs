@@ -106,15 +106,13 @@ impl Document {
         let old = &self.scene.objects[range.clone()];
         let alike = |(old, new): (&Object, &Object)| old.object_type == new.object_type;
         let patch = if old.len() == objects.len() && old.iter().zip(&objects).all(alike) {
-            let mut all = Patch::default();
-            for (i, object) in range.zip(objects) {
-                all.join(self.patch(Extent::Object(i), Some(registry), |document| {
+            Patch::of_each(range.zip(objects).map(|(i, object)| {
+                self.patch(Extent::Object(i), Some(registry), |document| {
                     if replace(&mut document.scene.objects[i], object) {
                         document.number_again(Selection::Object(i), registry);
                     }
-                }));
-            }
-            all
+                })
+            }))
         } else {
             self.splice_objects(range, objects, registry)
         };

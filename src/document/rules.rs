@@ -5,9 +5,9 @@ use crate::{
     parameter::{Parameter, Value},
     registry::Registry,
     scene::{
-        Key, Part,
+        Key, Object, Part,
         check::{self, Change, Declared},
-        error::Problem,
+        error::{Problem, Segment},
         field::Kind,
         limits::{self, Limits},
         part::Fields,
@@ -32,7 +32,15 @@ impl Document {
         let change = self.changed(edit, registry)?;
         let (part, values) = edit.values();
         if let Change::Row(places, _) = &change {
-            let problem = check::change(&self.scene, part, &change, registry).into_iter().next();
+            // Values of materials follow when a model is chosen.
+            let models = [Object::reflection_model, Object::shading_model];
+            let chooses = values.iter().any(|(key, _)| models.into_iter().any(|model| *key == model.into()));
+            let follows = |problem: &Problem| {
+                let key = problem.path.segments().get(2);
+                chooses && matches!(key, Some(Segment::Key(key)) if key == Object::material.key)
+            };
+            let problem =
+                check::change(&self.scene, part, &change, registry).into_iter().find(|one| !follows(one));
             return problem
                 .map_or(Ok(()), |problem| Err(self.refused_copy(places, &problem, registry)))
                 .map(|()| change);

@@ -3,7 +3,10 @@
 use std::collections::HashMap;
 
 use super::{caption, marks::Lens, prelude::*, state::Labels};
-use crate::caption::{line, row_labels};
+use crate::{
+    caption::{line, of_copy},
+    scene::rows::Variable,
+};
 
 /// Maximum number of labels; more would hide the picture.
 const MOST: usize = 16;
@@ -23,17 +26,31 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, regist
     };
     let mut places = if on { of_objects(ui, rect, view, session, registry) } else { Vec::new() };
     let in_view: &Scene = if view == session.active() { session.scene() } else { &session.document };
-    let of_rows = row_labels(in_view, registry);
-    if on || of_rows.is_empty() {
+    if on {
         return places;
     }
+    // Only the nearest are put into words, since a row has up to ten thousand copies.
+    let rows: Vec<_> =
+        in_view.rows().filter(|row| row.repeat.labels && !row.repeat.vary.is_empty()).collect();
+    if rows.is_empty() {
+        return places;
+    }
+    let row_of = |i: usize| {
+        let place = rows.partition_point(|row| row.range().end <= i);
+        rows.get(place).filter(|row| row.range().contains(&i)).map(|_| place)
+    };
+    let mut variables: HashMap<usize, Vec<Variable>> = HashMap::new();
     let palette = Palette::here(ui);
     let size = TextStyle::Body.resolve(ui.style()).size;
-    let said: HashMap<_, _> = of_rows.into_iter().collect();
-    for (i, below) in nearest(rect, session, |i| said.contains_key(&i), MOST_OF_ROWS) {
-        let Some(parts) = said.get(&i) else { continue };
+    for (i, below) in nearest(rect, session, |i| row_of(i).is_some(), MOST_OF_ROWS) {
+        let Some((place, object)) = row_of(i).zip(in_view.objects.get(i)) else { continue };
+        let variables = variables.entry(place).or_insert_with(|| rows[place].variables(registry).collect());
+        let parts = of_copy(object, variables, registry);
+        if parts.is_empty() {
+            continue;
+        }
         let line =
-            theme::elided(ui, &line(parts), FontId::proportional(0.9 * size), palette.text, rect.width());
+            theme::elided(ui, &line(&parts), FontId::proportional(0.9 * size), palette.text, rect.width());
         places.extend(plate(ui, rect, below, [line], &places));
     }
     places

@@ -1,5 +1,7 @@
 //! The scene list at the left: room, observer, lights, objects.
 
+use std::ops::Range;
+
 use bevy_egui::egui::TextEdit;
 
 use super::{focus, glyphs, knob, lesson::point, prelude::*, state::Effect};
@@ -41,10 +43,15 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if let Some(offset) = offset_of_selection(ui, memory, session) {
         area = area.vertical_scroll_offset(offset);
     }
+    // Found once: a row has up to ten thousand copies.
+    let chosen = match session.selection {
+        Selection::Object(i) => session.document.row(i).map_or(0..0, |row| row.range()),
+        _ => 0..0,
+    };
     let output = area.show_rows(ui, HEIGHT, total, |ui, range| {
         for i in range {
             match row(i) {
-                Row::Part(part) => PartRow::of(part, context).show(ui, context),
+                Row::Part(part) => PartRow::of(part, &chosen, context).show(ui, context),
                 Row::Lights => heading(ui, "Lights", lights, |ui| add_lights(ui, context)),
                 Row::Objects => heading(ui, "Objects", objects, |ui| add_objects(ui, context)),
             }
@@ -144,15 +151,19 @@ struct PartRow<'a> {
     name: String,
     /// True for a light or an object.
     nested: bool,
+    /// True for the copies of the row that is edited.
+    is_in_chosen_row: bool,
     session: &'a Session,
     registry: &'a Registry,
 }
 
 impl<'a> PartRow<'a> {
-    fn of(part: Selection, context: &PanelContext<'a>) -> Self {
+    /// `chosen` are the objects of the row that is edited.
+    fn of(part: Selection, chosen: &Range<usize>, context: &PanelContext<'a>) -> Self {
         let (session, registry) = (context.session(), context.registry());
         let nested = matches!(part, Selection::Light(_) | Selection::Object(_));
-        Self { part, name: session.name_of(part, registry), nested, session, registry }
+        let is_in_chosen_row = matches!(part, Selection::Object(i) if chosen.contains(&i));
+        Self { part, name: session.name_of(part, registry), nested, is_in_chosen_row, session, registry }
     }
 
     fn show(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -170,7 +181,7 @@ impl<'a> PartRow<'a> {
             painter.rect_filled(ground, 4.0, palette.chosen);
             let bar = Rect::from_min_size(ground.min, vec2(3.0, ground.height()));
             painter.rect_filled(bar, 1.5, palette.accent);
-        } else if hovered || self.is_in_chosen_row() {
+        } else if hovered || self.is_in_chosen_row {
             painter.rect_filled(ground, 4.0, palette.hovered);
         }
         let narrow = rect.width() < NARROW;
@@ -200,14 +211,6 @@ impl<'a> PartRow<'a> {
         if cut {
             response.on_hover_text(name);
         }
-    }
-
-    /// True for the copies of the row that is edited.
-    fn is_in_chosen_row(&self) -> bool {
-        let (Selection::Object(i), Selection::Object(chosen)) = (self.part, self.session.selection) else {
-            return false;
-        };
-        self.session.document.row(chosen).is_some_and(|row| row.range().contains(&i))
     }
 
     /// Paints the icon or the glyph of a part. Returns the colour of a light or an object.

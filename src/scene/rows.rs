@@ -211,7 +211,8 @@ fn series(
         let why = "is missing; a varied value needs from and to, or values";
         return Err(Problem::about(path(missing), why));
     };
-    if varied.scale == Scale::Logarithmic && from * to <= 0.0 {
+    // In 64 bits, since the product of small numbers is 0 in 32.
+    if varied.scale == Scale::Logarithmic && f64::from(from) * f64::from(to) <= 0.0 {
         let rule =
             format!("factors lead from {from} to {to} only if both have the same sign and neither is 0");
         return Err(Problem::value(path(Varied::scale), quoted(varied.scale.id()), rule));
@@ -241,7 +242,12 @@ fn of_fields(part: &dyn Fields, at: &Path, registry: &Registry, problems: &mut V
 /// # Errors
 /// Returns the problems of the row, with their paths from the object on. What the copies have is not checked.
 pub fn copies(entry: &Object, registry: &Registry) -> Result<Vec<Object>, Vec<Problem>> {
-    let Repetition::Entry(repeat) = &entry.repeat else { return Ok(vec![entry.clone()]) };
+    copies_of(&Arc::new(entry.clone()), registry)
+}
+
+/// The same for an entry that the copies share.
+fn copies_of(entry: &Arc<Object>, registry: &Registry) -> Result<Vec<Object>, Vec<Problem>> {
+    let Repetition::Entry(repeat) = &entry.repeat else { return Ok(vec![(**entry).clone()]) };
     let at = Path::root().key(Object::repeat.key);
     let mut problems = Vec::new();
     of_fields(&**repeat, &at, registry, &mut problems);
@@ -275,14 +281,16 @@ pub fn copies(entry: &Object, registry: &Registry) -> Result<Vec<Object>, Vec<Pr
     }
     // A type brings the values that it allows.
     all.sort_by_key(|(_, _, variable, _)| variable.key() != Object::object_type.into());
-    let (shared, total) = (Arc::new(entry.clone()), repeat.total() as u32);
+    // Without the row, whose lists may be as long as the row itself.
+    let plain = Object { repeat: Repetition::None, ..(**entry).clone() };
+    let total = repeat.total() as u32;
     let mut objects = Vec::with_capacity(total as usize);
     for number in 0..total {
         let mut copy = Object {
             name: entry.name.as_ref().map(|name| name_of(name, number)),
             position: position(entry.position, repeat, number),
-            repeat: Repetition::Copy { entry: shared.clone(), number },
-            ..entry.clone()
+            repeat: Repetition::Copy { entry: entry.clone(), number },
+            ..plain.clone()
         };
         for (j, along, variable, values) in &all {
             let place = repeat.place(number, *along);
@@ -395,17 +403,50 @@ impl Scene {
 
     /// The rows of the scene, in the order of their objects.
     pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
-        let mut i = 0;
+        self.stretches().filter_map(|(_, row)| row)
+    }
+
+    /// All objects in their order: each row, and stretches of objects between rows. Each object is looked at once, even if
+    /// rows are incomplete.
+    fn stretches(&self) -> impl Iterator<Item = (Range<usize>, Option<Row<'_>>)> {
+        let mut next = 0;
         std::iter::from_fn(move || {
-            while i < self.objects.len() {
-                let row = self.row(i);
-                i += row.map_or(1, |row| row.count);
-                if row.is_some() {
-                    return row;
+            let first = next;
+            next += 1;
+            let Repetition::Copy { entry, number } = &self.objects.get(first)?.repeat else {
+                return Some((first..next, None));
+            };
+            let Repetition::Entry(repeat) = &entry.repeat else { return Some((first..next, None)) };
+            let follows = |(copy, number): (&Object, u64)| match &copy.repeat {
+                Repetition::Copy { entry: of, number: own } => {
+                    u64::from(*own) == number && (Arc::ptr_eq(of, entry) || of == entry)
                 }
-            }
-            None
+                _ => false,
+            };
+            let numbers = u64::from(*number)..repeat.total();
+            let count = self.objects[first..].iter().zip(numbers).take_while(|one| follows(*one)).count();
+            next = first + count.max(1);
+            let is_whole = *number == 0 && count > 0 && count as u64 == repeat.total();
+            Some((first..next, is_whole.then_some(Row { first, count, entry, repeat })))
         })
+    }
+
+    /// The index in a file of each object, and if it is in a row, the row and the number of its copy.
+    fn places(&self) -> Vec<(usize, Option<(Row<'_>, usize)>)> {
+        let (mut places, mut entries) = (Vec::with_capacity(self.objects.len()), 0);
+        for (range, row) in self.stretches() {
+            match row {
+                Some(row) => places.extend((0..row.count).map(|copy| (entries, Some((row, copy))))),
+                None => places.extend((0..range.len()).map(|i| (entries + i, None))),
+            }
+            entries += row.map_or(range.len(), |_| 1);
+        }
+        places
+    }
+
+    /// The index in a file of each object.
+    pub(super) fn places_in_file(&self) -> Vec<usize> {
+        self.places().into_iter().map(|(entry, _)| entry).collect()
     }
 
     /// The scene with the copies of its rows in the places of their entries.
@@ -454,24 +495,15 @@ impl Scene {
         if !self.objects.iter().any(|object| matches!(object.repeat, Repetition::Copy { .. })) {
             return Cow::Borrowed(self);
         }
+        let single = |object: &Object| match object.repeat {
+            Repetition::Entry(_) => object.clone(),
+            _ => Object { repeat: Repetition::None, ..object.clone() },
+        };
         let mut objects = Vec::new();
-        let mut i = 0;
-        while let Some(object) = self.objects.get(i) {
-            let is_whole = |row: &Row| {
-                row.first == i
-                    && copies(row.entry, registry).is_ok_and(|all| all == self.objects[row.range()])
-            };
-            match self.row(i).filter(is_whole) {
-                Some(row) => {
-                    objects.push(row.entry.clone());
-                    i += row.count;
-                }
-                None => {
-                    let single = !matches!(object.repeat, Repetition::Entry(_));
-                    let repeat = if single { Repetition::None } else { object.repeat.clone() };
-                    objects.push(Object { repeat, ..object.clone() });
-                    i += 1;
-                }
+        for (range, row) in self.stretches() {
+            match row.filter(|row| self.is_as_its_entry(row, registry)) {
+                Some(row) => objects.push(row.entry.clone()),
+                None => objects.extend(self.objects[range].iter().map(single)),
             }
         }
         Cow::Owned(Self {
@@ -486,19 +518,72 @@ impl Scene {
         })
     }
 
+    /// True if the copies of a row are those of its entry.
+    fn is_as_its_entry(&self, row: &Row, registry: &Registry) -> bool {
+        let copies_now = &self.objects[row.range()];
+        let Some(Object { repeat: Repetition::Copy { entry, .. }, .. }) = copies_now.first() else {
+            return false;
+        };
+        copies_of(entry, registry).is_ok_and(|all| all == copies_now)
+    }
+
+    /// Lets the entries of rows follow copies that were given other values of materials, as when another model allows others.
+    /// Rows whose copies no entry describes stay as they are.
+    pub(crate) fn follow_copies(&mut self, registry: &Registry) {
+        let changed = self.rows().filter(|row| !self.is_as_its_entry(row, registry));
+        let followed: Vec<_> =
+            changed.filter_map(|row| Some((row.first, self.copies_as_now(&row, registry)?))).collect();
+        for (first, copies) in followed {
+            self.objects.splice(first..first + copies.len(), copies);
+        }
+    }
+
+    /// The copies of a row as they are now, with an entry that describes them, if there is one.
+    fn copies_as_now(&self, row: &Row, registry: &Registry) -> Option<Vec<Object>> {
+        let now = &self.objects[row.range()];
+        let alone = |object: &Object| Object { repeat: Repetition::None, ..object.clone() };
+        let described = |entry: &Object| {
+            let all = copies(entry, registry).ok()?;
+            let alike = |(a, b): (&Object, &Object)| alone(a) == alone(b);
+            (all.len() == now.len() && all.iter().zip(now).all(alike)).then_some(all)
+        };
+        let varies = |name: &str| {
+            row.variables(registry).any(|one| matches!(one, Variable::Material(p) if p.name == name))
+        };
+        let mut entry = row.entry.clone();
+        entry.material.0.retain(|name, _| varies(name));
+        let shared = now.first()?.material.0.iter().filter(|(name, _)| !varies(name));
+        entry.material.0.extend(shared.map(|(name, value)| (name.clone(), value.clone())));
+        described(&entry).or_else(|| {
+            // Numbers that were limited are listed one by one.
+            let Repetition::Entry(repeat) = &mut entry.repeat else { return None };
+            for varied in &mut repeat.vary {
+                let variable = Variable::with_path(&varied.parameter, &row.entry.object_type, registry);
+                let Some(Variable::Material(p)) = variable else { continue };
+                let along = varied.along;
+                let of_step = |step: u64| {
+                    let copy = if along == Along::Rows { step * u64::from(row.repeat.columns) } else { step };
+                    now.get(usize::try_from(copy).ok()?)?.material.0.get(p.name).cloned()
+                };
+                let values: Option<Vec<_>> = (0..row.repeat.steps(along)).map(of_step).collect();
+                if let Some(values) = values {
+                    (varied.values, varied.from, varied.to) = (values, None, None);
+                    varied.scale = Scale::default();
+                }
+            }
+            described(&entry)
+        })
+    }
+
     /// The index in a file of an object, and the number of its copy if it is in a row.
     #[must_use]
     pub fn place_in_file(&self, object: usize) -> (usize, Option<usize>) {
-        let (mut i, mut entries) = (0, 0);
-        loop {
-            match self.row(i) {
-                Some(row) if row.range().contains(&object) => return (entries, Some(object - row.first)),
-                Some(row) => i += row.count,
-                None if i >= object => return (entries, None),
-                None => i += 1,
-            }
-            entries += 1;
-        }
+        let places = self.places();
+        let place = places.get(object).map(|(entry, copy)| (*entry, copy.map(|(_, copy)| copy)));
+        place.unwrap_or_else(|| {
+            let entries = places.last().map_or(0, |(entry, _)| entry + 1);
+            (entries + object.saturating_sub(places.len()), None)
+        })
     }
 
     /// Problems of objects, with the paths that they have in a file. Those that all copies of a row have are listed once.
@@ -506,15 +591,7 @@ impl Scene {
         if problems.is_empty() || !self.objects.iter().any(|o| matches!(o.repeat, Repetition::Copy { .. })) {
             return problems;
         }
-        // The place of each object.
-        let mut places = Vec::with_capacity(self.objects.len());
-        let mut entries = 0;
-        while places.len() < self.objects.len() {
-            let row = self.row(places.len());
-            let count = row.map_or(1, |row| row.count);
-            places.extend((0..count).map(|copy| (entries, row.map(|row| (row, copy)))));
-            entries += 1;
-        }
+        let places = self.places();
         let mut found: Vec<Problem> = Vec::with_capacity(problems.len());
         for problem in problems {
             let place = problem.path.index_in(Self::objects.key).and_then(|i| places.get(i));

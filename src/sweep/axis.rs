@@ -22,6 +22,8 @@ const VIEW: &str = "view";
 const COPY: &str = "copy";
 /// Maximum number of copies of which each has a picture.
 const MAX_COPIES: usize = 256;
+/// Maximum number of places of all parts that turn, in all pictures together: they are in memory at once.
+const MAX_PLACES: usize = 1_000_000;
 
 /// One direction of a sweep: values that are set together, step by step.
 #[derive(Clone, Debug)]
@@ -41,7 +43,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Values by path: `objects[0].material.roughness=0.1..0.9:5`, `reflection_model=lambert,phong`.
+    /// Values by path: `objects[0].material.roughness=0.1..0.9:5`, `reflection_model=lambert,phong`; or
+    /// [views](Self::views): `view=A,B`.
     ///
     /// # Errors
     /// Returns the mistake: an unknown path with the nearest known, or values that are not of its kind.
@@ -49,6 +52,10 @@ impl Axis {
         let form = "write PATH=VALUES, as in objects[0].material.roughness=0.1..0.9:5";
         let (path, given) =
             text.split_once('=').ok_or_else(|| format!("{} has no =; {form}", quoted(text)))?;
+        if path.trim() == VIEW {
+            let views = given.split(',').map(|name| scene.view_named(name.trim()));
+            return Self::views(&views.collect::<Result<Vec<_>, _>>()?, scene, registry);
+        }
         let place = Place::find(path.trim(), scene, registry)?;
         let values = values::read_distinct(given.trim(), &place, registry)?;
         let label =
@@ -158,6 +165,14 @@ impl Axis {
                 quoted(what)
             )
         })?;
+        if parts.len().saturating_mul(count) > MAX_PLACES {
+            let parts = parts.len();
+            let most = MAX_PLACES / parts;
+            let rule = format!(
+                "{count} pictures are too many for {parts} parts that turn; at most {most} are possible"
+            );
+            return Err(format!("{}: {rule}", quoted(text)));
+        }
         let centre = middle(scene);
         let mut sets = Vec::new();
         for part in parts {
@@ -396,6 +411,9 @@ mod tests {
             let said = Axis::turn(text, &scene, &registry).expect_err(text);
             assert!(said.contains(expected), "{text}: {said}");
         }
+        let many = Scene { objects: vec![Object::default(); 2000], ..Scene::default() };
+        let said = Axis::turn("objects=360:1000", &many, &registry).expect_err("too much memory");
+        assert!(said.contains("1000 pictures are too many for 2000 parts that turn; at most 500"), "{said}");
         for (text, expected) in [
             ("lights[0]", "has no ="),
             ("lights[0]=[1, 2, 3]", "two points or more"),

@@ -5,9 +5,10 @@ use std::{
     path::Path,
     sync::{
         atomic::{AtomicBool, Ordering},
-        mpsc,
+        mpsc::{self, RecvTimeoutError},
     },
     thread,
+    time::Duration,
 };
 
 use rayon::prelude::*;
@@ -25,6 +26,9 @@ use crate::{
     render::capture::png::{self, About},
     scene::{Scene, has_extent},
 };
+
+/// The time after which it is asked again whether the user has cancelled.
+const PULSE: Duration = Duration::from_millis(50);
 
 /// The settings of all pictures of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,8 +203,17 @@ fn each<T: Send>(
         });
         let said = |done: usize| format!("{done} of {count} pictures");
         let mut going = progress.step(0.0, &said(0)).is_ok();
-        for (done, ()) in (1..).zip(told) {
-            going &= progress.step(done as f32 / count.max(1) as f32, &said(done)).is_ok();
+        let mut done = 0;
+        loop {
+            match told.recv_timeout(PULSE) {
+                Ok(()) => {
+                    done += 1;
+                    going &= progress.step(done as f32 / count.max(1) as f32, &said(done)).is_ok();
+                }
+                // A picture may take minutes.
+                Err(RecvTimeoutError::Timeout) => going &= !(progress.cancelled)(),
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
             cancelled.fetch_or(!going, Ordering::Relaxed);
         }
         worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
@@ -209,7 +222,7 @@ fn each<T: Send>(
 
 #[cfg(test)]
 mod tests {
-    use std::{fs, path::PathBuf};
+    use std::{fs, path::PathBuf, time::Instant};
 
     use super::*;
     use crate::sweep::Axis;
@@ -250,6 +263,19 @@ mod tests {
         let ended = pictures(&sweep, &SMALL, None, &|_| Ok(()), &cancelled);
         // With so little work, it may be done before it hears of it.
         assert!(ended.is_ok() || matches!(ended, Err(Failure::Invalid(what)) if what == "cancelled"));
+    }
+
+    #[test]
+    fn cancelling_ends_a_picture_that_takes_long() {
+        let cancelled = Progress { tell: &|_, _| (), cancelled: &|| true };
+        let begun = Instant::now();
+        let ended = each(1, &cancelled, |_, cancelled| -> Result<(), Failure> {
+            while !cancelled.load(Ordering::Relaxed) && begun.elapsed() < Duration::from_secs(60) {
+                thread::sleep(Duration::from_millis(1));
+            }
+            if cancelled.load(Ordering::Relaxed) { Err(ended(Cancelled)) } else { Ok(()) }
+        });
+        assert!(ended.is_err(), "nobody asked while the picture was drawn");
     }
 
     #[test]

@@ -15,6 +15,8 @@ use crate::{
     },
 };
 
+/// Maximum number of values that are listed.
+const MOST_LISTED: usize = 50;
 /// The end of the slider for a number of copies.
 const SLIDER: f64 = 20.0;
 
@@ -211,7 +213,10 @@ impl Shown<'_> {
 
     /// The listed values, and a button that makes a range of them.
     fn list(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
-        let all: Vec<_> = varied.values.iter().map(Value::to_string).collect();
+        let mut all: Vec<_> = varied.values.iter().take(MOST_LISTED).map(Value::to_string).collect();
+        all.extend(
+            (varied.values.len() > MOST_LISTED).then(|| format!("… ({} in all)", varied.values.len())),
+        );
         ui.add(Label::new(theme::small(ui, format!("Values: {}", all.join(", ")))).wrap());
         let ends = [varied.values.first(), varied.values.last()].map(|end| match end {
             Some(Value::Number(v)) => Some(*v),

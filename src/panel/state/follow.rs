@@ -9,7 +9,7 @@ use crate::{
     document::{Extent, Selection},
     parameter::{Parameter, Value},
     registry::Registry,
-    scene::{Object, check::Declared},
+    scene::{Object, Repetition, check::Declared},
 };
 
 /// A value of the document that is replaced.
@@ -58,7 +58,14 @@ fn follow(mut session: impl DerefMut<Target = Session>, registry: &Registry, wit
         Some(value) => object.material.set(name, value),
         None => drop(object.material.0.remove(&name)),
     };
-    if within_step {
+    let is_copy = |i: usize| matches!(session.document.objects[i].repeat, Repetition::Copy { .. });
+    let in_rows = changes.iter().any(|(i, ..)| is_copy(*i));
+    if within_step && in_rows {
+        session.document.go_on(Extent::All, |scene| {
+            changes.into_iter().for_each(|(i, name, to)| put(&mut scene.objects[i], name, to));
+            scene.follow_copies(registry);
+        });
+    } else if within_step {
         changes.into_iter().for_each(|(i, name, to)| {
             session.document.go_on(Extent::Object(i), |scene| put(&mut scene.objects[i], name, to))
         });
@@ -66,6 +73,7 @@ fn follow(mut session: impl DerefMut<Target = Session>, registry: &Registry, wit
         // Not a step for undo: undoing it would bring back values that no model accepts.
         session.document.amend(|scene| {
             changes.into_iter().for_each(|(i, name, to)| put(&mut scene.objects[i], name, to));
+            scene.follow_copies(registry);
         });
     }
     for text in news {
@@ -214,7 +222,7 @@ mod tests {
         custom,
         document::{Document, Edit},
         panel::state::Action,
-        scene::{Part, Scene, check, load, save},
+        scene::{Part, Repeat, Scene, Varied, check, load, save},
     };
 
     /// Registers Lambert's law with parameters, none of which it uses.
@@ -456,6 +464,42 @@ mod tests {
         let values: Vec<_> =
             session.document.objects.iter().map(|o| o.material.0.get("gloss").cloned()).collect();
         assert_eq!(values, [0.75, 0.25, 0.5].map(|v| Some(Value::Number(v))));
+    }
+
+    #[test]
+    fn the_entry_of_a_row_follows_its_copies() {
+        let registry = Registry::builtin();
+        let varied = Varied {
+            parameter: "material.k_d".to_owned(),
+            from: Some(0.2),
+            to: Some(0.6),
+            ..Varied::default()
+        };
+        let phong = || "phong".to_owned();
+        let of_scene = Edit::set(Part::Scene, Scene::reflection_model, phong());
+        let of_copy = Edit::set(Part::Object(1), Object::reflection_model, phong());
+        for (edit, vary, expected) in [
+            (&of_scene, vec![], [0.5; 3]),
+            (&of_scene, vec![varied.clone()], [0.5, 0.5, 0.6]),
+            (&of_copy, vec![], [0.5; 3]),
+            (&of_copy, vec![varied], [0.5, 0.5, 0.6]),
+        ] {
+            let mut session = Session::default();
+            let repeat = Repeat { columns: 3, spacing: glam::Vec3::X, vary, ..Repeat::default() };
+            let mut entry = Object { repeat: Repetition::Entry(Box::new(repeat)), ..Object::default() };
+            entry.material.set("k_d", Value::Number(0.2));
+            let scene = Scene { objects: vec![entry], ..Scene::default() };
+            session.document = Document::new(scene.expanded(&registry).expect("a row"));
+            let start = session.document.scene().clone();
+            let _ = session.apply(Action::Edit(edit.clone()), &registry);
+            let values: Vec<_> =
+                session.document.objects.iter().map(|o| o.material.0.get("k_d").cloned()).collect();
+            assert_eq!(values, expected.map(|v| Some(Value::Number(v))), "{edit:?}");
+            assert_eq!(session.document.gathered(&registry).objects.len(), 1, "{edit:?}");
+            assert_eq!(check::scene(&session.document, &registry), []);
+            let _ = session.apply(Action::Undo, &registry);
+            assert!(*session.document.scene() == start, "{edit:?}");
+        }
     }
 
     #[test]

@@ -75,6 +75,9 @@ fn values_go_in_steps_in_factors_or_as_listed_and_end_exactly() {
     };
     let log = of(json!({ "parameter": "material.roughness", "from": 0.01, "to": 1, "scale": "logarithmic" }));
     assert_eq!((log[0], log[4]), (0.01, 1.0));
+    // The product of the ends is no number of 32 bits.
+    let tiny = json!({ "parameter": "size", "from": 1e-25, "to": 1e-21, "scale": "logarithmic" });
+    assert_eq!(read(&varying(tiny)).objects[2].size, 1e-23);
     assert!((log[2] - 0.1).abs() < 1e-7 && log.windows(2).all(|w| (w[1] / w[0] - 10f32.sqrt()).abs() < 1e-5));
     let list = of(json!({ "parameter": "material.roughness", "values": [0.2, 0.9, 0.3, 0.4, 0.35] }));
     assert_eq!(list, [0.2, 0.9, 0.3, 0.4, 0.35]);
@@ -143,6 +146,22 @@ fn copies_that_are_no_longer_those_of_their_entry_are_written_as_single_objects(
     scene.objects.remove(1);
     assert!(scene.row(0).is_none());
     assert_eq!(read(&written(&scene)).objects.len(), 5);
+}
+
+#[test]
+fn rows_are_found_beside_incomplete_ones() {
+    let whole = read(&varying(json!({ "parameter": "material.roughness", "from": 0.1, "to": 0.9 })));
+    let row = &whole.objects[..5];
+    // Two copies, a row, and a row without its first copy.
+    let objects = [&row[..2], row, &row[1..]].concat();
+    let scene = Scene { objects, ..whole.clone() };
+    let rows: Vec<_> = scene.rows().map(|row| row.range()).collect();
+    assert_eq!((rows.len(), rows.first().cloned()), (1, Some(2..7)));
+    assert!((0..11).all(|i| scene.row(i).map(|row| row.range()) == (2..7).contains(&i).then_some(2..7)));
+    let places = [0, 1, 2, 6, 7, 10, 12].map(|i| scene.place_in_file(i));
+    let expected = [(0, None), (1, None), (2, Some(0)), (2, Some(4)), (3, None), (6, None), (8, None)];
+    assert_eq!(places, expected);
+    assert_eq!(scene.gathered(&Registry::builtin()).objects.len(), 7);
 }
 
 #[test]
