@@ -6,7 +6,7 @@
 use super::{DebugChannel, Setting};
 use crate::{
     declared::choice,
-    linear::Format,
+    linear::{Channels, Format},
     optics::{TermSelection, tone::ToneMapping},
     parameter::Value,
     registry::Registry,
@@ -25,6 +25,9 @@ choice! {
         Lights "lights" "Lights" "The light of each light alone.",
     }
 }
+
+/// The name of the layer of lights in sight.
+const EMISSION: &str = "emission";
 
 /// Maximum length of a layer's name: with a dot and a channel, names of up to 31 bytes are read by every program.
 const LONGEST: usize = 29;
@@ -48,7 +51,7 @@ pub struct Layer {
 enum Shows {
     /// All of it.
     All,
-    /// Objects without the lights in sight.
+    /// Objects as far as no light in sight hides them: drawn with these lights, which [`settle`] takes out.
     Objects,
     /// Lights in sight, in front of and behind black objects.
     Lights,
@@ -72,16 +75,11 @@ impl Layer {
 
     /// The scene that it shows, without exposure and tone mapping.
     #[must_use]
-    pub fn scene(&self, scene: &Scene, registry: &Registry) -> Scene {
+    pub fn scene(&self, scene: &Scene) -> Scene {
         let display = Display { exposure: 0.0, tone_mapping: ToneMapping::None, ..scene.display };
         let mut shown = Scene { display, ..scene.clone() }.alone();
         match self.shows {
-            Shows::All => {}
-            Shows::Objects => {
-                for light in shown.lights.iter_mut().filter(|light| can_be_hidden(light, registry)) {
-                    light.parameters.set("visible", Value::flag(false));
-                }
-            }
+            Shows::All | Shows::Objects => {}
             Shows::Lights => {
                 for object in &mut shown.objects {
                     object.reflection_model = Some("lambert".to_owned());
@@ -119,7 +117,7 @@ pub fn layers(scene: &Scene, terms: TermSelection, kinds: &[LayerKind], registry
                 let shown = shown.filter(|one| terms == TermSelection::All || terms == *one);
                 all.extend(shown.map(|one| light(one.id().to_owned(), one, Shows::Objects)));
                 if scene.shining().any(|lamp| can_be_hidden(lamp, registry)) {
-                    all.push(light("emission".to_owned(), terms, Shows::Lights));
+                    all.push(light(EMISSION.to_owned(), terms, Shows::Lights));
                 }
             }
             LayerKind::Lights => {
@@ -130,6 +128,17 @@ pub fn layers(scene: &Scene, terms: TermSelection, kinds: &[LayerKind], registry
         }
     }
     all
+}
+
+/// Takes the lights in sight, with which the terms were drawn, out of their layers.
+pub fn settle(channels: &mut Channels, layers: &[Layer]) {
+    if layers.iter().any(|layer| layer.name == EMISSION) {
+        for layer in layers.iter().filter(|layer| layer.shows == Shows::Objects) {
+            layer.channels.iter().for_each(|channel| {
+                channels.subtract(&format!("{}.{channel}", layer.name), &format!("{EMISSION}.{channel}"));
+            });
+        }
+    }
 }
 
 /// The reason why layers cannot be in one file; `None` if they can.
@@ -160,6 +169,8 @@ fn name(index: usize, light: &Light) -> String {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec4;
+
     use super::*;
 
     fn names(scene: &Scene, terms: TermSelection, kinds: &[LayerKind]) -> Vec<String> {
@@ -214,13 +225,13 @@ mod tests {
         let registry = Registry::builtin();
         let all = layers(&scene, TermSelection::All, LayerKind::ALL, &registry);
         for layer in &all {
-            let Display { exposure, tone_mapping, .. } = layer.scene(&scene, &registry).display;
+            let Display { exposure, tone_mapping, .. } = layer.scene(&scene).display;
             assert_eq!((exposure, tone_mapping), (0.0, ToneMapping::None));
             assert!(layer.setting.numbers);
             assert_eq!(layer.is_of_geometry(), layer.setting.channel.code() != 0, "{}", layer.name);
         }
         for (layer, index) in all[7..].iter().zip([0, 2, 3, 4]) {
-            let shown = layer.scene(&scene, &registry);
+            let shown = layer.scene(&scene);
             let shining: Vec<_> = (0..5).filter(|i| shown.lights[*i].enabled).collect();
             assert_eq!(shining, [index], "{}", layer.name);
         }
@@ -243,11 +254,15 @@ mod tests {
         let all = layers(&scene, TermSelection::All, &[LayerKind::Terms], &registry);
         let names: Vec<_> = all.iter().map(|layer| layer.name.as_str()).collect();
         assert_eq!(names, ["", "ambient", "diffuse", "specular", "emission"]);
-        let seen = |layer: &Layer| {
-            layer.scene(&scene, &registry).shining().any(|lamp| can_be_hidden(lamp, &registry))
-        };
-        assert_eq!(all.iter().map(seen).collect::<Vec<_>>(), [true, false, false, false, true]);
-        let black = all[4].scene(&scene, &registry);
+        // They are drawn with the terms, since they hide objects, and taken out of their layers afterwards.
+        let mut channels = Channels::new(1, 1);
+        for (layer, light) in all.iter().zip([9.0, 6.0, 7.0, 6.0, 5.0]) {
+            channels.add(&layer.name, layer.channels, &[Vec4::splat(light)]);
+        }
+        settle(&mut channels, &all);
+        let blue = ["B", "ambient.B", "diffuse.B", "specular.B", "emission.B"].map(|name| channels.get(name));
+        assert_eq!(blue.map(|numbers| numbers.map_or(0.0, |numbers| numbers[0])), [9.0, 1.0, 2.0, 1.0, 5.0]);
+        let black = all[4].scene(&scene);
         assert!(all[4].is_plain() && black.objects[0].reflection_model.as_deref() == Some("lambert"));
         scene.lights[0].parameters.set("visible", Value::flag(false));
         assert_eq!(layers(&scene, TermSelection::All, &[LayerKind::Terms], &registry).len(), 4);

@@ -30,7 +30,7 @@ use crate::{
 };
 
 pub use crate::debug::{DebugChannel, Legend, colours};
-pub use layer::{Layer, LayerKind, layers, too_large};
+pub use layer::{Layer, LayerKind, layers, settle, too_large};
 
 mod layer;
 

@@ -24,7 +24,7 @@ use super::{
 use crate::files::Shown as _;
 use crate::{
     caption::{self, Sampled},
-    channel::{DebugChannel, Layer, LayerKind, Legend, Setting, layers, too_large},
+    channel::{DebugChannel, Layer, LayerKind, Legend, Setting, layers, settle, too_large},
     compare::{self, Cell, Shown, compose, with_legends, with_row_labels},
     explain::finite::Tried,
     export::write::inputs,
@@ -583,7 +583,7 @@ impl Painter {
         let (mut channels, mut odd) = (Channels::new(width, height), false);
         for (i, layer) in layers.iter().enumerate() {
             (progress.tell)(i as f32 / layers.len() as f32, &layer.name);
-            let scene = layer.scene(&part.scene, registry);
+            let scene = layer.scene(&part.scene);
             let (picture, is_odd) =
                 renderer.light(layer, scene, job.arguments.samples).map_err(|e| failed(job, e))?;
             if let Some(problem) = renderer.shader_problem() {
@@ -592,6 +592,7 @@ impl Painter {
             odd |= is_odd;
             channels.add(&layer.name, layer.channels, &picture.pixels);
         }
+        settle(&mut channels, layers);
         let reached = has_extent(part.scene.shining(), registry)
             .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
         let remark = odd.then(|| {

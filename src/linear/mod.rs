@@ -90,6 +90,14 @@ impl Channels {
         }
     }
 
+    /// Subtracts the numbers of another channel from those of one, if there are both.
+    pub fn subtract(&mut self, name: &str, other: &str) {
+        let Some(other) = self.get(other).map(<[f32]>::to_vec) else { return };
+        if let Some((_, numbers)) = self.list.iter_mut().find(|(known, _)| known == name) {
+            numbers.iter_mut().zip(other).for_each(|(number, other)| *number -= other);
+        }
+    }
+
     /// The numbers of the channel with a name.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&[f32]> {

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::{Drawing, Picture, Reached, Settings, Shot, Until, channel::Sight, render_until};
 use crate::{
-    channel::{Layer, Setting},
+    channel::{Layer, Setting, settle},
     linear::Channels,
     progress::{Cancelled, Progress},
     registry::Registry,
@@ -40,7 +40,7 @@ pub fn render_layers(
         let name = |step: &str| if i == 0 { step.to_owned() } else { format!("{}, {step}", layer.name) };
         let picture = progress.part((i, layers.len()), name, |progress| -> Result<_, Cancelled> {
             progress.step(0.0, "drawing")?;
-            let scene = layer.scene(scene, registry);
+            let scene = layer.scene(scene);
             if layer.is_of_geometry() {
                 let settings = Settings { samples: 1, ..*settings };
                 return Ok(render_numbers(&scene, registry, &settings, &layer.setting));
@@ -59,5 +59,6 @@ pub fn render_layers(
         })?;
         channels.add(&layer.name, layer.channels, &picture.pixels);
     }
+    settle(&mut channels, layers);
     Ok((channels, reached))
 }

@@ -13,8 +13,11 @@ use crate::{
         rotation::{rotation, turned},
         variant::LETTERS,
     },
-    text::quoted,
+    text::{listed, quoted},
 };
+
+/// Maximum number of words that a summary lists.
+const NAMED: usize = 6;
 
 /// The word for views in place of a path.
 const VIEW: &str = "view";
@@ -245,14 +248,18 @@ impl Axis {
         })
     }
 
-    /// What varies, from where to where: "roughness: r 0.1 to r 0.9 in 5 steps".
+    /// What varies, from where to where: "roughness: r 0.1 to r 0.9 in 5 steps"; a few words one by one: "model: Phong,
+    /// Blinn–Phong and Ward".
     pub(super) fn summary(&self) -> String {
         let words = |label: Option<&Words>| label.map(Words::words).unwrap_or_default();
         let (first, last) = (words(self.labels.first()), words(self.labels.last()));
         let name = if first.starts_with(&self.name) { String::new() } else { format!("{}: ", self.name) };
         match self.count() {
             1 => format!("{name}{first}"),
-            2 => format!("{name}{first} and {last}"),
+            n if n == 2 || n <= NAMED && !first.contains(|c: char| c.is_ascii_digit()) => {
+                let all: Vec<_> = self.labels.iter().map(Words::words).collect();
+                format!("{name}{}", listed(&all, "and"))
+            }
             n => format!("{name}{first} to {last} in {n} steps"),
         }
     }

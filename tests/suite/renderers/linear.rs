@@ -147,7 +147,7 @@ fn geometry_is_numbers() {
     let mut renderer = renderer();
     let registry = Registry::builtin();
     for layer in layers(&scene, TermSelection::All, &kinds, &registry).into_iter().skip(1) {
-        let (picture, odd) = renderer.light(&layer, layer.scene(&scene, &registry), 4).expect("it draws");
+        let (picture, odd) = renderer.light(&layer, layer.scene(&scene), 4).expect("it draws");
         assert!(!odd);
         gpu.add(&layer.name, layer.channels, &picture.pixels);
     }
@@ -189,7 +189,7 @@ fn on_gpu(scene: &Scene, kinds: &[LayerKind], samples: u32) -> BTreeMap<String, 
     let mut renderer = renderer();
     let layers = layers(scene, TermSelection::All, kinds, &registry);
     let drawn = layers.iter().map(|layer| {
-        let scene = layer.scene(scene, &registry);
+        let scene = layer.scene(scene);
         (layer.name.clone(), renderer.light(layer, scene, samples).expect("it draws").0)
     });
     drawn.collect()
@@ -201,7 +201,7 @@ fn both_renderers_draw_the_same_light_and_the_same_layers() {
         let registry = Registry::builtin();
         let gpu = on_gpu(&scene, kinds, 1);
         for layer in layers(&scene, TermSelection::All, kinds, &registry) {
-            let shown = layer.scene(&scene, &registry);
+            let shown = layer.scene(&scene);
             let settings = Settings { terms: layer.terms, ..settings(1) };
             let cpu = match layer.is_of_geometry() {
                 true => reference::render_numbers(&shown, &registry, &settings, &layer.setting),
