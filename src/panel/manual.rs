@@ -12,7 +12,7 @@ macro_rules! pages {
 /// The pages with their ids, which are the paths of the files.
 pub const PAGES: [(&str, &str); 33] = pages! {
     "README" "window" "keys" "scenes" "reflection-models" "shading-and-lights" "comparing" "lessons"
-    "command-line" "worked-examples" "study" "exporting" "performance" "custom-models" "extending"
+    "command-line" "figures" "worked-examples" "study" "exporting" "performance" "custom-models" "extending"
     "extending/reflection-model" "extending/light-type" "extending/object-type" "extending/shading-model"
     "extending/parameters" "extending/parameter-kind" "extending/scene-field" "extending/panel" "extending/systems"
     "extending/scene-format" "extending/metric" "extending/command" "extending/channel" "extending/plot-kind"
