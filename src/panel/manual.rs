@@ -10,7 +10,7 @@ macro_rules! pages {
 }
 
 /// The pages with their ids, which are the paths of the files.
-pub const PAGES: [(&str, &str); 33] = pages! {
+pub const PAGES: [(&str, &str); 34] = pages! {
     "README" "window" "keys" "scenes" "reflection-models" "shading-and-lights" "comparing" "lessons"
     "command-line" "figures" "worked-examples" "study" "exporting" "performance" "custom-models" "extending"
     "extending/reflection-model" "extending/light-type" "extending/object-type" "extending/shading-model"
