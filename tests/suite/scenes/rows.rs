@@ -190,7 +190,7 @@ fn mistakes_are_reported_with_their_place_and_the_remedy() {
     );
     about(
         json!({ "parameter": "material.roughness", "values": [0.1, 0.2] }),
-        "vary[0].values is a list of 2, but there must be one for each column: 5",
+        "vary[0].values is [0.1, 0.2], but there must be one for each column: 5",
     );
     about(
         json!({ "parameter": "material.roughness", "from": 0.1, "to": 1, "values": [1, 1, 1, 1, 1] }),
