@@ -468,16 +468,18 @@ mod tests {
 
     #[test]
     fn the_entry_of_a_row_follows_its_copies() {
-        let registry = Registry::builtin();
+        let mut registry = Registry::builtin();
+        put(&mut registry, &number("gloss", 0.0, 1.0));
+        put_as("theirs", &mut registry, &number("gloss", 0.5, 1.0));
         let varied = Varied {
-            parameter: "material.k_d".to_owned(),
+            parameter: "material.gloss".to_owned(),
             from: Some(0.2),
             to: Some(0.6),
             ..Varied::default()
         };
-        let phong = || "phong".to_owned();
-        let of_scene = Edit::set(Part::Scene, Scene::reflection_model, phong());
-        let of_copy = Edit::set(Part::Object(1), Object::reflection_model, phong());
+        let theirs = || "theirs".to_owned();
+        let of_scene = Edit::set(Part::Scene, Scene::reflection_model, theirs());
+        let of_copy = Edit::set(Part::Object(1), Object::reflection_model, theirs());
         for (edit, vary, expected) in [
             (&of_scene, vec![], [0.5; 3]),
             (&of_scene, vec![varied.clone()], [0.5, 0.5, 0.6]),
@@ -487,13 +489,14 @@ mod tests {
             let mut session = Session::default();
             let repeat = Repeat { columns: 3, spacing: glam::Vec3::X, vary, ..Repeat::default() };
             let mut entry = Object { repeat: Repetition::Entry(Box::new(repeat)), ..Object::default() };
-            entry.material.set("k_d", Value::Number(0.2));
-            let scene = Scene { objects: vec![entry], ..Scene::default() };
+            entry.material.set("gloss", Value::Number(0.2));
+            let scene =
+                Scene { reflection_model: "mine".to_owned(), objects: vec![entry], ..Scene::default() };
             session.document = Document::new(scene.expanded(&registry).expect("a row"));
             let start = session.document.scene().clone();
             let _ = session.apply(Action::Edit(edit.clone()), &registry);
             let values: Vec<_> =
-                session.document.objects.iter().map(|o| o.material.0.get("k_d").cloned()).collect();
+                session.document.objects.iter().map(|o| o.material.0.get("gloss").cloned()).collect();
             assert_eq!(values, expected.map(|v| Some(Value::Number(v))), "{edit:?}");
             assert_eq!(session.document.gathered(&registry).objects.len(), 1, "{edit:?}");
             assert_eq!(check::scene(&session.document, &registry), []);

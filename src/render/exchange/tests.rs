@@ -454,8 +454,8 @@ fn edits_and_changes_by_systems_in_one_frame_both_stay_in_either_order() {
     let acts: [(fn(&mut World), fn(&mut Scene)); 3] = [
         (|world| get::<Transform>(world, 2).translation.x = 4.5, |scene| scene.objects[2].position.x = 4.5),
         (
-            |world| get::<Surface>(world, 2).material.set("k_d", Value::Number(0.25)),
-            |scene| scene.objects[2].material.set("k_d", Value::Number(0.25)),
+            |world| get::<Surface>(world, 2).material.set("k_d", Value::Number(0.75)),
+            |scene| scene.objects[2].material.set("k_d", Value::Number(0.75)),
         ),
         (|world| get::<Transform>(world, 3).translation.x = 4.5, |scene| scene.objects[3].position.x = 4.5),
     ];
