@@ -1,6 +1,6 @@
 //! The layers of linear pictures: geometry as numbers, the terms of the model, and each light alone.
 //!
-//! The sum of the lights is the picture, except where one light hides another, and up to the noise of light with
+//! The sum of the lights is the picture, except where one hides what is behind it, and up to the noise of light with
 //! extent. The sum of the terms, and of `emission`, is the picture.
 
 use super::{DebugChannel, Setting};
