@@ -180,7 +180,8 @@ pub fn hint_beside(session: &Session, registry: &Registry, text: &str, id: &str)
 #[must_use]
 pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Action> {
     let any = ctx.input(|i| i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, .. })));
-    if !any || session.questions.open.is_some() {
+    // What asks for a picture's options takes all keys, as a question does.
+    if !any || session.questions.open.is_some() || session.take_draft.is_some() {
         return Vec::new();
     }
     let typing = ctx.text_edit_focused();

@@ -62,7 +62,13 @@ fn ask(ui: &mut Ui, draft: &TakeDraft, context: &mut PanelContext<'_>) {
     }
     ui.add_space(10.0);
     let [choose, cancel] = draft::buttons(ui, "Choose a file…", !typed.is_wrong);
-    if draft::is_new(ui, DRAFT) {
+    // Tab stays in the window, and Enter takes the options unless another widget has the focus.
+    let layer = ui.layer_id();
+    let is_free = ui.memory_mut(|memory| {
+        memory.set_modal_layer(layer);
+        memory.focused().is_none()
+    });
+    if draft::is_new(ui, DRAFT) || is_free {
         choose.request_focus();
     }
     let choose = choose.on_hover_text("Keeps these options for the next time, and asks for the file");
@@ -247,7 +253,10 @@ fn sheet(
     let tip = "The name or the values of each picture above it, and a caption below all";
     check(ui, &mut options.labels, "Labels and caption", tip, None);
     let tip = "Below each picture its difference from the first, as a map with numbers";
-    check(ui, &mut options.differences, "Differences from the first picture", tip, None);
+    // Copies of a row are in different places of their pictures.
+    if next.of == Taken::Sheet(None) {
+        check(ui, &mut options.differences, "Differences from the first picture", tip, None);
+    }
     check(ui, &mut options.smooth, "Smooth edges", "Four samples per pixel instead of one", None);
 }
 

@@ -93,7 +93,7 @@ impl Job<'_> {
             Some(object) => Axis::copies(object, scene, registry)?,
             None => Axis::views(&(0..=scene.variants.len()).collect::<Vec<_>>(), scene, registry)?,
         };
-        let compares = options.differences && axis.count() > 1;
+        let compares = options.differences && row.is_none() && axis.count() > 1;
         let sweep = Sweep::new(scene, 0, vec![axis], registry)?;
         let compared = Comparison { values: Compared::Codes, ..scene.comparison };
         let look = Look {

@@ -38,7 +38,8 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
         linked::within(ui, Domain::Shape, |ui| shown.geometry(ui, context));
     });
     if !in_row {
-        section(ui, "Row", false, |ui| row::row(ui, i, context));
+        // Not the section of a row, which is open.
+        section(ui, "Copies", false, |ui| row::row(ui, i, context));
     }
 }
 

@@ -11,7 +11,8 @@ use lights_camera_models::{
     parameter::Value,
     registry::Registry,
     scene::{
-        Part, Scene,
+        Comparison, Part, Scene, Variant,
+        comparison::Layout,
         formats::SCENE_KEYWORD,
         load::{self, Defaults},
         save::to_json,
@@ -318,10 +319,9 @@ fn a_caption_is_added_below_the_picture() {
 fn numbers_of_a_comparison_are_added_to_its_caption() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
-    let scene = r#"{ "reflection_model": "lambert", "variants": [{ "reflection_model": "phong" }],
-                     "comparison": { "layout": "side_by_side" } }"#;
-    let scene =
-        load::from_text(scene, "pair.json", &Registry::builtin(), Defaults::Use).expect("valid").scene;
+    let variant = Variant { reflection_model: Some("phong".to_owned()), ..Variant::default() };
+    let comparison = Comparison { layout: Layout::SideBySide, ..Comparison::default() };
+    let scene = Scene { variants: vec![variant], comparison, ..Scene::default() };
     fs::write(at("pair.json"), to_json(&scene, None, &Registry::builtin())).expect("written");
     let drawn = |more: &[&str]| {
         let fixed = ["pair.json", "-o", "x.png", "--size", "640x360", "--caption"];

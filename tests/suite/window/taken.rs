@@ -346,6 +346,33 @@ fn options_are_chosen_by_keys_and_kept() {
 }
 
 #[test]
+fn keys_stay_in_the_window_of_options() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    let before = bench.session.document.scene().clone();
+    // The wrong twin: without the window it is a command.
+    bench.letter(Key::F, "f");
+    assert!(*bench.session.document.scene() != before);
+    bench.key(Key::Z, Modifiers::COMMAND);
+    assert!(*bench.session.document.scene() == before);
+    bench.key(Key::P, Modifiers::COMMAND);
+    bench.click("Caption");
+    bench.letter(Key::F, "f");
+    // Whatever Tab reaches is in the window.
+    for _ in 0..25 {
+        bench.key(Key::Tab, Modifiers::NONE);
+        bench.letter(Key::F, "f");
+    }
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(bench.session.take_draft.is_none() && *bench.session.document.scene() == before);
+    // After a click on a box, Enter takes the options.
+    bench.key(Key::P, Modifiers::COMMAND);
+    bench.click("Caption");
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(bench.dialogs.is_open() && !bench.session.settings.picture_caption);
+}
+
+#[test]
 fn a_closed_window_changes_nothing() {
     let mut bench = Bench::new(Session::default());
     bench.size = vec2(1280.0, 720.0);
