@@ -15,13 +15,10 @@ use crate::{
         marks::{self, Lens},
         state::{Action, Cell, CompareCommand, PictureArea, Session},
     },
+    reference::{Settings, Shot, meshes::MeshStore, probe::towards},
     registry::Registry,
-    render::{
-        entities::{CurrentScene, SceneEntities},
-        parts::SceneObject,
-        schedule::LabFrame,
-    },
-    scene::{Light, Scene, emitter},
+    render::{entities::CurrentScene, schedule::LabFrame},
+    scene::{Light, Observer, Scene, emitter},
 };
 
 /// Selects what the user clicks in the picture.
@@ -47,12 +44,10 @@ fn pick(
     window: Single<&Window, With<PrimaryWindow>>,
     cameras: Query<(&Camera, &GlobalTransform), With<WindowView>>,
     scene: Res<CurrentScene>,
-    entities: Res<SceneEntities>,
-    objects: Query<(), With<SceneObject>>,
     registry: Res<Registry>,
     area: Option<Res<PictureArea>>,
     mut session: ResMut<Session>,
-    mut ray_cast: MeshRayCast,
+    mut meshes: Local<MeshStore>,
     mut pressed_at: Local<Option<Vec2>>,
 ) {
     let pointer = window.cursor_position();
@@ -83,14 +78,8 @@ fn pick(
         .flatten();
     let selection = light.map(Selection::Light).or_else(|| {
         let ray: Ray3d = camera.viewport_to_world(place, end).ok()?;
-        let filter = |e: Entity| objects.contains(e);
-        // An idle picture draws no objects, but shows all of them.
-        let settings =
-            MeshRayCastSettings::default().with_filter(&filter).with_visibility(RayCastVisibility::Visible);
-        let object = ray_cast.cast_ray(ray, &settings).first().and_then(|(hit, there)| {
-            let index = entities.objects.iter().position(|e| e == hit)?;
-            Some((Selection::Object(index), there.distance))
-        });
+        let object = object_at(&scene.0, &registry, ray, &mut meshes);
+        let object = object.map(|(i, distance)| (Selection::Object(i), distance));
         let lamp = lamp_at(&scene.0, &registry, ray).map(|(i, distance)| (Selection::Light(i), distance));
         let nearest = object.into_iter().chain(lamp).min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.map(|(selection, _)| selection)
@@ -100,6 +89,17 @@ fn pick(
     {
         session.apply(Action::Select(selection), &registry);
     }
+}
+
+/// The object that a ray meets first, and its distance, as the CPU renderer sees it: the meshes of the window are on the
+/// GPU alone.
+fn object_at(scene: &Scene, registry: &Registry, ray: Ray3d, meshes: &mut MeshStore) -> Option<(usize, f32)> {
+    let observer = Observer { position: ray.origin, ..scene.observer };
+    let settings = Settings { width: 1, height: 1, samples: 1, ..Settings::default() };
+    let scene = Scene { observer, ..scene.clone() };
+    let (object, there) =
+        towards(meshes, Shot::new(&scene, registry, &settings), ray.origin + *ray.direction)?;
+    Some((object, there.distance(ray.origin)))
 }
 
 /// The nearest visible light with extent that a ray hits, and the distance. Surrounding light is the background.
@@ -140,10 +140,8 @@ fn nearest_light(
 #[cfg(test)]
 mod tests {
     use bevy::{
-        asset::Assets,
         camera::{CameraProjection as _, PerspectiveProjection, RenderTargetInfo},
         math::Dir3,
-        mesh::Mesh,
         transform::components::Transform,
         window::WindowResolution,
     };
@@ -178,8 +176,6 @@ mod tests {
         world.insert_resource(OverPicture { now: true, pressed: Some(at) });
         world.insert_resource(CurrentScene(scene.clone()));
         world.insert_resource(Registry::builtin());
-        world.init_resource::<SceneEntities>();
-        world.init_resource::<Assets<Mesh>>();
         world.init_resource::<ButtonInput<MouseButton>>();
         world.spawn((window, PrimaryWindow));
         for _ in 0..others {
@@ -205,6 +201,20 @@ mod tests {
         for others in 0..3 {
             assert_eq!(clicked(&scene, light, others), Selection::Light(0), "{others} more");
         }
+    }
+
+    #[test]
+    fn a_click_on_an_object_selects_it_though_its_mesh_is_on_the_gpu_alone() {
+        let mut scene = Scene::default();
+        let middle = scene.objects[0].position;
+        assert_eq!(clicked(&scene, middle, 0), Selection::Object(0));
+        assert_eq!(clicked(&scene, middle + 2.5 * Vec3::Y, 0), Selection::Observer, "beside it");
+        scene
+            .objects
+            .insert(0, crate::scene::Object { position: middle - 3.0 * Vec3::Z, ..scene.objects[0].clone() });
+        assert_eq!(clicked(&scene, middle, 0), Selection::Object(1), "the nearer one");
+        scene.objects[1].visible = false;
+        assert_eq!(clicked(&scene, middle, 0), Selection::Object(0), "hidden ones are not in the way");
     }
 
     /// A light with extent that faces the camera.
