@@ -202,26 +202,6 @@ macro_rules! entry {
     };
 }
 
-/// An enum, each value with its words, and the method that returns them.
-macro_rules! in_words {
-    ($(#[$about:meta])* $visible:vis enum $Name:ident {
-        $($(#[$doc:meta])* $Value:ident = $words:literal,)+
-    } $(#[$of:meta])* $method:ident) => {
-        $(#[$about])*
-        $visible enum $Name {
-            $($(#[$doc])* $Value,)+
-        }
-
-        impl $Name {
-            $(#[$of])*
-            #[must_use]
-            $visible const fn $method(self) -> &'static str {
-                [$($words),+][self as usize]
-            }
-        }
-    };
-}
-
 /// A struct whose fields are declared with their defaults: `field: Type = default,`.
 macro_rules! with_defaults {
     ($(#[$about:meta])* $visible:vis struct $Name:ident {
@@ -252,6 +232,6 @@ macro_rules! from {
 }
 
 pub(crate) use {
-    choice, debug_by, declared, entry, forwards, from, ids, in_words, key, keys, setters, take_each, texts,
+    choice, debug_by, declared, entry, forwards, from, ids, key, keys, setters, take_each, texts,
     with_defaults,
 };

@@ -22,7 +22,7 @@ use crate::{
     registry::Registry,
     scene::{Comparison, Scene},
     sweep::{self, Axis, Format, Look, MAX_RATE, Parts, Plan, Settings, Sweep},
-    text::{items, plural},
+    text::{numbers, plural},
 };
 
 #[derive(Args, Debug)]
@@ -78,8 +78,7 @@ pub(super) struct Arguments {
 }
 
 fn point(text: &str) -> Result<Vec3, String> {
-    let all: Option<Vec<f32>> = items(text).into_iter().map(|(_, item)| item.parse().ok()).collect();
-    let point = all.and_then(|all| <[f32; 3]>::try_from(all).ok()).map(Vec3::from);
+    let point = numbers(text).and_then(|all| <[f32; 3]>::try_from(all).ok()).map(Vec3::from);
     point.filter(|point| point.is_finite()).ok_or_else(|| "it must be three numbers, e.g. 5,5,5".to_owned())
 }
 

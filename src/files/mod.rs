@@ -48,7 +48,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::declared::in_words;
+use crate::declared::texts;
 
 mod before;
 mod draft;
@@ -75,10 +75,12 @@ pub use shown::{OnOneLine, Shown, printable, printable_json};
 pub use stamp::Stamp;
 pub use words::words;
 
-in_words! {
+texts! {
     /// The kind of file or other item to which a path leads.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-    pub enum Kind {
+    Kind(
+        /// The kind, with its article.
+        name
+    ) {
         /// A regular file.
         File = "a file",
         /// A folder.
@@ -92,8 +94,6 @@ in_words! {
         /// Something else.
         Unknown = "something unknown",
     }
-    /// The kind, with its article.
-    name
 }
 
 impl Kind {

@@ -10,12 +10,15 @@ use super::{
     state::Severity,
     theme::{self, Palette},
 };
-use crate::{declared::in_words, shading::Stage};
+use crate::{declared::texts, shading::Stage};
 
-in_words! {
+texts! {
     /// An icon.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Icon {
+    Icon(
+        /// The straight lines of an icon in a square with side 1, apart from the one through what is off: the coordinates of
+        /// their corners.
+        lines
+    ) {
         /// Add something.
         Plus = "0.5 0.16 0.5 0.84, 0.16 0.5 0.84 0.5",
         /// Delete.
@@ -53,9 +56,6 @@ in_words! {
         /// Done or correct.
         Check = "0.12 0.54 0.4 0.82 0.9 0.2",
     }
-    /// The straight lines of an icon in a square with side 1, apart from the one through what is off: the coordinates of
-    /// their corners.
-    lines
 }
 
 /// Draws an icon into a square.

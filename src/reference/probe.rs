@@ -102,12 +102,11 @@ pub(crate) fn probe_point(
     Some(shaded(&found, shot, &At::Point(weights)))
 }
 
-/// The object and the position that the observer sees in the direction of a point.
-pub(crate) fn towards(store: &mut MeshStore, shot: Shot, point: Vec3) -> Option<(usize, Vec3)> {
+/// The object and the position that an eye sees in the direction of a point.
+pub(crate) fn towards(store: &mut MeshStore, shot: Shot, [eye, point]: [Vec3; 2]) -> Option<(usize, Vec3)> {
     /// Field of view of a picture of one pixel, in degrees.
     const NARROW: f32 = 0.1;
-    let position = shot.scene.observer.position;
-    let observer = Observer { field_of_view: NARROW, ..Observer::at(position, point - position) };
+    let observer = Observer { field_of_view: NARROW, ..Observer::at(eye, point - eye) };
     let Found { object, posed, face: (_, corners), weights, .. } =
         first(store, shot, &observer, [1, 1], [0, 0])?;
     let [a, b, c] = corners.map(|i| posed.positions[i as usize]);

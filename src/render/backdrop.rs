@@ -36,7 +36,7 @@ use super::{
     entities::CurrentScene,
     mean::MeanSystems,
     overrides::Overrides,
-    pass::parts,
+    pass::Cover,
     straight::{self, Layer, Straight, cleared, draw_layer},
     view::View,
 };
@@ -127,7 +127,7 @@ fn reveal(mut cameras: Query<(&mut Camera3d, &Tonemapping), With<Backdrop>>) {
 }
 
 /// Passes by the format of their target and the samples of a pixel: in the target, or in the depths that they read.
-type Passes = HashMap<(TextureFormat, u32), Pass>;
+type Passes = HashMap<(TextureFormat, u32), Cover>;
 
 /// The shader of the passes, for depths with so many samples.
 fn text(samples: u32) -> String {
@@ -136,71 +136,41 @@ fn text(samples: u32) -> String {
     format!("{}{own}", wgsl!("terms.wgsl").text)
 }
 
-/// A pass, ready to run.
-struct Pass {
-    layout: BindGroupLayout,
-    pipeline: RenderPipeline,
+/// The pass of an entry point of the shader, into a target with so many samples in a pixel. The depths that it reads have
+/// `depths` samples.
+fn pass(
+    entry: &'static str,
+    (format, samples): (TextureFormat, u32),
+    depths: u32,
+    entries: &[BindGroupLayoutEntry],
+    device: &RenderDevice,
+) -> Cover {
+    Cover::new(device, "background", (text(depths).into(), entry), entries, (&[format], samples))
 }
 
-impl Pass {
-    /// The pass of an entry point of the shader, into a target with so many samples in a pixel. The depths that it reads
-    /// have `depths` samples.
-    fn new(
-        entry: &'static str,
-        (format, samples): (TextureFormat, u32),
-        depths: u32,
-        entries: &[BindGroupLayoutEntry],
-        device: &RenderDevice,
-    ) -> Self {
-        let (layout, pipeline_layout, module) = parts(device, "background", text(depths).into(), entries);
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("background"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: Default::default(),
-                targets: &[Some(format.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        Self { layout, pipeline }
+/// Runs the pass over a target, or over the part of it that a camera draws into.
+fn run(
+    cover: &Cover,
+    group: &BindGroup,
+    target: RenderPassColorAttachment,
+    part: Option<&Viewport>,
+    encoder: &mut CommandEncoder,
+) {
+    let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+        label: Some("background"),
+        color_attachments: &[Some(target)],
+        depth_stencil_attachment: None,
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    });
+    if let Some(Viewport { physical_position: at, physical_size: size, .. }) = part {
+        let [x, y, width, height] = [at.x, at.y, size.x, size.y].map(|v| v as f32);
+        pass.set_viewport(x, y, width, height, 0.0, 1.0);
     }
-
-    /// Runs the pass over a target, or over the part of it that a camera draws into.
-    fn run(
-        &self,
-        group: &BindGroup,
-        target: RenderPassColorAttachment,
-        part: Option<&Viewport>,
-        encoder: &mut CommandEncoder,
-    ) {
-        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("background"),
-            color_attachments: &[Some(target)],
-            depth_stencil_attachment: None,
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
-        if let Some(Viewport { physical_position: at, physical_size: size, .. }) = part {
-            let [x, y, width, height] = [at.x, at.y, size.x, size.y].map(|v| v as f32);
-            pass.set_viewport(x, y, width, height, 0.0, 1.0);
-        }
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &**group, &[]);
-        pass.draw(0..3, 0..1);
-    }
+    pass.set_pipeline(&cover.pipeline);
+    pass.set_bind_group(0, &**group, &[]);
+    pass.draw(0..3, 0..1);
 }
 
 /// Paints the background, before anything else is drawn.
@@ -222,15 +192,15 @@ fn paint(
         let samples = target.sampled_main_texture().map_or(1, |texture| texture.sample_count());
         (target.get_color_attachment(), (target.main_texture_format(), samples))
     };
-    let pass = passes.entry(kind).or_insert_with(|| {
+    let cover = passes.entry(kind).or_insert_with(|| {
         let entries =
             BindGroupLayoutEntries::single(ShaderStages::FRAGMENT, uniform_buffer_sized(false, None));
-        Pass::new("paint", kind, 1, &entries, &device)
+        pass("paint", kind, 1, &entries, &device)
     });
     let uniform = backdrop.buffer(camera, target, &device);
     let entries = BindGroupEntries::single(uniform.as_entire_buffer_binding());
-    let group = device.create_bind_group("background", &pass.layout, &entries);
-    pass.run(&group, attachment, camera.viewport.as_ref(), context.command_encoder());
+    let group = device.create_bind_group("background", &cover.bindings, &entries);
+    run(cover, &group, attachment, camera.viewport.as_ref(), context.command_encoder());
 }
 
 /// The components of a view used by the passes around the tone curve.
@@ -284,25 +254,25 @@ fn around(
         return;
     }
     let (format, depths) = (target.main_texture_format(), depth.texture.sample_count());
-    let pass = passes.entry((format, depths)).or_insert_with(|| {
+    let cover = passes.entry((format, depths)).or_insert_with(|| {
         let of_depths = if depths > 1 { texture_depth_2d_multisampled() } else { texture_depth_2d() };
         let picture = texture_2d(TextureSampleType::Float { filterable: false });
         let entries = (uniform_buffer_sized(false, None), picture, of_depths);
         let entries = BindGroupLayoutEntries::sequential(ShaderStages::FRAGMENT, entries);
-        Pass::new(entry, (format, 1), depths, &entries, device)
+        pass(entry, (format, 1), depths, &entries, device)
     });
     let uniform = backdrop.buffer(camera, target, device);
     let written = target.post_process_write();
     let entries =
         BindGroupEntries::sequential((uniform.as_entire_buffer_binding(), written.source, depth.view()));
-    let group = device.create_bind_group("background", &pass.layout, &entries);
+    let group = device.create_bind_group("background", &cover.bindings, &entries);
     let attachment = RenderPassColorAttachment {
         view: written.destination,
         depth_slice: None,
         resolve_target: None,
         ops: Operations { load: LoadOp::Clear(Default::default()), store: StoreOp::Store },
     };
-    pass.run(&group, attachment, None, context.command_encoder());
+    run(cover, &group, attachment, None, context.command_encoder());
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ use super::{
     converge::{Convergence, Part},
     illumination::{IlluminationBuffer, SAMPLES_AT, sample_bytes},
     noise::{Frame, Grown, Measuring, Noise},
-    pass::parts,
+    pass::Cover,
     stage::Stage,
     view::{Drawing, View},
 };
@@ -169,43 +169,13 @@ fn prepare(
 }
 
 /// The pass that adds a frame to a mean.
-struct Pass {
-    layout: BindGroupLayout,
-    pipeline: RenderPipeline,
-}
-
-impl Pass {
-    fn new(device: &RenderDevice) -> Self {
-        let float = texture_2d(TextureSampleType::Float { filterable: false });
-        let uniform = uniform_buffer_sized(false, None);
-        let entries = (float, float, float, uniform, uniform);
-        let entries = BindGroupLayoutEntries::sequential(ShaderStages::FRAGMENT, entries);
-        let text = format!("{}{}", wgsl!("terms.wgsl").text, include_str!("mean.wgsl"));
-        let (layout, pipeline_layout, module) = parts(device, "mean", text.into(), &entries);
-        let targets = [FRAME, MEAN, SQUARES].map(|format| Some(format.into()));
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("mean"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: Default::default(),
-                targets: &targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        Self { layout, pipeline }
-    }
+fn adding(device: &RenderDevice) -> Cover {
+    let float = texture_2d(TextureSampleType::Float { filterable: false });
+    let uniform = uniform_buffer_sized(false, None);
+    let entries = (float, float, float, uniform, uniform);
+    let entries = BindGroupLayoutEntries::sequential(ShaderStages::FRAGMENT, entries);
+    let text = format!("{}{}", wgsl!("terms.wgsl").text, include_str!("mean.wgsl"));
+    Cover::new(device, "mean", (text.into(), "fragment"), &entries, (&[FRAME, MEAN, SQUARES], 1))
 }
 
 /// Adds the frame of a view to its mean, and replaces the frame by the mean.
@@ -215,7 +185,7 @@ fn join(
     device: Res<RenderDevice>,
     noise: Res<Noise>,
     mut measuring: ResMut<Measuring>,
-    mut pass: Local<Option<Pass>>,
+    mut pass: Local<Option<Cover>>,
     mut context: RenderContext,
 ) {
     let (target, joins, Mean { frames, textures: [known, next], .. }) = view.into_inner();
@@ -228,7 +198,7 @@ fn join(
         );
         return;
     }
-    let Pass { layout, pipeline } = pass.get_or_insert_with(|| Pass::new(&device));
+    let Cover { bindings, pipeline } = pass.get_or_insert_with(|| adding(&device));
     let share = [count as f32 / converged.done as f32, count as f32, 0.0, 0.0];
     let share = device.create_buffer_with_data(&BufferInitDescriptor {
         label: Some("mean"),
@@ -238,7 +208,7 @@ fn join(
     let frame = target.post_process_write();
     let group = device.create_bind_group(
         "mean",
-        layout,
+        bindings,
         &BindGroupEntries::sequential((
             frame.source,
             &known[0],

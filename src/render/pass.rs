@@ -6,7 +6,7 @@ use bevy::render::{
     render_resource::{
         BindGroupEntry, BindGroupLayout, BindGroupLayoutEntry, Buffer, BufferDescriptor, BufferUsages,
         CommandEncoder, ComputePassDescriptor, ComputePipeline, PipelineLayout, PipelineLayoutDescriptor,
-        ShaderModule, ShaderModuleDescriptor, ShaderSource,
+        RenderPipeline, ShaderModule, ShaderModuleDescriptor, ShaderSource, TextureFormat,
     },
     renderer::RenderDevice,
 };
@@ -28,6 +28,48 @@ pub(super) fn parts(
         immediate_size: 0,
     });
     (bindings, layout, module)
+}
+
+/// A pass that draws a triangle over the whole target.
+pub(super) struct Cover {
+    pub(super) bindings: BindGroupLayout,
+    pub(super) pipeline: RenderPipeline,
+}
+
+impl Cover {
+    /// The pass of the entry points `vertex` and `fragment` of a shader, into targets with so many samples in a pixel.
+    pub(super) fn new(
+        device: &RenderDevice,
+        label: &'static str,
+        (text, fragment): (Cow<'_, str>, &str),
+        entries: &[BindGroupLayoutEntry],
+        (formats, samples): (&[TextureFormat], u32),
+    ) -> Self {
+        let (bindings, layout, module) = parts(device, label, text, entries);
+        let targets: Vec<_> = formats.iter().map(|format| Some((*format).into())).collect();
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(label),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(fragment),
+                compilation_options: Default::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { bindings, pipeline }
+    }
 }
 
 /// An empty buffer.

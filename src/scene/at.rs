@@ -14,11 +14,14 @@ use super::{
 use crate::{
     parameter::{
         Parameter, Value,
-        kind::{Kind as _, colour::Colour},
+        kind::{
+            Kind as _,
+            colour::{Colour, hexadecimal},
+        },
         limits::number,
     },
     registry::Registry,
-    text::{did_you_mean, items, json::canonical, plural, quoted, shortened},
+    text::{did_you_mean, json::canonical, numbers, plural, quoted, shortened},
 };
 
 /// The declaration of a value.
@@ -338,20 +341,11 @@ fn of_field(field: &Field, text: &str) -> Option<Value> {
         Kind::Flag(_) => text.parse::<bool>().ok().map(Value::from),
         Kind::Text(_) | Kind::Id(_) | Kind::Choice(_) => Some(text.into()),
         Kind::Position | Kind::Direction | Kind::Step | Kind::Rotation => {
-            let all =
-                items(text).into_iter().map(|(_, item)| item.parse().ok()).collect::<Option<Vec<f32>>>()?;
-            <[f32; 3]>::try_from(all).ok().map(Value::Triple)
+            <[f32; 3]>::try_from(numbers(text)?).ok().map(Value::Triple)
         }
         Kind::Colour => Colour { default: [0; 3] }.parse(text),
         Kind::Material | Kind::Parameters | Kind::List | Kind::Part | Kind::Parts => None,
     }
-}
-
-/// The colour in a text such as `#ff8800`.
-fn hexadecimal(text: &str) -> Option<[u8; 3]> {
-    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6)?;
-    let code = u32::from_str_radix(digits, 16).ok()?;
-    Some([16, 8, 0].map(|shift| (code >> shift) as u8))
 }
 
 impl Scene {

@@ -4,7 +4,7 @@ use super::clause::Rule;
 use crate::files::Shown as _;
 use crate::{
     custom,
-    declared::in_words,
+    declared::texts,
     light::LightEntry,
     parameter::Parameter,
     reflection::ModelEntry,
@@ -14,10 +14,12 @@ use crate::{
     text::{self, detailed},
 };
 
-in_words! {
+texts! {
     /// The registered things to which an id may refer.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Ids {
+    Ids(
+        /// The name of what the ids refer to.
+        name
+    ) {
         /// Reflection models.
         ReflectionModel = "reflection model",
         /// Shading models.
@@ -27,8 +29,6 @@ in_words! {
         /// Object types.
         ObjectType = "object type",
     }
-    /// The name of what the ids refer to.
-    name
 }
 
 /// Something registered.

@@ -48,8 +48,6 @@ use crate::{
 pub const MAX_PICTURES: usize = 10_000;
 /// Maximum number of pixels of all pictures of a sheet or a film together: they are in memory at once.
 pub const MAX_PIXELS: u64 = 1 << 28;
-/// Maximum width and height of a sheet, pixels: programs cannot show larger ones.
-pub const MAX_SIDE: u32 = 16_384;
 /// Maximum number of problems named for a picture.
 const MAX_NAMED: usize = 3;
 

@@ -7,7 +7,7 @@ use crate::{
     parameter::Value,
     registry::Registry,
     scene::at::Place,
-    text::{items, quoted, shortened},
+    text::{items, numbers, quoted, shortened},
 };
 
 /// The form of a range, for messages.
@@ -78,8 +78,7 @@ fn range(text: &str, place: &Place, registry: &Registry) -> Result<Vec<String>, 
             return Err("only numbers have ranges; write words one by one, with commas".to_owned());
         }
         // In 64 bits, so that 0.3 is in the middle of 0.1 and 0.5.
-        let exact: Option<Vec<f64>> = items(point).into_iter().map(|(_, item)| item.parse().ok()).collect();
-        Ok(match exact.as_deref() {
+        Ok(match numbers::<f64>(point).as_deref() {
             Some([v]) => [*v; 3],
             Some([x, y, z]) => [*x, *y, *z],
             _ => value.numbers(),

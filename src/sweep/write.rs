@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    Axis, MAX_PIXELS, MAX_SIDE, Sweep,
+    Axis, MAX_PIXELS, Sweep,
     draw::{Check, Settings, pictures},
     film::gif,
     parts::{Parts, unwritten},
@@ -17,6 +17,7 @@ use crate::{
     failure::Failure,
     files::{self, FileError, Output, PNG, Signature},
     progress::Progress,
+    reference::MAX_SIDE,
     render::capture::png::{self, About},
     scene::Comparison,
 };

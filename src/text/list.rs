@@ -1,5 +1,7 @@
 //! Short lists as typed by people: on the command line and in the cells of a table.
 
+use std::str::FromStr;
+
 /// The items of a list, each with its byte: `255 128 0`, `255, 128, 0`, `255; 128; 0`, with or without
 /// enclosing brackets. An item between two separators may be empty.
 #[must_use]
@@ -12,6 +14,12 @@ pub fn items(text: &str) -> Vec<(usize, &str)> {
     // Slices of one text: their distance is their position.
     let place = |item: &str| item.as_ptr() as usize - text.as_ptr() as usize;
     raw.into_iter().map(str::trim).map(|item| (place(item), item)).collect()
+}
+
+/// Every item of a list as a number; `None` if one of them is none.
+#[must_use]
+pub fn numbers<T: FromStr>(text: &str) -> Option<Vec<T>> {
+    items(text).into_iter().map(|(_, item)| item.parse().ok()).collect()
 }
 
 #[cfg(test)]

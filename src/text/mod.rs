@@ -11,7 +11,7 @@ pub(crate) mod template;
 mod words;
 pub mod xml;
 
-pub use list::items;
+pub use list::{items, numbers};
 pub use words::{
     capitalised, detailed, did_you_mean, listed, nearest, number, one_of, per_cent, plural, quoted, sentence,
     shortened, superscript, trimmed, with_article, wrapped,

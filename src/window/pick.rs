@@ -18,7 +18,7 @@ use crate::{
     reference::{Settings, Shot, meshes::MeshStore, probe::towards},
     registry::Registry,
     render::{entities::CurrentScene, schedule::LabFrame},
-    scene::{Light, Observer, Scene, emitter},
+    scene::{Light, Scene, emitter},
 };
 
 /// Selects what the user clicks in the picture.
@@ -94,11 +94,9 @@ fn pick(
 /// The object that a ray meets first, and its distance, as the CPU renderer sees it: the meshes of the window are on the
 /// GPU alone.
 fn object_at(scene: &Scene, registry: &Registry, ray: Ray3d, meshes: &mut MeshStore) -> Option<(usize, f32)> {
-    let observer = Observer { position: ray.origin, ..scene.observer };
     let settings = Settings { width: 1, height: 1, samples: 1, ..Settings::default() };
-    let scene = Scene { observer, ..scene.clone() };
-    let (object, there) =
-        towards(meshes, Shot::new(&scene, registry, &settings), ray.origin + *ray.direction)?;
+    let sight = [ray.origin, ray.origin + *ray.direction];
+    let (object, there) = towards(meshes, Shot::new(scene, registry, &settings), sight)?;
     Some((object, there.distance(ray.origin)))
 }
 

@@ -21,17 +21,19 @@ pub use slices::{GAP, SIDE, Slices, Tile};
 use bitmap::Bitmap;
 use svg::{Place, Svg};
 
-use crate::declared::{in_words, with_defaults};
+use crate::declared::{texts, with_defaults};
 
 /// The colour of text and axes in stand-alone figures.
 const INK: [u8; 3] = [28, 29, 31];
 /// The colour of grid lines behind the curves.
 const GRID: [u8; 3] = [222, 222, 218];
 
-in_words! {
+texts! {
     /// The line between the points of a series.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum Line {
+    Line(
+        /// The line in words.
+        name
+    ) {
         /// A solid line.
         Solid = "solid",
         /// Dashes.
@@ -51,8 +53,6 @@ in_words! {
         /// No line.
         None = "none",
     }
-    /// The line in words.
-    name
 }
 
 impl Line {

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use bevy_egui::egui::Key;
 
 use super::state::{Action, LessonCommand, Session, Shortcut};
-use crate::{declared::in_words, registry::Registry, text::quoted};
+use crate::{declared::texts, registry::Registry, text::quoted};
 
 mod edit;
 mod elsewhere;
@@ -33,10 +33,13 @@ pub(super) const EXAMPLES: &str = "Examples";
 pub(super) const LESSONS: &str = "Lessons";
 pub(super) const LOBE: &str = "Lobe at the explained point";
 
-in_words! {
+texts! {
     /// The headings of the list of keys, in its order.
-    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-    pub enum Group {
+    #[derive(Default, PartialOrd, Ord)]
+    Group(
+        /// The heading.
+        name
+    ) {
         /// Documents and pictures.
         File = "File",
         /// Parts of the scene, and the history.
@@ -59,8 +62,6 @@ in_words! {
         /// Lessons.
         Lessons = "Lessons",
     }
-    /// The heading.
-    name
 }
 
 /// The form of a menu entry.

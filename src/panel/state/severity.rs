@@ -1,11 +1,14 @@
 //! Severities.
 
-use crate::declared::in_words;
+use crate::declared::texts;
 
-in_words! {
+texts! {
     /// Severity of a message.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-    pub enum Severity {
+    #[derive(PartialOrd, Ord)]
+    Severity(
+        /// Name of the severity.
+        name
+    ) {
         /// Information.
         Info = "note",
         /// Something is not as requested, but the picture is correct.
@@ -13,6 +16,4 @@ in_words! {
         /// Something failed.
         Error = "error",
     }
-    /// Name of the severity.
-    name
 }

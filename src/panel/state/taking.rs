@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Effect, Pick, Session, Severity};
-use crate::{channel::LayerKind, reference::MAX_SIDE};
+use crate::{channel::LayerKind, declared::with_defaults, reference::MAX_SIDE};
 
 /// A command for saved pictures.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,38 +90,26 @@ impl PictureSize {
     }
 }
 
-/// Options of saved pictures, except for the caption, which a command changes too:
-/// [`picture_caption`](super::Settings::picture_caption).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct PictureOptions {
-    /// The size.
-    pub size: PictureSize,
-    /// Width and height of a size of the user's own, in pixels.
-    pub own: [u32; 2],
-    /// True for four samples per pixel, which smooth edges. Pictures as the view have those of the view.
-    pub smooth: bool,
-    /// True if the caption has the numbers of the difference between views.
-    pub numbers: bool,
-    /// True if maps of differences and debug channels have their legends.
-    pub legend: bool,
-    /// The colour of the background, instead of that of the scene.
-    pub background: Option<[u8; 3]>,
-    /// Ids of the layers of OpenEXR files.
-    pub layers: Vec<String>,
-}
-
-impl Default for PictureOptions {
-    fn default() -> Self {
-        Self {
-            size: PictureSize::AsView,
-            own: [1280, 720],
-            smooth: true,
-            numbers: false,
-            legend: true,
-            background: None,
-            layers: LayerKind::ALL.iter().map(|kind| kind.id().to_owned()).collect(),
-        }
+with_defaults! {
+    /// Options of saved pictures, except for the caption, which a command changes too:
+    /// [`picture_caption`](super::Settings::picture_caption).
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct PictureOptions {
+        /// The size.
+        pub size: PictureSize = PictureSize::AsView,
+        /// Width and height of a size of the user's own, in pixels.
+        pub own: [u32; 2] = [1280, 720],
+        /// True for four samples per pixel, which smooth edges. Pictures as the view have those of the view.
+        pub smooth: bool = true,
+        /// True if the caption has the numbers of the difference between views.
+        pub numbers: bool = false,
+        /// True if maps of differences and debug channels have their legends.
+        pub legend: bool = true,
+        /// The colour of the background, instead of that of the scene.
+        pub background: Option<[u8; 3]> = None,
+        /// Ids of the layers of OpenEXR files.
+        pub layers: Vec<String> = LayerKind::ALL.iter().map(|kind| kind.id().to_owned()).collect(),
     }
 }
 
@@ -162,25 +150,21 @@ impl PictureOptions {
     }
 }
 
-/// Options of saved sheets.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct SheetOptions {
-    /// Width and height of each picture, in pixels.
-    pub size: [u32; 2],
-    /// Number of pictures in a row of the sheet; 0 leaves it to the program.
-    pub columns: u32,
-    /// True with labels and a caption.
-    pub labels: bool,
-    /// True with maps of the differences from the first picture.
-    pub differences: bool,
-    /// True for four samples per pixel, which smooth edges.
-    pub smooth: bool,
-}
-
-impl Default for SheetOptions {
-    fn default() -> Self {
-        Self { size: [640, 360], columns: 0, labels: true, differences: true, smooth: true }
+with_defaults! {
+    /// Options of saved sheets.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct SheetOptions {
+        /// Width and height of each picture, in pixels.
+        pub size: [u32; 2] = [640, 360],
+        /// Number of pictures in a row of the sheet; 0 leaves it to the program.
+        pub columns: u32 = 0,
+        /// True with labels and a caption.
+        pub labels: bool = true,
+        /// True with maps of the differences from the first picture.
+        pub differences: bool = true,
+        /// True for four samples per pixel, which smooth edges.
+        pub smooth: bool = true,
     }
 }
 

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::{
     Cursor, Encoding, Header, Json, Kind, Limits, Parameter, ParameterKind, Payload, Place, Reader, Type,
-    Value, Vec3, all, header, joined,
+    Value, Vec3, header, joined, text,
 };
 
 /// What a value holds: an sRGB-encoded colour.
@@ -52,7 +52,7 @@ impl Kind for Colour {
     }
 
     fn parse(&self, text: &str) -> Option<Value> {
-        all(text)?.try_into().ok().map(Value::Colour)
+        text::numbers(text)?.try_into().ok().map(Value::Colour)
     }
 
     fn read(&self, reader: &mut dyn Reader, value: Cursor, rule: &str, _: Place) -> Option<Value> {
@@ -140,8 +140,9 @@ fn channel(value: Cursor) -> Option<u8> {
 }
 
 /// `#ff8000` as three numbers.
-fn hexadecimal(text: &str) -> Option<[u8; 3]> {
-    let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.is_ascii())?;
+pub(crate) fn hexadecimal(text: &str) -> Option<[u8; 3]> {
+    let is_digits = |d: &&str| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit());
+    let digits = text.strip_prefix('#').filter(is_digits)?;
     let channel = |i: usize| u8::from_str_radix(&digits[i..i + 2], 16).ok();
     Some([channel(0)?, channel(2)?, channel(4)?])
 }

@@ -1,7 +1,7 @@
 //! The kinds of parameters, a file each: what the program does with a value, except for its knob in the window, which is
 //! in the file of the same name in `panel/knob`.
 
-use std::{fmt, ops::Deref, path::Path, str::FromStr};
+use std::{fmt, ops::Deref, path::Path};
 
 use bevy::reflect::Reflect;
 use glam::Vec3;
@@ -15,7 +15,7 @@ use super::{
 use crate::{
     optics::colour::Encoding,
     text::{
-        self, items,
+        self,
         json::{Cursor, Fields, Reader},
     },
 };
@@ -356,11 +356,6 @@ pub fn lanes(wgsl: &str) -> usize {
         [b'v', b'e', b'c', n @ b'2'..=b'4', ..] => usize::from(n - b'0'),
         _ => 1,
     }
-}
-
-/// Every item of a list as a number.
-fn all<T: FromStr>(text: &str) -> Option<Vec<T>> {
-    items(text).into_iter().map(|(_, item)| item.parse().ok()).collect()
 }
 
 /// Three numbers as text.

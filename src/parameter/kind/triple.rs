@@ -6,7 +6,8 @@ use serde_json::json;
 
 use super::{
     Cursor, Declarations, Encoding, Header, Json, Kind, Limits, Member, Parameter, ParameterKind, Payload,
-    Place, Reader, Type, Value, Vec3, all, check_range, header, joined, text::number,
+    Place, Reader, Type, Value, Vec3, check_range, header, joined,
+    text::{self, number},
 };
 
 /// What a value holds.
@@ -48,7 +49,7 @@ impl Kind for Triple {
     }
 
     fn parse(&self, text: &str) -> Option<Value> {
-        match all(text)?[..] {
+        match text::numbers(text)?[..] {
             [all] => Some(Value::Triple([all; 3])),
             [r, g, b] => Some(Value::Triple([r, g, b])),
             _ => None,

@@ -7,7 +7,7 @@ use super::{
     problems::Problems,
 };
 use crate::{
-    declared::in_words,
+    declared::texts,
     parameter::Parameter,
     registry::Registry,
     scene::{
@@ -23,16 +23,17 @@ use crate::{
 /// The name of the first column.
 pub(super) const PART: &str = "part";
 
-in_words! {
+texts! {
     /// The kinds of rows, by the names in the first column.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub(super) enum Part {
+    Part(
+        /// The name in the first column.
+        name
+    ) {
         Scene = "scene",
         Light = "light",
         Observer = "observer",
         Object = "object",
     }
-    name
 }
 
 impl Part {
