@@ -36,13 +36,13 @@ fn export(scene: &Scene, registry: &Registry) -> Result<Export, ExportError> {
 }
 
 /// The page of a scene.
-fn page(scene: &Scene) -> Result<Vec<u8>, ExportError> {
+pub(super) fn page(scene: &Scene) -> Result<Vec<u8>, ExportError> {
     let export = export(scene, &Registry::builtin())?;
     assert!(export.files.len() == 1 && export.files[0].path.is_empty());
     Ok(export.files[0].bytes.clone())
 }
 
-fn scene(path: &Path) -> Scene {
+pub(super) fn scene(path: &Path) -> Scene {
     load::file(path, &Registry::builtin(), Defaults::Refuse).expect("valid").scene
 }
 
@@ -139,12 +139,12 @@ fn scenes_that_no_page_can_hold_are_refused_with_the_reason() {
 
 /// The mean difference of two pictures in levels, and the fraction of values that differ by more than 2.
 #[derive(Clone, Copy, Debug)]
-struct Difference {
-    mean: f64,
-    beyond: f64,
+pub(super) struct Difference {
+    pub(super) mean: f64,
+    pub(super) beyond: f64,
 }
 
-fn difference(a: &[u8], b: &[u8]) -> Difference {
+pub(super) fn difference(a: &[u8], b: &[u8]) -> Difference {
     assert_eq!(a.len(), b.len());
     let off = || a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
     let count = a.len() as f64;
@@ -156,8 +156,8 @@ fn difference(a: &[u8], b: &[u8]) -> Difference {
 
 /// One sample per pixel, so that no edge is smoothed: the page smooths display colours, and the program
 /// light. The page snaps corners to a grid, which moves a few pixels of silhouettes; no others may differ.
-const MEAN: f64 = 0.15;
-const BEYOND: f64 = 0.004;
+pub(super) const MEAN: f64 = 0.15;
+pub(super) const BEYOND: f64 = 0.004;
 
 /// The size of pictures. Software draws frames of 64 samples in seconds; larger ones would outlast the patience of the
 /// browser on a busy machine.
@@ -189,7 +189,7 @@ fn rendered(scene: &Path, folder: &Path, options: &[&str]) -> Vec<u8> {
 }
 
 /// Sets a control of the panel as a user does, and waits until the picture has followed.
-fn set(browser: &Browser, selector: &str, value: &str) {
+pub(super) fn set(browser: &Browser, selector: &str, value: &str) {
     browser.run(&format!(
         "const control = document.querySelector({selector:?});
         if (control.type === 'radio') control.click();
