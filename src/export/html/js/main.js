@@ -67,7 +67,7 @@ class Page {
         const renderer = await kind.create(this.canvas, samples);
         this.renderer = renderer;
         if (!renderer) continue;
-        renderer.lost.then(() => (renderer.isLost = this.gaveUp = true));
+        renderer.lost.then(() => (this.gaveUp = true));
         const [width, height] = this.resize();
         await renderer.tryDrawing(this.scene, this.work.trial(this.scene, width, height), width, height);
         // Drivers compile a shader when they first draw with it.

@@ -20,6 +20,11 @@ class WebGl {
     this.programs = new WeakMap();
   }
 
+  // At once; `lost` comes later.
+  get isLost() {
+    return this.gl.isContextLost();
+  }
+
   get largest() {
     return this.gl.getParameter(this.gl.MAX_RENDERBUFFER_SIZE);
   }

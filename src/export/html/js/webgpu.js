@@ -19,6 +19,8 @@ class WebGpu {
     const usage = GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_DST;
     context.configure({ device, format: this.format, usage, alphaMode: 'premultiplied' });
     this.lost = device.lost.then((info) => (info.reason === 'destroyed' ? new Promise(() => {}) : info));
+    this.isLost = false;
+    this.lost.then(() => (this.isLost = true));
     this.buffers = new WeakMap();
     this.meshes = new WeakMap();
     this.pipelines = new WeakMap();
