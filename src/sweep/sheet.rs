@@ -323,7 +323,8 @@ mod tests {
         assert_eq!(inked(&silent.compose(&pictures, &[], None)), 0);
         // On a light ground the ink is dark.
         let light = Page::new(&both, grid, cell, false).on(Ground::LIGHT).compose(&pictures, &[], None);
-        assert!(count(&light, 246) > 500 && count(&light, 12) > 5 && count(&light, 24) == 0);
+        let darker = light.as_chunks::<3>().0.iter().filter(|p| p[0] < 40).count();
+        assert!(count(&light, 246) > 500 && darker > 10, "{darker}");
         // A film of one picture without words is the picture.
         let one = Page::new(&[], Grid::of(&[], None).expect("one"), cell, false);
         assert_eq!((one.size(), one.compose(&pictures[..1], &[], None) == pictures[0]), (cell, true));

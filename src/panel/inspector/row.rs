@@ -173,7 +173,7 @@ impl Shown<'_> {
     /// The knobs of a varied value.
     fn varied(&self, ui: &mut Ui, j: usize) -> Option<Edit> {
         let varied = &self.row.repeat.vary[j];
-        ui.add_space(2.0);
+        ui.add_space(6.0);
         let chosen = self.which_value(ui, j, varied);
         let range =
             if varied.values.is_empty() { self.range(ui, j, varied) } else { self.list(ui, j, varied) };
@@ -196,25 +196,22 @@ impl Shown<'_> {
         let mut names: Vec<_> = numbers.iter().map(|one| one.label()).collect();
         // What only a file can choose is shown as it stands there.
         names.extend(now.is_none().then_some(varied.parameter.as_str()));
-        let mut edit = None;
-        ui.horizontal(|ui| {
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if icon::button(ui, Icon::Bin, "The same for all copies").clicked() {
-                    edit = Some(self.with("Varied value", |row| drop(row.vary.remove(j))));
-                }
-                ui.with_layout(Layout::top_down(Align::Min), |ui| {
-                    let caption = Caption::new("varies", "", Varied::parameter.help.trim());
-                    let new = knob::choice_knob(ui, &caption, now.unwrap_or(numbers.len()), &names);
-                    let new = new.and_then(|k| numbers.get(k)).and_then(|one| one.over_its_range());
-                    if let Some(new) = new {
-                        let along = varied.along;
-                        edit =
-                            Some(self.varying("Varied value", j, |known| *known = Varied { along, ..new }));
-                    }
-                });
-            });
+        let caption = Caption::new("varies", "", Varied::parameter.help.trim());
+        let line = ui.scope(|ui| knob::choice_knob(ui, &caption, now.unwrap_or(numbers.len()), &names));
+        let new = line.inner.and_then(|k| numbers.get(k)).and_then(|one| one.over_its_range());
+        let chosen = new.map(|new| {
+            let along = varied.along;
+            self.varying("Varied value", j, |known| *known = Varied { along, ..new })
         });
-        edit
+        // In the column of the units, so that the choice is in line with those below.
+        let place = Rect::from_min_size(
+            line.response.rect.right_top() + vec2(-icon::SIZE, 2.0),
+            Vec2::splat(icon::SIZE),
+        );
+        let mut unit = ui.new_child(UiBuilder::new().max_rect(place));
+        let same = icon::button(&mut unit, Icon::Bin, "The same for all copies").clicked();
+        let same = same.then(|| self.with("Varied value", |row| drop(row.vary.remove(j))));
+        chosen.or(same)
     }
 
     /// The ends of a range, and its scale.

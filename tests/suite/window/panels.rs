@@ -1457,7 +1457,8 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         b.click("Vary a value");
     }
     fn scroll(b: &mut Bench, by: f32) {
-        b.frame(vec![Event::PointerMoved(pos2(1100.0, 400.0))]);
+        let all = b.ctx.content_rect();
+        b.frame(vec![Event::PointerMoved(all.lerp_inside(vec2(0.86, 0.55)))]);
         let delta = vec2(0.0, by);
         b.frame(vec![Event::MouseWheel {
             unit: egui::MouseWheelUnit::Point,

@@ -510,6 +510,7 @@ fn five_spheres_with_labels_are_a_picture_in_six_actions() {
     user.key(Key::R, Modifiers::COMMAND);
     user.key(Key::P, Modifiers::COMMAND);
     user.key(Key::Enter, Modifiers::NONE);
+    // In place of the name that is proposed.
     user.bench.key(Key::A, Modifiers::COMMAND | Modifiers::CTRL);
     user.type_text("row");
     assert_eq!(user.count, 6);
@@ -518,12 +519,12 @@ fn five_spheres_with_labels_are_a_picture_in_six_actions() {
         _ => None,
     });
     let asked = asked.unwrap_or_else(|| panic!("{:?}", user.bench.effects));
-    assert_eq!(asked.file_name().and_then(|name| name.to_str()), Some("row.png"));
+    assert_eq!(asked.file_name().and_then(|name| name.to_str()), Some("row"));
     // The picture that is asked for, at the size of a test.
     let mut app = lab(folder.path());
     session(&mut app).document = user.bench.session.document.clone();
     let _ = take(&mut app, None, &asked, false);
-    let scene = opened(&asked);
+    let scene = opened(&asked.with_extension("png"));
     let row = scene.row(0).expect("a row");
     assert_eq!(
         (row.count, row.repeat.labels, scene.reflection_model.as_str()),
