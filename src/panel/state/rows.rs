@@ -39,7 +39,7 @@ impl Session {
     fn telling(&self, object: &Object, registry: &Registry) -> Option<Varied> {
         let model = registry.model(self.document.model_of(object))?;
         let used = |p: &&Parameter| usage::unused(model.parameters, p, &object.material).is_none();
-        let numbers = model.parameters.iter().filter(used).map(Variable::Material);
+        let numbers = model.parameters.iter().filter(used).map(Variable::of_material);
         let ranges: Vec<_> = numbers.filter_map(Variable::over_its_range).collect();
         let telling = [ROUGHNESS, ALPHA, SIGMA].map(|p| format!("{}.{}", Object::material.key, p.name));
         let known = |path: &String| ranges.iter().find(|varied| varied.parameter == *path);
