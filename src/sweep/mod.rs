@@ -290,20 +290,20 @@ mod tests {
             let start = format!(
                 "objects[0].material.roughness has no effect: {model} has no roughness; it belongs to "
             );
-            assert!(said.starts_with(&start) && said.contains("ward"), "{said}");
+            assert!(said.starts_with(&start) && said.contains("eon"), "{said}");
         }
-        let made = sweep(&scene, &registry, &[roughness, "reflection_model=lambert,ward,phong"])
-            .expect("Ward has it");
+        let made = sweep(&scene, &registry, &[roughness, "reflection_model=lambert,eon,phong"])
+            .expect("EON has it");
         let words = |axis: usize| made.axes[axis].labels.iter().map(Words::words).collect::<Vec<_>>();
         assert_eq!(words(0), ["r 0.1", "r 0.5", "r 0.9"]);
-        assert_eq!(words(1), ["Lambert (no roughness)", "Ward", "Phong (no roughness)"]);
+        assert_eq!(words(1), ["Lambert (no roughness)", "EON", "Phong (no roughness)"]);
         let expected = "objects[0].material.roughness has no effect in 6 of 9 pictures: Lambert has no roughness; \
                         Phong has no roughness";
         assert_eq!(made.remarks(), [expected]);
         assert!(made.file(0).ends_with("reflection-model_lambert.png"), "{}", made.file(0));
         // A view may choose the model.
-        let ward = Variant { reflection_model: Some("ward".to_owned()), ..Variant::default() };
-        let scene = Scene { variants: vec![ward], ..scene };
+        let eon = Variant { reflection_model: Some("eon".to_owned()), ..Variant::default() };
+        let scene = Scene { variants: vec![eon], ..scene };
         let axis = Axis::vary(roughness, &scene, &registry).expect("numbers");
         assert!(
             Sweep::new(&scene, 1, vec![axis.clone()], &registry).is_ok_and(|made| made.remarks().is_empty())

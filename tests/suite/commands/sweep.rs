@@ -191,16 +191,15 @@ fn what_a_model_does_not_use_is_refused_and_where_some_do_not_it_is_said() {
     let roughness = ["--vary", "objects[0].material.roughness=0.1..0.9:3", "-o", "x.png"];
     let run = sweep(folder.path(), &roughness);
     refused(&run, 2, "objects[0].material.roughness has no effect: Lambert has no roughness; it belongs to ");
-    assert!(run.err.contains("ward"), "{}", run.err);
+    assert!(run.err.contains("eon"), "{}", run.err);
     assert_eq!(names(folder.path()), Vec::<String>::new());
     // A model from the command line uses it, as in lcm render.
-    let run =
-        done(folder.path(), &[&roughness[..], &["--reflection", "ward", "--shading", "phong"]].concat());
+    let run = done(folder.path(), &[&roughness[..], &["--reflection", "eon", "--shading", "phong"]].concat());
     assert!(!run.err.contains("no effect"), "{}", run.err);
     let scene = load::file(&folder.path().join("x.png"), &Registry::builtin(), Defaults::Refuse);
     let scene = scene.expect("has a scene").scene;
-    assert_eq!((&*scene.reflection_model, &*scene.shading_model), ("ward", "phong"));
-    let run = done(folder.path(), &[&roughness[..], &["--vary", "reflection_model=lambert,ward"]].concat());
+    assert_eq!((&*scene.reflection_model, &*scene.shading_model), ("eon", "phong"));
+    let run = done(folder.path(), &[&roughness[..], &["--vary", "reflection_model=lambert,eon"]].concat());
     let said = "objects[0].material.roughness has no effect in 3 of 6 pictures: Lambert has no roughness";
     assert!(run.err.contains(said), "{}", run.err);
     // Typing errors in models have the nearest.
@@ -215,7 +214,7 @@ fn what_a_model_does_not_use_is_refused_and_where_some_do_not_it_is_said() {
             expected,
         );
     }
-    let twice = ["--reflection", "ward", "--vary", "reflection_model=phong,ward", "-o", "y.png"];
+    let twice = ["--reflection", "eon", "--vary", "reflection_model=phong,eon", "-o", "y.png"];
     refused(
         &sweep(folder.path(), &twice),
         2,
