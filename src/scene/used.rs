@@ -115,7 +115,7 @@ mod tests {
         let said = idle(roughness, &scene).expect("Lambert is matte");
         assert_eq!(said.why, "Lambert has no roughness");
         assert!(said.users.contains(&"eon") && !said.users.contains(&"phong"), "{said:?}");
-        assert_eq!(idle("objects[0].material.k_d", &scene), None);
+        assert_eq!(idle("objects[0].material.base_colour", &scene), None);
         assert_eq!(idle("objects[0].size", &scene), None);
         scene.objects.push(Object { reflection_model: Some("eon".to_owned()), ..Object::default() });
         assert_eq!(idle("objects[1].material.roughness", &scene), None, "its own model");
