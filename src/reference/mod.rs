@@ -472,15 +472,13 @@ mod tests {
     #[test]
     fn large_pictures_are_drawn_in_bands_without_seams() {
         let registry = Registry::builtin();
-        let mut scene = Scene::default();
         // Several batches of polygons.
-        scene.objects = (0..5)
-            .map(|i| Object {
-                position: glam::Vec3::new(2.0 + 1.5 * i as f32, 5.0, 5.0),
-                tessellation: Some(192),
-                ..Object::default()
-            })
-            .collect();
+        let object = |i| Object {
+            position: glam::Vec3::new(2.0 + 1.5 * i as f32, 5.0, 5.0),
+            tessellation: Some(192),
+            ..Object::default()
+        };
+        let scene = Scene { objects: (0..5).map(object).collect(), ..Scene::default() };
         let settings = Settings { width: 150, height: 130, ..Settings::default() };
         let shot = Shot::new(&scene, &registry, &settings);
         let screen = Screen::new(150, 130, 4);
