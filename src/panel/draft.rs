@@ -6,6 +6,8 @@ use super::prelude::*;
 
 /// Width of such a window, in points.
 const WIDTH: f32 = 440.0;
+/// Height of title, margins and buttons of such a window, in points.
+const AROUND: f32 = 132.0;
 
 /// Shows such a window around a point. Returns false if the user closes it.
 pub(super) fn window(ui: &Ui, id: &str, title: String, centre: Pos2, content: impl FnOnce(&mut Ui)) -> bool {
@@ -16,6 +18,19 @@ pub(super) fn window(ui: &Ui, id: &str, title: String, centre: Pos2, content: im
         ui.set_width(WIDTH);
         content(ui);
     })
+}
+
+/// What such a window asks for. It scrolls where the screen is too low for it: the buttons below stay in sight.
+pub(super) fn content(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    let most = ui.ctx().content_rect().height() - AROUND;
+    let scroll = ScrollArea::vertical().auto_shrink([false, true]).min_scrolled_height(most);
+    scroll.max_height(most).show(ui, |ui| {
+        add(ui);
+        // Tab brings into sight what it reaches.
+        let focused = ui.memory(|memory| memory.focused()).and_then(|id| ui.ctx().read_response(id));
+        let reached = focused.filter(|on| on.gained_focus() && ui.min_rect().contains_rect(on.rect));
+        reached.inspect(|on| on.scroll_to_me(None));
+    });
 }
 
 /// The buttons of such a window: what it is for, which stands out if it is possible now, and *Cancel*.

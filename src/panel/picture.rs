@@ -76,7 +76,7 @@ struct Overlaid<'c, 'a> {
     written: Vec<Rect>,
 }
 
-impl Overlaid<'_, '_> {
+impl<'a> Overlaid<'_, 'a> {
     /// Paints the overlays into the picture, which extends over `whole`, and around it the texts of a presentation.
     fn single(&mut self, ui: &mut Ui, [whole, rect]: [Rect; 2], stage: Option<&Stage>) {
         let (session, registry) = (self.context.session(), self.context.registry());
@@ -89,7 +89,7 @@ impl Overlaid<'_, '_> {
         // A presentation has no marks, and its messages are as large as the rest of the text.
         self.marked(ui, rect);
         self.written.extend(labels::labels(ui, rect, view, session, registry));
-        self.written.extend(explain::vectors(ui, rect, view, session, registry));
+        self.written.extend(explain::vectors(ui, view, self.sight(rect)));
         ui.scope(|ui| {
             let free = stage.map_or(rect, |stage| stage.paint(ui, session, registry));
             let covered = self.stale(ui, free);
@@ -118,14 +118,19 @@ impl Overlaid<'_, '_> {
         place.bottom() + 4.0
     }
 
+    /// A picture for marks and vectors, which keep clear of what was written over it in the previous frame.
+    fn sight(&self, rect: Rect) -> marks::Sight<'a> {
+        let (session, registry) = (self.context.session(), self.context.registry());
+        marks::Sight { rect, written: &self.context.area().written, session, registry }
+    }
+
     /// Paints the marks of a view, and over them the handles of the selection.
     fn marked(&mut self, ui: &Ui, rect: Rect) {
-        let (session, registry) = (self.context.session(), self.context.registry());
+        let session = self.context.session();
         if session.view.presenting {
             return;
         }
-        // Marks keep clear of what was written over the picture in the previous frame.
-        let sight = marks::Sight { rect, written: &self.context.area().written, session, registry };
+        let sight = self.sight(rect);
         // Handles would cover the pixel that is explained or that a lesson refers to, and look like vectors.
         let covers = session.explains() || session.lesson.is_some();
         let paints = [marks::marks, handles::handles];
@@ -158,7 +163,7 @@ impl Overlaid<'_, '_> {
         }
         for cell in cells.iter().filter(|cell| cell.rect.is_positive()) {
             // Stacked views share a rectangle.
-            self.written.extend(explain::vectors(ui, cell.rect, cell.view, session, registry));
+            self.written.extend(explain::vectors(ui, cell.view, self.sight(cell.rect)));
         }
         let active = cells.iter().find(|cell| cell.view == session.active());
         let mut stale = None;

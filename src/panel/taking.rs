@@ -56,10 +56,10 @@ fn is_gone(session: &Session, of: Taken) -> bool {
 fn ask(ui: &mut Ui, draft: &TakeDraft, context: &mut PanelContext<'_>) {
     let mut next = draft.clone();
     let mut typed = Typed::default();
-    match draft.of {
+    draft::content(ui, |ui| match draft.of {
         Taken::Picture(view) => picture(ui, view, &mut next, (&mut typed, context.session())),
         Taken::Sheet(row) => sheet(ui, row, &mut next, (&mut typed, context)),
-    }
+    });
     ui.add_space(10.0);
     let [choose, cancel] = draft::buttons(ui, "Choose a file…", !typed.is_wrong);
     // Tab stays in the window, and Enter takes the options unless another widget has the focus.

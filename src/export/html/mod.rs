@@ -48,6 +48,7 @@ const SCRIPT: &[&str] = &[
     include_str!("js/uniform.js"),
     include_str!("js/scene.js"),
     include_str!("js/curve.js"),
+    include_str!("js/work.js"),
     include_str!("js/webgpu.js"),
     include_str!("js/webgl.js"),
     include_str!("js/gestures.js"),

@@ -4,12 +4,15 @@ use naga::{AddressSpace, ShaderStage, back::glsl::Version};
 use serde_json::{Value as Json, json};
 
 use super::{blocks::Blocks, limits, texts::Texts};
-use crate::export::{
-    ExportError,
-    lit::{Drawn, Lit, Program},
-    manifest::uniforms,
-    shader::module,
-    translate::{ENTRY_POINTS, Glsl, glsl},
+use crate::{
+    export::{
+        ExportError,
+        lit::{Drawn, Lit, Program},
+        manifest::uniforms,
+        shader::module,
+        translate::{ENTRY_POINTS, Glsl, glsl},
+    },
+    shading::Stage,
 };
 
 /// WebGL 2.
@@ -54,6 +57,8 @@ pub fn program(
     }
     Ok(json!({
         "faces": program.faces(),
+        // Lit at the corners of triangles, not at pixels.
+        "corners": program.shading.declaration.stage != Stage::Pixel,
         "wgsl": texts.add(text),
         "glsl": stages,
         "uniforms": all,

@@ -10,7 +10,7 @@ use crate::{
     explain::{Lit, Model, Place, Seen, Spot},
     panel::{
         is_in_sight, linked,
-        marks::{Ink, Lens, OUTLINE},
+        marks::{Ink, Lens, OUTLINE, Sight},
         prelude::*,
     },
     shading::Stage,
@@ -69,8 +69,10 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
 }
 
 /// Paints the vectors of the explained point into a view, while the point is pinned or under the pointer; those of a
-/// pinned point also into the other views. Returns the rectangle of the legend of the lobe.
-pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Registry) -> Option<Rect> {
+/// pinned point also into the other views. Their letters keep clear of what is written over the picture. Returns the
+/// rectangle of the legend of the lobe.
+pub fn vectors(ui: &Ui, view: usize, sight: Sight<'_>) -> Option<Rect> {
+    let Sight { rect, written, session, registry } = sight;
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
     let explained =
         probe::explained_in(ui.ctx(), view).filter(|_| shown && rect.size().min_elem() >= SMALLEST)?;
@@ -79,7 +81,7 @@ pub fn vectors(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &R
     let name = |light: usize| session.name_of(Selection::Light(light), registry);
     let mut room = Room::default();
     let legend = if explains { lobe::paint(ui, rect, &explained, session, &mut room, &name) } else { None };
-    legend.into_iter().for_each(|legend| room.take_plate(legend));
+    legend.iter().chain(written).for_each(|plate| room.take_plate(*plate));
     let at = ui.input(|i| i.pointer.latest_pos().filter(|_| !i.pointer.any_down()));
     let pointer = at.filter(|at| is_in_sight(ui.ctx(), rect, *at));
     let ink = Ink::new(Lens::of(session, rect));

@@ -8,8 +8,8 @@ use lights_camera_models::{
     panel::{
         explain::{Explained, explained, lobes_shown, lobes_shown_in},
         state::{
-            Action, CompareCommand, EXPLAIN_TAB, Effect, LobeChoice, LobeScale, Pin, Session, Steer,
-            ViewChange,
+            Action, Clipping, CompareCommand, EXPLAIN_TAB, Effect, LobeChoice, LobeScale, Pin, Session,
+            Steer, ViewChange,
         },
     },
     registry::Registry,
@@ -84,6 +84,43 @@ fn lobe(bench: &mut Bench) {
 }
 
 const MILLIMETRE: f32 = 1e-3;
+
+/// The places of the letters of the vectors.
+fn letters(bench: &mut Bench) -> Vec<Rect> {
+    let picture = bench.area.rect;
+    let letter = |shape| match shape {
+        Shape::Text(text) if ["N", "L", "H", "R", "V"].contains(&&*text.galley.job.text) => {
+            Some(text.visual_bounding_rect()).filter(|place| picture.contains_rect(*place))
+        }
+        _ => None,
+    };
+    bench.shapes().into_iter().filter_map(letter).collect()
+}
+
+#[test]
+fn letters_keep_clear_of_badges() {
+    let mut bench = bench(scene("blinn_phong", "phong"));
+    let clipping = Clipping::new(vec![1000; Clipping::GRID[0] * Clipping::GRID[1]]);
+    let home = bench.session.facts.eye;
+    bench.session.facts.camera_is_free = true;
+    let mut would_be_covered = 0;
+    for step in 0..8 {
+        // The sphere goes to the upper left corner.
+        let [x, y] = [0.3, 0.14].map(|far| far * step as f32);
+        bench.session.facts.eye = home + Vec3::new(x, -y, 0.0);
+        bench.session.facts.clipping[0] = None;
+        bench.settle();
+        let free = letters(&mut bench);
+        bench.session.facts.clipping[0] = clipping.clone();
+        bench.settle();
+        let badge = bench.tree.iter().find(|s| s.label.starts_with("Clipped")).expect("a badge").rect;
+        would_be_covered += free.iter().filter(|letter| letter.intersects(badge)).count();
+        let now = letters(&mut bench);
+        assert_eq!(now.len(), free.len(), "step {step}");
+        assert!(!now.iter().any(|letter| letter.intersects(badge)), "step {step}: {now:?} under {badge:?}");
+    }
+    assert!(would_be_covered > 0);
+}
 
 #[test]
 fn it_stays_on_its_object_while_the_camera_turns_around_it() {

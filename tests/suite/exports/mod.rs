@@ -6,4 +6,5 @@ mod forms;
 mod mitsuba;
 mod pages;
 mod shaders;
+mod slow;
 pub(crate) mod window;

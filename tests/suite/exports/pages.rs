@@ -36,13 +36,13 @@ fn export(scene: &Scene, registry: &Registry) -> Result<Export, ExportError> {
 }
 
 /// The page of a scene.
-fn page(scene: &Scene) -> Result<Vec<u8>, ExportError> {
+pub(super) fn page(scene: &Scene) -> Result<Vec<u8>, ExportError> {
     let export = export(scene, &Registry::builtin())?;
     assert!(export.files.len() == 1 && export.files[0].path.is_empty());
     Ok(export.files[0].bytes.clone())
 }
 
-fn scene(path: &Path) -> Scene {
+pub(super) fn scene(path: &Path) -> Scene {
     load::file(path, &Registry::builtin(), Defaults::Refuse).expect("valid").scene
 }
 
@@ -139,12 +139,12 @@ fn scenes_that_no_page_can_hold_are_refused_with_the_reason() {
 
 /// The mean difference of two pictures in levels, and the fraction of values that differ by more than 2.
 #[derive(Clone, Copy, Debug)]
-struct Difference {
-    mean: f64,
+pub(super) struct Difference {
+    pub(super) mean: f64,
     beyond: f64,
 }
 
-fn difference(a: &[u8], b: &[u8]) -> Difference {
+pub(super) fn difference(a: &[u8], b: &[u8]) -> Difference {
     assert_eq!(a.len(), b.len());
     let off = || a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
     let count = a.len() as f64;
@@ -189,7 +189,7 @@ fn rendered(scene: &Path, folder: &Path, options: &[&str]) -> Vec<u8> {
 }
 
 /// Sets a control of the panel as a user does, and waits until the picture has followed.
-fn set(browser: &Browser, selector: &str, value: &str) {
+pub(super) fn set(browser: &Browser, selector: &str, value: &str) {
     browser.run(&format!(
         "const control = document.querySelector({selector:?});
         if (control.type === 'radio') control.click();

@@ -116,6 +116,13 @@ impl Browser {
         assert_eq!(failure, "", "{}", file.display());
     }
 
+    /// Runs a script in each page that is opened from now on, before the scripts of the page.
+    pub fn run_first(&self, script: &str) {
+        let parameters = json!({ "source": script });
+        let command = json!({ "cmd": "Page.addScriptToEvaluateOnNewDocument", "params": parameters });
+        self.ask("POST", "/goog/cdp/execute", &command);
+    }
+
     /// Opens a file, with a fragment in its address.
     pub fn visit(&self, address: &str) {
         self.ask("POST", "/url", &json!({ "url": format!("file://{address}") }));

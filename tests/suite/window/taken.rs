@@ -412,6 +412,59 @@ fn the_window_of_options_fits() {
 }
 
 #[test]
+fn on_a_low_screen_the_options_scroll_and_the_buttons_stay_in_sight() {
+    let variants = vec![Variant::default()];
+    let mut session = Session::new(Scene { variants, ..Scene::default() });
+    session.settings.picture = PictureOptions { background: Some([9, 9, 9]), ..of_size(16_384, 16_384) };
+    let mut bench = Bench::new(session);
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::Scale(200)));
+    let whole = Rect::from_min_size(pos2(0.0, 0.0), bench.size / 2.0);
+    for (of, last) in [(Taken::Picture(None), "Depth"), (Taken::Sheet(None), "Smooth edges")] {
+        bench.apply(Action::Take(TakeCommand::Ask(of)));
+        bench.settle();
+        let buttons = ["Choose a file…", "Cancel"].map(|label| bench.find(label).expect(label).rect);
+        assert!(buttons.iter().all(|place| whole.contains_rect(*place)), "{of:?}: {buttons:?}");
+        let place = |bench: &Bench| bench.find(last).expect("the last option").rect;
+        // Tab scrolls to what it reaches.
+        let is_reached = |bench: &Bench| {
+            let focused = bench.ctx.memory(|memory| memory.focused());
+            let on = focused.and_then(|id| bench.ctx.read_response(id));
+            on.is_some_and(|on| on.rect.center().distance(place(bench).center()) < 2.0)
+        };
+        let reaches = (0..30).any(|_| {
+            bench.key(Key::Tab, Modifiers::NONE);
+            is_reached(&bench)
+        });
+        assert!(reaches, "{of:?}: {last}");
+        bench.settle();
+        bench.settle();
+        let free = whole.with_max_y(buttons[0].top());
+        assert!(free.contains_rect(place(&bench)), "{of:?}: {last}: {:?}", place(&bench));
+        bench.apply(Action::Take(TakeCommand::Close));
+    }
+}
+
+#[test]
+fn options_that_cannot_be_used_say_why() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.key(Key::P, Modifiers::COMMAND);
+    let reasons = [
+        ("Smooth edges", "Pictures as the view have the edges of the view."),
+        ("Legend", "The picture has no legend: it shows neither a debug channel nor a difference."),
+        ("Numbers of the difference in the caption", "The picture shows one view; numbers compare several."),
+    ];
+    for (label, why) in reasons {
+        let seen = bench.find(label).expect(label).clone();
+        assert!(seen.disabled && !bench.says(why), "{label}");
+        bench.hover(seen.rect.center());
+        assert!(bench.says(why), "{label}: {:?}", bench.texts());
+        bench.hover(pos2(1.0, 1.0));
+    }
+}
+
+#[test]
 fn the_progress_of_a_picture_is_shown_and_it_can_be_stopped() {
     let mut bench = Bench::new(Session::default());
     let now = Running { label: (), done: 0.4, step: "64 of 256 samples".to_owned() };

@@ -46,14 +46,14 @@ class Explained {
   // Marks the point in the picture that is being drawn, or says that the picture is another one.
   follow(page) {
     this.page = page;
-    const { camera, canvas, scene } = page;
+    const { camera, size, scene } = page;
     const point = this.points[scene.letter];
     const changed = this.isChanged(scene);
     const moved = Object.keys(camera.start).some((name) => camera[name] !== camera.start[name]);
     this.remark.hidden = !changed;
     this.cross.hidden = !point || changed || moved || bare !== null;
     if (this.cross.hidden) return;
-    const aspect = canvas.width / canvas.height;
+    const aspect = size[0] / size[1];
     const slope = camera.slope(aspect, !bare);
     this.cross.style.left = `${50 + (50 * point.at[0]) / (slope * aspect)}%`;
     this.cross.style.top = `${50 - (50 * point.at[1]) / slope}%`;

@@ -7,7 +7,15 @@ const asked = new URLSearchParams(location.hash.slice(1));
 const picture = document.getElementById('picture');
 const caption = document.getElementById('renderer');
 const bare = asked.get('picture')?.match(/^(\d+)x(\d+)$/)?.slice(1).map(Number) ?? null;
-const MOST_STARTS = 10;
+// Starts in succession without a whole picture.
+const MOST_STARTS = 6;
+// Milliseconds before another start where browsers refuse it; longer each time.
+const PAUSE = 300;
+const NO_GRAPHICS = 'This browser has neither WebGPU nor WebGL 2, and so cannot draw the scene. A newer one can.';
+const GAVE_UP =
+  'The graphics driver gave up: this scene is too much work for it, even in small steps. Switch on hardware acceleration ' +
+  'in the settings of the browser if it is off, or make the window smaller, and load the page again. Jagged edges ' +
+  '(#samples=1 at the end of the address) and fewer lights with extent in the scene take less work too.';
 const samples = asked.get('samples') === '1' ? 1 : 4;
 
 function fail(text) {
@@ -24,65 +32,89 @@ function freshCanvas() {
   return canvas;
 }
 
+// Waits while the page is out of sight.
+const inSight = () =>
+  document.hidden && new Promise((done) => document.addEventListener('visibilitychange', done, { once: true }));
+
 class Page {
   constructor(scene) {
     this.scene = scene;
     this.camera = new Camera(scene.observer, scene.centre);
     this.renderer = null;
     this.starts = 0;
-    this.waiting = false;
+    this.work = new Work(GOAL);
+    // True while a picture is wanted that has not been begun, and while any is drawn.
+    this.wanted = false;
+    this.painting = false;
     // Changes whose curves are being calculated.
     this.pending = 0;
     this.curves = Promise.resolve();
   }
 
-  // The first renderer that draws the scene. When the system takes it away, another one begins on a fresh canvas.
+  // The first renderer that draws the scene. When the system takes it away, another one begins on a fresh canvas, with
+  // smaller steps.
   async start() {
     this.starts += 1;
     if (this.starts > MOST_STARTS) {
-      fail('The graphics of this browser stop again and again. Loading the page again may help.');
+      fail(GAVE_UP);
       return false;
     }
     const kinds = { webgpu: [WebGpu], webgl: [WebGl] }[asked.get('renderer')] ?? [WebGpu, WebGl];
-    let reason = 'This browser has neither WebGPU nor WebGL 2, and so cannot draw the scene. A newer one can.';
+    let reason = NO_GRAPHICS;
     for (const kind of kinds) {
       try {
         this.canvas = freshCanvas();
         const renderer = await kind.create(this.canvas, samples);
         this.renderer = renderer;
-        this.resize();
-        if (renderer && (await renderer.tryDrawing(this.scene, this.canvas.width, this.canvas.height))) {
-          caption.textContent = kind.label;
-          const ofLight = this.scene.lightSamples;
-          const noise = ofLight ? `; lights with extent: ${ofLight} samples per pixel, some noise remains` : '';
-          caption.title = `Drawn with ${kind.label}, ${samples} samples per pixel${noise}`;
-          renderer.lost.then(() => this.renderer === renderer && this.start());
-          this.draw();
-          return true;
-        }
+        if (!renderer) continue;
+        renderer.lost.then(() => (this.gaveUp = true));
+        const [width, height] = this.resize();
+        await renderer.tryDrawing(this.scene, this.work.trial(this.scene, width, height), width, height);
+        // Drivers compile a shader when they first draw with it.
+        await renderer.finished();
+        this.label = kind.label;
+        caption.textContent = kind.label;
+        const ofLight = this.scene.lightSamples;
+        const noise = ofLight ? `; lights with extent: ${ofLight} samples per pixel, some noise remains` : '';
+        caption.title = `Drawn with ${kind.label}, ${samples} samples per pixel${noise}`;
+        renderer.lost.then(() => this.renderer === renderer && this.startAgain());
+        this.draw();
+        return true;
       } catch (error) {
         console.warn(error);
         reason = `This browser cannot draw the scene: ${error.message}`;
       }
     }
     this.renderer = null;
+    if (this.gaveUp) {
+      // Browsers refuse graphics for a while after a driver gave up.
+      await new Promise((done) => setTimeout(done, PAUSE * this.starts));
+      return this.start();
+    }
     fail(reason);
     return false;
   }
 
+  startAgain() {
+    document.body.dataset.state = 'busy';
+    this.work = new Work(0.5 * this.work.goal);
+    return this.start();
+  }
+
+  // The size of the whole picture in pixels; tells the shaders where the camera is.
   resize() {
     const ratio = bare ? 1 : window.devicePixelRatio;
     const [width, height] = bare ?? [picture.clientWidth, picture.clientHeight];
     const most = this.renderer?.largest ?? 4096;
-    this.canvas.width = Math.max(1, Math.min(most, Math.round(width * ratio)));
-    this.canvas.height = Math.max(1, Math.min(most, Math.round(height * ratio)));
+    this.size = [width, height].map((side) => Math.max(1, Math.min(most, Math.round(side * ratio))));
     const { scene, camera } = this;
     const floats = [
-      ...camera.clipFromRoom(this.canvas.width / this.canvas.height, !bare),
+      ...camera.clipFromRoom(this.size[0] / this.size[1], !bare),
       ...camera.position,
       2 ** scene.exposure,
     ];
     scene.view.set(bytesOfFloats(floats));
+    return this.size;
   }
 
   // Shows another view of the scene, from where the camera is.
@@ -93,18 +125,73 @@ class Page {
 
   // Draws before the next picture of the screen.
   draw() {
-    if (this.waiting) return;
-    this.waiting = true;
+    this.wanted = true;
     document.body.dataset.state = 'busy';
-    requestAnimationFrame(() => {
-      this.waiting = false;
-      if (!this.renderer) return;
-      this.resize();
-      picture.style.backgroundImage = this.scene.gradient ?? '';
-      this.renderer.draw(this.scene, this.canvas.width, this.canvas.height);
-      document.body.dataset.drawn = Number(document.body.dataset.drawn ?? 0) + 1;
-      if (this.pending === 0) document.body.dataset.state = 'ready';
+    if (this.painting) return;
+    this.painting = true;
+    this.paint().catch((error) => {
+      this.painting = false;
+      fail(`The picture could not follow: ${error.message}`);
     });
+  }
+
+  async paint() {
+    while (this.wanted) {
+      await new Promise(requestAnimationFrame);
+      this.wanted = false;
+      const { renderer } = this;
+      if (!renderer || !(await this.pictures(renderer))) continue;
+      this.starts = 1;
+      document.body.dataset.drawn = Number(document.body.dataset.drawn ?? 0) + 1;
+      if (this.pending === 0 && !this.wanted) document.body.dataset.state = 'ready';
+    }
+    this.painting = false;
+  }
+
+  // Draws the whole picture, and coarse ones before it where it takes long. False if it was given up on the way, as the
+  // scene changed or the system took the renderer away.
+  async pictures(renderer) {
+    const [width, height] = this.resize();
+    picture.style.backgroundImage = this.scene.gradient ?? '';
+    const scales = this.work.scales(this.scene, width * height);
+    for (const [i, scale] of scales.entries()) {
+      const size = [width, height].map((side) => Math.ceil(side / scale));
+      // The first one is finished in any case, so that something follows the hand.
+      if (!(await this.picture(renderer, size, i === 0 && scale > 1))) return false;
+      if (this.wanted && scale > 1) return false;
+    }
+    return true;
+  }
+
+  // Draws one picture in steps, and shows it; it gives way to changes unless it `stays`.
+  async picture(renderer, [width, height], stays) {
+    const { scene, canvas, work } = this;
+    const countOf = (drawing) => renderer.countOf(drawing);
+    const draw = (step) => {
+      if (step.show) Object.assign(canvas, { width, height });
+      renderer.draw(scene, step, width, height);
+    };
+    work.begin();
+    let clear = true;
+    let isAll = false;
+    for (const step of work.steps(scene, width, height, countOf)) {
+      await inSight();
+      const begun = performance.now();
+      ({ isAll } = step);
+      draw({ ...step, clear, show: isAll });
+      clear = false;
+      if (step.paces.length > 0) await renderer.finished();
+      if (this.renderer !== renderer || renderer.isLost) return false;
+      // Browsers slow down pages that are out of sight.
+      if (!document.hidden) for (const [pace, points] of step.paces) pace.took(points, performance.now() - begun);
+      if (isAll) break;
+      if (this.wanted && !stays) return false;
+      caption.textContent = `${this.label}, ${Math.floor(100 * step.done)} %`;
+    }
+    if (!isAll) draw({ list: [], tile: [0, 0, width, height], clear, show: true });
+    work.end();
+    caption.textContent = this.label;
+    return true;
   }
 
   // Applies the values of an object; its curve belongs to them, and so both change at once.

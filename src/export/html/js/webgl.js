@@ -20,6 +20,11 @@ class WebGl {
     this.programs = new WeakMap();
   }
 
+  // At once; `lost` comes later.
+  get isLost() {
+    return this.gl.isContextLost();
+  }
+
   get largest() {
     return this.gl.getParameter(this.gl.MAX_RENDERBUFFER_SIZE);
   }
@@ -122,29 +127,38 @@ class WebGl {
     Object.assign(this, { width, height });
   }
 
-  draw(scene, width, height) {
+  // Draws pieces of drawings into a tile of the picture, after all of it was cleared with `clear`; `show` shows it then.
+  draw(scene, { list, tile, clear, show }, width, height) {
     const { gl } = this;
     if (gl.isContextLost()) return;
     this.targetsFor(width, height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.sampled.frame);
     gl.viewport(0, 0, width, height);
-    gl.clearColor(...scene.clear);
-    gl.clearDepth(0);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    if (clear) {
+      gl.clearColor(...scene.clear);
+      gl.clearDepth(0);
+      gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    }
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(...tile);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.GREATER);
     gl.enable(gl.CULL_FACE);
     gl.frontFace(gl.CW);
-    const { drawings } = scene;
-    for (const { program } of drawings) this.begin(program);
-    for (const { program, uniforms, mesh, kind } of drawings) {
-      gl.useProgram(this.programOf(program));
-      for (const { binding, uniform, size } of uniforms) this.bind(binding, uniform, size);
-      const { array, count } = this.meshOf(mesh, kind);
-      gl.bindVertexArray(array);
-      gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
+    for (const { drawing } of list) this.begin(drawing.program);
+    for (const { drawing, first, count } of list) {
+      gl.useProgram(this.programOf(drawing.program));
+      for (const { binding, uniform, size } of drawing.uniforms) this.bind(binding, uniform, size);
+      gl.bindVertexArray(this.meshOf(drawing.mesh, drawing.kind).array);
+      gl.drawElements(gl.TRIANGLES, Math.min(count, this.countOf(drawing) - first), gl.UNSIGNED_INT, 4 * first);
     }
     gl.bindVertexArray(null);
+    gl.disable(gl.SCISSOR_TEST);
+    if (show) this.show(width, height);
+  }
+
+  show(width, height) {
+    const { gl } = this;
     // Samples are joined first: only then can the copy turn the picture round.
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.sampled.frame);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, this.single.frame);
@@ -154,7 +168,30 @@ class WebGl {
     gl.blitFramebuffer(0, 0, width, height, 0, height, width, 0, gl.COLOR_BUFFER_BIT, gl.NEAREST);
   }
 
-  async tryDrawing(scene, width, height) {
+  countOf({ mesh, kind }) {
+    return this.meshOf(mesh, kind).count;
+  }
+
+  // Waits until everything has been drawn.
+  finished() {
+    const { gl } = this;
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    return new Promise((done) => {
+      const ask = () => {
+        if (!gl.isContextLost() && gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) {
+          setTimeout(ask, 1);
+          return;
+        }
+        gl.deleteSync(fence);
+        done();
+      };
+      ask();
+    });
+  }
+
+  // Draws one step; throws the first error.
+  async tryDrawing(scene, step, width, height) {
     const { gl } = this;
     const most = gl.getParameter(gl.MAX_UNIFORM_BLOCK_SIZE);
     for (const { uniforms } of scene.drawings) {
@@ -163,7 +200,7 @@ class WebGl {
       }
     }
     while (gl.getError() !== gl.NO_ERROR && !gl.isContextLost());
-    this.draw(scene, width, height);
+    this.draw(scene, { ...step, clear: true, show: false }, width, height);
     const error = gl.getError();
     if (error === gl.OUT_OF_MEMORY) throw new Error('its graphics memory is too small for the meshes');
     if (error !== gl.NO_ERROR && !gl.isContextLost()) throw new Error(`WebGL 2 reports error ${error}`);

@@ -16,8 +16,11 @@ class WebGpu {
     this.context = context;
     this.samples = samples;
     this.format = navigator.gpu.getPreferredCanvasFormat();
-    context.configure({ device, format: this.format, alphaMode: 'premultiplied' });
+    const usage = GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_DST;
+    context.configure({ device, format: this.format, usage, alphaMode: 'premultiplied' });
     this.lost = device.lost.then((info) => (info.reason === 'destroyed' ? new Promise(() => {}) : info));
+    this.isLost = false;
+    this.lost.then(() => (this.isLost = true));
     this.buffers = new WeakMap();
     this.meshes = new WeakMap();
     this.pipelines = new WeakMap();
@@ -121,29 +124,31 @@ class WebGpu {
         size: [width, height],
         format,
         sampleCount: this.samples,
-        usage: GPUTextureUsage.RENDER_ATTACHMENT,
+        usage: GPUTextureUsage.RENDER_ATTACHMENT | (this.samples > 1 ? 0 : GPUTextureUsage.COPY_SRC),
       });
     this.depth = target('depth32float');
-    this.colour = this.samples > 1 ? target(this.format) : null;
+    this.colour = target(this.format);
   }
 
-  draw(scene, width, height) {
+  // Draws pieces of drawings into a tile of the picture, after all of it was cleared with `clear`; `show` shows it then.
+  draw(scene, { list, tile, clear, show }, width, height) {
     this.targetsFor(width, height);
     const encoder = this.device.createCommandEncoder();
-    const picture = this.context.getCurrentTexture().createView();
-    const colour = { loadOp: 'clear', storeOp: this.colour ? 'discard' : 'store', clearValue: scene.clear };
+    const picture = show ? this.context.getCurrentTexture() : null;
+    const [loadOp, storeOp] = [clear ? 'clear' : 'load', show && this.samples > 1 ? 'discard' : 'store'];
+    const colour = { view: this.colour.createView(), loadOp, storeOp, clearValue: scene.clear };
+    if (show && this.samples > 1) colour.resolveTarget = picture.createView();
     const pass = encoder.beginRenderPass({
-      colorAttachments: [
-        this.colour ? { view: this.colour.createView(), resolveTarget: picture, ...colour } : { view: picture, ...colour },
-      ],
+      colorAttachments: [colour],
       depthStencilAttachment: {
         view: this.depth.createView(),
-        depthLoadOp: 'clear',
-        depthStoreOp: 'discard',
+        depthLoadOp: loadOp,
+        depthStoreOp: show ? 'discard' : 'store',
         depthClearValue: 0,
       },
     });
-    for (const drawing of scene.drawings) {
+    pass.setScissorRect(...tile);
+    for (const { drawing, first, count } of list) {
       const { pipeline, layout } = this.pipelineOf(drawing.program);
       for (const { uniform, size } of drawing.uniforms) this.bufferOf(uniform, size);
       const mesh = this.meshOf(drawing.mesh, drawing.kind);
@@ -151,17 +156,28 @@ class WebGpu {
       pass.setBindGroup(0, this.groupOf(drawing, layout));
       pass.setVertexBuffer(0, mesh.vertices);
       pass.setIndexBuffer(mesh.indices, 'uint32');
-      pass.drawIndexed(mesh.count);
+      pass.drawIndexed(Math.min(count, mesh.count - first), 1, first);
     }
     pass.end();
+    // A target without samples is copied: the picture on the screen lasts for one step.
+    if (show && this.samples === 1) encoder.copyTextureToTexture({ texture: this.colour }, { texture: picture }, [width, height]);
     this.device.queue.submit([encoder.finish()]);
   }
 
-  // Draws within scopes that catch errors; throws the first of them.
-  async tryDrawing(scene, width, height) {
+  countOf({ mesh, kind }) {
+    return this.meshOf(mesh, kind).count;
+  }
+
+  // Waits until everything has been drawn.
+  finished() {
+    return Promise.race([this.device.queue.onSubmittedWorkDone(), this.lost]);
+  }
+
+  // Draws one step within scopes that catch errors; throws the first of them.
+  async tryDrawing(scene, step, width, height) {
     this.device.pushErrorScope('validation');
     this.device.pushErrorScope('out-of-memory');
-    this.draw(scene, width, height);
+    this.draw(scene, { ...step, clear: true, show: false }, width, height);
     const [memory, other] = await Promise.all([this.device.popErrorScope(), this.device.popErrorScope()]);
     if (memory) throw new Error('its graphics memory is too small for the meshes');
     if (other) throw new Error(other.message);
