@@ -1,5 +1,6 @@
 //! Pictures in words: captions, the headings of views, and the strip below a picture.
 
+mod ground;
 mod heading;
 mod part;
 mod rows;
@@ -8,6 +9,7 @@ mod sampled;
 mod strip;
 mod words;
 
+pub use ground::Ground;
 pub use heading::{header, header_parts, view_parts};
 pub use part::{Part, line};
 pub use rows::{of_copy, of_row, row_labels};
@@ -35,6 +37,8 @@ pub struct Caption {
     pub facts: Vec<Part>,
     /// The name and the version of the program.
     pub program: &'static str,
+    /// The ground of the strip, which suits the picture.
+    pub ground: Ground,
 }
 
 impl Caption {
@@ -54,7 +58,8 @@ pub fn of_scene(scene: &Scene, terms: TermSelection, registry: &Registry) -> Cap
     facts.extend(terms_alone(terms));
     facts.extend(display(scene.display));
     let program = concat!("Lights, Camera, Models! ", env!("CARGO_PKG_VERSION"));
-    Caption { title: scene.name.clone().unwrap_or_default(), facts, program }
+    let (title, ground) = (scene.name.clone().unwrap_or_default(), Ground::of(&scene.display));
+    Caption { title, facts, program, ground }
 }
 
 /// The caption of a view of a scene; `None` if the view does not exist.
@@ -116,7 +121,10 @@ pub fn of_picture(scene: &Scene, shown: &[(usize, &Scene, TermSelection)], regis
             let views: Vec<_> = all.iter().map(|(view, ..)| *view).collect();
             let terms = all.first().map(|(.., terms)| *terms);
             let terms = terms.filter(|terms| all.iter().all(|(.., own)| own == terms));
-            of_views(scene, &views, terms, registry)
+            let caption = of_views(scene, &views, terms, registry);
+            // The background may be of the picture alone.
+            let ground = all.first().map_or(caption.ground, |(_, seen, _)| Ground::of(&seen.display));
+            Caption { ground, ..caption }
         }
     }
 }

@@ -52,6 +52,7 @@ fn per_cent(fraction: f32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::caption::Ground;
     use crate::caption::{Caption, line};
 
     fn said(views: &[(u32, Option<f32>)]) -> String {
@@ -78,7 +79,7 @@ mod tests {
     #[test]
     fn they_stand_before_what_each_view_has_of_its_own() {
         let facts = ["Phong", "A:", "α 20", "B:", "α 80"].map(|text| Part::new(0, text)).to_vec();
-        let caption = Caption { title: String::new(), facts, program: "" };
+        let caption = Caption { title: String::new(), facts, program: "", ground: Ground::DARK };
         let views = [Sampled { samples: 256, noise: None }; 2];
         let told = line(&caption.clone().resting_on(&views).facts);
         assert_eq!(told, "Phong · 256 samples of each light · A: α 20 · B: α 80");

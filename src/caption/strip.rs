@@ -5,15 +5,6 @@ use std::collections::BTreeMap;
 use super::{Caption, Part};
 use crate::lettering::Lettering;
 
-/// Background of the strip: neutral, since the colours above it are judged.
-const GROUND: [u8; 3] = [24; 3];
-/// The line between the picture and the strip.
-const EDGE: [u8; 3] = [72; 3];
-const TITLE: [u8; 3] = [244; 3];
-const TEXT: [u8; 3] = [208; 3];
-/// Colour of the program's name. Its contrast is 5.9:1.
-const PROGRAM: [u8; 3] = [146; 3];
-
 /// Maximum number of lines for the facts.
 const LINES: usize = 3;
 /// Smallest legible text, in pixels.
@@ -49,8 +40,8 @@ pub fn draw(caption: &Caption, mut picture: Vec<u8>, size: [u32; 2]) -> (Vec<u8>
     let whole = [width, height + strip.height];
     let row = width as usize * 3;
     picture.resize(row * height as usize, 0);
-    picture.extend(EDGE.repeat(width as usize));
-    picture.resize(row * whole[1] as usize, GROUND[0]);
+    picture.extend(caption.ground.line.repeat(width as usize));
+    picture.extend(caption.ground.colour.repeat(width as usize * strip.height.saturating_sub(1) as usize));
     for (top, px, colour, line) in &strip.lines {
         let at = [strip.left as i32, (height + top) as i32];
         line.runs.iter().for_each(|run| run.draw(&mut picture, whole, at, *px, *colour));
@@ -121,16 +112,16 @@ struct Strip {
 
 impl Strip {
     fn of(caption: &Caption, size: [u32; 2]) -> Self {
-        let px = type_size(size);
+        let (px, ground) = (type_size(size), caption.ground);
         let title_px = (1.15 * px).round();
         // A picture of a few pixels has no room for margins.
         let left = ((0.9 * px) as u32).min(size[0] / 16);
         let room = size[0] - 2 * left;
         let mut rows: Vec<(f32, [u8; 3], Line)> = Vec::new();
         if !caption.title.is_empty() {
-            rows.push((title_px, TITLE, elided(Lettering::Semibold, &caption.title, title_px, room)));
+            rows.push((title_px, ground.title, elided(Lettering::Semibold, &caption.title, title_px, room)));
         }
-        rows.extend(facts(&caption.facts, px, room).into_iter().map(|line| (px, TEXT, line)));
+        rows.extend(facts(&caption.facts, px, room).into_iter().map(|line| (px, ground.text, line)));
         // Lines of different sizes share a baseline; the program's name is beside the first where there is
         // room.
         let program = elided(Lettering::Regular, caption.program, px, room);
@@ -138,7 +129,7 @@ impl Strip {
         let last = rows.len().saturating_sub(1);
         let place = [0, last].into_iter().find(|i| rows.get(*i).is_some_and(beside));
         if place.is_none() {
-            rows.push((px, PROGRAM, Line::default()));
+            rows.push((px, ground.weak, Line::default()));
         }
         let place = place.unwrap_or(rows.len() - 1);
 
@@ -150,7 +141,12 @@ impl Strip {
                 let mut program = program.clone();
                 let right = room.saturating_sub(program.width);
                 program.runs.iter_mut().for_each(|run| run.left += right);
-                lines.push((top + (foot - Lettering::Regular.foot(px)).round() as u32, px, PROGRAM, program));
+                lines.push((
+                    top + (foot - Lettering::Regular.foot(px)).round() as u32,
+                    px,
+                    ground.weak,
+                    program,
+                ));
             }
             lines.push((top, size, colour, line));
             top += Lettering::Regular.height(size) + (0.12 * px).round() as u32;
@@ -226,7 +222,12 @@ fn broken(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{parameter::Value, registry::Registry, scene::Scene};
+    use crate::{
+        caption::Ground,
+        parameter::Value,
+        registry::Registry,
+        scene::{Background, Scene},
+    };
 
     fn text(lines: &[Line]) -> Vec<String> {
         let text = |line: &Line| line.runs.iter().map(|run| run.text.as_str()).collect();
@@ -279,6 +280,7 @@ mod tests {
         let mut scene = Scene { name: Some("Gold".to_owned()), ..Scene::default() };
         scene.objects[0].material.set("k_d", Value::Number(0.5));
         let caption = super::super::of_view(&scene, 0, &Registry::builtin()).expect("the scene itself");
+        let ground = caption.ground.colour;
         let mut heights = Vec::new();
         for size in [[640, 360], [1280, 720], [64, 36], [3, 500], [1, 1]] {
             let picture: Vec<u8> = (0..size[0] * size[1] * 3).map(|i| (i % 249) as u8).collect();
@@ -288,10 +290,10 @@ mod tests {
             assert_eq!(whole[..picture.len()], picture);
             // The right and lower edges keep a margin.
             let strip = &whole[picture.len() + 3 * width as usize..];
-            let free = |row: &[u8]| width < 60 || row[row.len() - 3..] == GROUND && row[..3] == GROUND;
+            let free = |row: &[u8]| width < 60 || row[row.len() - 3..] == ground && row[..3] == ground;
             assert!(strip.chunks(3 * width as usize).all(free), "{size:?}");
             assert!(
-                strip[strip.len() - 3 * width as usize..].iter().all(|byte| *byte == GROUND[0]),
+                strip[strip.len() - 3 * width as usize..].iter().all(|byte| *byte == ground[0]),
                 "{size:?}"
             );
             heights.push(height - size[1]);
@@ -300,11 +302,26 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_with_a_light_background_has_a_light_strip() {
+        let mut scene = Scene { name: Some("Gold".to_owned()), ..Scene::default() };
+        scene.display.background = Background::Colour;
+        let caption = super::super::of_view(&scene, 0, &Registry::builtin()).expect("the scene itself");
+        let size = [640, 360];
+        let white = vec![255; 640 * 360 * 3];
+        let (whole, _) = draw(&caption, white.clone(), size);
+        let strip: Vec<u8> = whole[white.len()..].chunks(3).map(|p| p[0]).collect();
+        assert_eq!(strip.last(), Some(&Ground::LIGHT.colour[0]));
+        assert!(strip.iter().filter(|code| **code < 60).count() > 100, "dark words");
+        assert!(strip.iter().all(|code| *code <= Ground::LIGHT.colour[0]));
+    }
+
+    #[test]
     fn a_long_title_leaves_the_program_a_line_of_its_own() {
         let caption = |title: &str| Caption {
             title: title.to_owned(),
             facts: vec![Part::new(0, "Phong")],
             program: "Lights, Camera, Models! 0.1.0",
+            ground: Ground::DARK,
         };
         let lines = |title: &str, width| {
             let strip = Strip::of(&caption(title), [width, 9 * width / 16]);

@@ -4,10 +4,10 @@ use glam::Vec3;
 
 use super::{
     Cell,
-    canvas::{BRIGHT, Canvas, DARK, Rect},
+    canvas::{Canvas, Rect},
 };
 use crate::{
-    caption::{Part, draw_line, line_width, row_labels},
+    caption::{Ground, Part, draw_line, line_width, row_labels},
     lettering::Lettering,
     registry::Registry,
     scene::{
@@ -21,8 +21,8 @@ const MOST: usize = 400;
 /// Text size in a picture of 720 lines, and the smallest legible one, pixels.
 const TEXT: f32 = 18.0;
 const SMALLEST: f32 = 8.0;
-/// The opacity of the plate behind a text.
-const PLATE: f32 = 0.6;
+/// The opacity of the plate behind a text: what is behind it leaves a contrast of 7:1.
+const PLATE: f32 = 0.75;
 
 /// A picture with the labels of its rows. `views` are the places of its views, each with the scene it shows.
 #[must_use]
@@ -50,6 +50,7 @@ fn draw(canvas: &mut Canvas, area: Rect, scene: &Scene, registry: &Registry) {
     let seen = |(i, parts): (usize, Vec<Part>)| Some((below(scene, i, area)?, parts));
     let labels: Vec<_> = labels.into_iter().filter_map(seen).take(MOST).collect();
     let (style, usual) = (Lettering::Regular, TEXT * canvas.scale());
+    let ground = Ground::of(&scene.display);
     let widest = labels.iter().map(|(_, parts)| line_width(parts, usual)).max().unwrap_or(0);
     let room = apart(&labels, style.height(usual)).unwrap_or(f32::INFINITY);
     // Padding of a third of a line at both sides.
@@ -68,9 +69,9 @@ fn draw(canvas: &mut Canvas, area: Rect, scene: &Scene, registry: &Registry) {
             width,
             height,
         ];
-        canvas.fill(plate, DARK, PLATE);
+        canvas.fill(plate, ground.colour, PLATE);
         let at = [plate[0] + pad, plate[1]].map(|v| i32::try_from(v).unwrap_or(i32::MAX));
-        draw_line(parts, &mut canvas.rgb8, canvas.size, at, px, BRIGHT);
+        draw_line(parts, &mut canvas.rgb8, canvas.size, at, px, ground.title);
     }
 }
 
@@ -99,7 +100,7 @@ fn apart(labels: &[([f32; 2], Vec<Part>)], line: u32) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Object, Repeat, Repetition, Varied};
+    use crate::scene::{Background, Object, Repeat, Repetition, Varied};
 
     fn row(labels: bool) -> Scene {
         let varied = Varied {
@@ -135,6 +136,25 @@ mod tests {
         let line = (middle[1] as usize..180).find(|y| lit(160, *y)).expect("a label");
         let starts = (1..320).filter(|x| lit(*x, line) && !lit(x - 1, line)).count();
         assert_eq!(starts, 3, "three plates beside each other");
+        // Beside the letters, at the left edge of the plate.
+        let plate = (1..160).find(|x| lit(*x, line)).map(|x| picture[3 * (line * 320 + x)]);
+        assert_eq!(plate, Some(18), "a dark plate over black");
         assert!((0..80).all(|y| (0..320).all(|x| !lit(x, y))), "nothing above the objects");
+    }
+
+    #[test]
+    fn labels_on_a_light_background_are_dark_on_a_light_plate() {
+        let size = [640, 360];
+        let cell = Cell { view: 0, left: 0, top: 0, width: 640, height: 360 };
+        let mut scene = row(true);
+        scene.display.background = Background::Colour;
+        // Over black, where a plate is darkest.
+        let black = vec![0; 640 * 360 * 3];
+        let picture = with_row_labels(black, size, [(cell, &scene)], &Registry::builtin());
+        let codes: Vec<u8> = picture.chunks(3).map(|p| p[0]).filter(|code| *code > 0).collect();
+        let count = |codes: &[u8], is: fn(u8) -> bool| codes.iter().filter(|code| is(**code)).count();
+        assert!(count(&codes, |code| code == 185) > 500, "the plate");
+        assert!(count(&codes, |code| code < 60) > 20, "the ink");
+        assert_eq!(count(&codes, |code| code > 185), 0);
     }
 }

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use super::{caption, marks::Lens, prelude::*, state::Labels};
 use crate::{
-    caption::{line, of_copy},
-    scene::rows::Variable,
+    caption::{Ground, line, of_copy},
+    scene::{Display, rows::Variable},
 };
 
 /// Maximum number of labels; more would hide the picture.
@@ -40,7 +40,7 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, regist
         rows.get(place).filter(|row| row.range().contains(&i)).map(|_| place)
     };
     let mut variables: HashMap<usize, Vec<Variable>> = HashMap::new();
-    let palette = Palette::here(ui);
+    let palette = palette(ui, &in_view.display);
     let size = TextStyle::Body.resolve(ui.style()).size;
     for (i, below) in nearest(rect, session, |i| row_of(i).is_some(), MOST_OF_ROWS) {
         let Some((place, object)) = row_of(i).zip(in_view.objects.get(i)) else { continue };
@@ -51,7 +51,7 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, regist
         }
         let line =
             theme::elided(ui, &line(&parts), FontId::proportional(0.9 * size), palette.text, rect.width());
-        places.extend(plate(ui, rect, below, [line], &places));
+        places.extend(plate(ui, palette, rect, below, [line], &places));
     }
     places
 }
@@ -65,7 +65,7 @@ fn of_objects(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Re
     let few = Scene { objects: chosen, variants: scene.variants.clone(), ..shallow(scene) };
     let Some((seen, _)) = few.seen(view, registry) else { return Vec::new() };
     let mut places: Vec<Rect> = Vec::new();
-    let palette = Palette::here(ui);
+    let palette = palette(ui, &seen.display);
     let size = TextStyle::Body.resolve(ui.style()).size;
     let room = (rect.width() - 24.0).clamp(40.0, 260.0 * theme::scale_here(ui));
     for ((i, below), object) in found.into_iter().zip(&seen.objects) {
@@ -78,9 +78,18 @@ fn of_objects(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Re
             theme::elided(ui, &model, FontId::proportional(0.9 * size), palette.text, room),
             theme::elided(ui, &values, FontId::proportional(0.9 * size), palette.weak, room),
         ];
-        places.extend(plate(ui, rect, below, galleys, &places));
+        places.extend(plate(ui, palette, rect, below, galleys, &places));
     }
     places
+}
+
+/// The colours of labels: of the theme that suits the background of the scene, or of the window if there is none.
+fn palette(ui: &Ui, display: &Display) -> Palette {
+    match display.backdrop() {
+        None => Palette::here(ui),
+        Some(_) if Ground::of(display) == Ground::LIGHT => theme::LIGHT,
+        Some(_) => theme::DARK,
+    }
 }
 
 /// The visible objects among these that are near enough for a label, the nearest first, since those take precedence; each
@@ -106,6 +115,7 @@ fn nearest(rect: Rect, session: &Session, wanted: impl Fn(usize) -> bool, most: 
 /// Paints the lines of a label below a point, unless it would cover others. Returns its rectangle.
 fn plate<const N: usize>(
     ui: &Ui,
+    palette: Palette,
     rect: Rect,
     below: Pos2,
     lines: [Arc<Galley>; N],
@@ -123,7 +133,7 @@ fn plate<const N: usize>(
     if others.iter().any(|other| other.intersects(place)) {
         return None;
     }
-    let (palette, painter) = (Palette::here(ui), ui.painter_at(rect));
+    let painter = ui.painter_at(rect);
     painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
     let mut y = place.top() + padding.y;
     for line in lines() {

@@ -2,7 +2,10 @@
 //! at the top.
 
 use super::{chooser, knob, prelude::*, segmented::segmented};
-use crate::scene::{Field, Object};
+use crate::{
+    scene::{Field, Object},
+    text::capitalised,
+};
 
 /// Width of the frame rate, in points.
 const RATE: f32 = 96.0;
@@ -45,8 +48,14 @@ pub(super) fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
 /// A field of an object, and the id that it gets.
 type Override = (Field, Option<&'static str>);
 
-/// The button and its popup. Returns the requested change.
-pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Object) -> Option<Override> {
+/// The button and its popup; `fixed` is the reason why it cannot be used. Returns the requested change.
+pub fn control(
+    ui: &mut Ui,
+    session: &Session,
+    registry: &Registry,
+    object: &Object,
+    fixed: Option<&str>,
+) -> Option<Override> {
     let palette = Palette::here(ui);
     let own = (object.reflection_model.as_deref().map(|id| model_name(id, registry)).into_iter())
         .chain(object.shading_model.as_deref().map(|id| format!("{} shading", shading_name(id, registry))))
@@ -54,9 +63,10 @@ pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Obj
     let (word, colour) =
         if own.is_empty() { ("Override", palette.weak) } else { ("Overridden", palette.accent) };
     let text = |text: &str| RichText::new(text).small().color(colour);
-    let button = ui.add(Button::new(text(word)).right_text(text("▾")));
+    let button = ui.add_enabled(fixed.is_none(), Button::new(text(word)).right_text(text("▾")));
     let said = if own.is_empty() { "none".to_owned() } else { own.join(", ") };
-    theme::says(&button, WidgetType::ComboBox, format!("Override model and shading: {said}"));
+    let name = format!("Override model and shading: {said}");
+    button.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, fixed.is_none(), name.clone()));
     let id = ui.make_persistent_id("model override");
     let out = knob::drop_down(&button, id, knob::WIDE, |ui, list| {
         let scene_model = model_name(&session.scene().reflection_model, registry);
@@ -77,6 +87,10 @@ pub fn control(ui: &mut Ui, session: &Session, registry: &Registry, object: &Obj
         });
         model.or(shading)
     });
+    let button = match fixed {
+        Some(why) => button.on_disabled_hover_text(format!("{}.", capitalised(why))),
+        None => button,
+    };
     theme::tip(button, 300.0, |ui| {
         ui.label(theme::strong(ui, "Override model and shading"));
         ui.label(if own.is_empty() {

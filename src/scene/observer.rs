@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Mat4, Quat, Vec3};
 
-use super::{Field, Scene, field::Kind, part::part};
+use super::{Field, Scene, field::Kind, part::part, rows::Row};
 
 /// Passes the declaration to a macro: [`part!`], or that of the component.
 macro_rules! observer {
@@ -102,11 +102,31 @@ impl ViewAngle {
 impl Scene {
     /// The field of view of the scene's pictures in a window. A single picture shows at the sides what a wide
     /// picture shows; in views side by side the smaller side has the observer's angle, so that objects keep
-    /// their size.
+    /// their size, or as much more as the rows of the scene need.
     #[must_use]
     pub fn view_angle(&self) -> ViewAngle {
         let beside = self.comparison.layout.is_beside() && !self.variants.is_empty();
-        ViewAngle { degrees: self.observer.field_of_view, keeps: if beside { 1.0 } else { WIDE } }
+        ViewAngle {
+            degrees: self.observer.field_of_view,
+            keeps: if beside { self.width_of_rows().clamp(1.0, WIDE) } else { WIDE },
+        }
+    }
+
+    /// The ratio of width to height of a picture that shows the rows from side to side, with a margin.
+    fn width_of_rows(&self) -> f32 {
+        let to_eye = orientation(self.observer.direction).transpose();
+        let up = (0.5 * self.observer.field_of_view.to_radians()).tan();
+        let of_row = |row: Row| {
+            let ends = [row.first, row.first + row.count - 1].map(|i| self.objects[i].size);
+            let reach = 0.5 * ends[0].max(ends[1]);
+            let sides = row.corners().map(|p| {
+                let seen = to_eye * (p - self.observer.position);
+                let depth = -seen.z - reach;
+                if depth > NEAR { (seen.x.abs() + reach) / (depth * up) } else { f32::INFINITY }
+            });
+            sides.into_iter().fold(0.0, f32::max)
+        };
+        self.rows().filter(|row| row.entry.visible).map(of_row).fold(0.0, f32::max)
     }
 }
 
@@ -128,7 +148,10 @@ impl Observer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::comparison::Layout;
+    use crate::{
+        registry::Registry,
+        scene::{Object, Repeat, Repetition, comparison::Layout},
+    };
 
     #[test]
     fn what_the_observer_looks_at_is_in_the_middle_and_up_is_up() {
@@ -182,5 +205,32 @@ mod tests {
         assert!((half_width - 22.5f32.to_radians().tan()).abs() < 1e-6);
         scene.comparison.layout = Layout::Wipe;
         assert_eq!(scene.view_angle().keeps, WIDE);
+    }
+
+    #[test]
+    fn beside_each_other_views_show_a_row_from_side_to_side() {
+        let of = |columns: u32| {
+            let repeat = Repeat { columns, spacing: Vec3::X, ..Repeat::default() };
+            let entry = Object {
+                position: Vec3::new(5.0 - 0.5 * (columns - 1) as f32, 5.0, 5.0),
+                size: 0.8,
+                repeat: Repetition::Entry(Box::new(repeat)),
+                ..Object::default()
+            };
+            let mut scene = Scene { objects: vec![entry], ..Scene::default() };
+            scene.comparison.layout = Layout::SideBySide;
+            scene.variants.push(crate::scene::Variant::default());
+            scene.expanded(&Registry::builtin()).expect("a row")
+        };
+        // The middle of the outermost sphere, and its silhouette, in a view that is higher than wide.
+        let scene = of(5);
+        let narrow = scene.observer.fitting([600, 800], scene.view_angle());
+        let clip = clip_from_room(&narrow, 0.75);
+        for side in [-1.0, 1.0] {
+            let p = clip.project_point3(Vec3::new(5.0 + 2.4 * side, 5.0, 5.0));
+            assert!((0.8..0.99).contains(&(side * p.x)), "{p}");
+        }
+        assert_eq!(of(3).view_angle().keeps, 1.0, "there is room already");
+        assert_eq!(of(9).view_angle().keeps, WIDE, "no more than a wide picture");
     }
 }

@@ -1,5 +1,7 @@
 //! The declaration of rows and grids: what an object of a scene file says about its copies.
 
+use std::collections::BTreeMap;
+
 use glam::Vec3;
 
 use super::{
@@ -107,18 +109,34 @@ impl Repeat {
         place as usize
     }
 
-    /// The same with other numbers of columns and rows; lists of values are cut, or their last value is repeated.
-    #[must_use]
-    pub fn resized(mut self, columns: u32, rows: u32) -> Self {
-        (self.columns, self.rows) = (columns, rows);
+    /// Gives lists of values as many as there are steps. What is cut off stays in `known`, from where it comes back; what no
+    /// list had follows from `next`, and otherwise the last value is repeated.
+    pub fn fit_lists(&mut self, known: &mut Lists, next: impl Fn(&Varied) -> Option<Value>) {
         let steps = [Along::Columns, Along::Rows, Along::All].map(|along| (along, self.steps(along)));
         for varied in self.vary.iter_mut().filter(|varied| !varied.values.is_empty()) {
             let count = steps.iter().find(|(along, _)| *along == varied.along).map_or(0, |(_, count)| *count);
-            let last = varied.values.last().cloned();
             // More than a scene can hold is refused anyway.
-            let count = usize::try_from(count).unwrap_or(usize::MAX).min(super::MAX_OBJECTS);
-            last.into_iter().for_each(|last| varied.values.resize(count, last));
+            let count = usize::try_from(count).unwrap_or(usize::MAX).clamp(1, super::MAX_OBJECTS);
+            varied.values = known.longest(varied);
+            while varied.values.len() < count {
+                let Some(value) = next(varied).or_else(|| varied.values.last().cloned()) else { break };
+                varied.values.push(value);
+            }
+            known.0.insert(varied.parameter.clone(), varied.values.clone());
+            varied.values.truncate(count);
         }
-        self
+    }
+}
+
+/// The lists of a row's values as long as they ever were, by their parameters: copies that come back have the values that
+/// they had.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lists(BTreeMap<String, Vec<Value>>);
+
+impl Lists {
+    /// The known list that goes on where that of a varied value ends, or else the latter.
+    fn longest(&self, varied: &Varied) -> Vec<Value> {
+        let known = self.0.get(&varied.parameter).filter(|known| known.starts_with(&varied.values));
+        known.unwrap_or(&varied.values).clone()
     }
 }

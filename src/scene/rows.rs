@@ -9,12 +9,12 @@ use std::{borrow::Cow, ops::Range, sync::Arc};
 use glam::Vec3;
 
 use super::{
-    Field, MAX_OBJECTS, Object, Repeat, Repetition, Scene, Varied,
+    Field, MAX_OBJECTS, Object, Repeat, Repetition, Scene, SceneSize, Varied,
     error::{Path, Problem, Segment},
     field::Kind,
     part::{Fields, Key, Structure as _},
     range::significant,
-    repeat::{Along, MAX_VARIED, Scale},
+    repeat::{Along, Lists, MAX_VARIED, Scale},
 };
 use crate::{
     parameter::{Parameter, Value, limits::Limits},
@@ -144,6 +144,23 @@ impl Variable {
         let usable = ends.iter().all(|end| limits.allows(*end) && end.abs() < 1e6);
         let [from, to] = ends.map(|end| Some(end as f32));
         usable.then(|| Varied { parameter: self.path().into_owned(), from, to, ..Varied::default() })
+    }
+
+    /// The value that follows listed ones in equal steps; `None` if their steps differ, or it would not be legal.
+    #[must_use]
+    pub fn next_after(self, values: &[Value]) -> Option<Value> {
+        let limits = self.limits()?;
+        let number = |value: &Value| match value {
+            Value::Number(v) => Some(decimal(*v)),
+            Value::Integer(n) => Some(*n as f64),
+            _ => None,
+        };
+        let numbers: Vec<f64> = values.iter().map(number).collect::<Option<_>>()?;
+        let steps: Vec<f64> = numbers.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let (last, step) = (numbers.last()?, steps.last()?);
+        let even = steps.iter().all(|other| (other - step).abs() <= 1e-4 * step.abs());
+        let next = significant(last + step, 6);
+        (even && limits.allows(next)).then(|| self.of_number(next)).flatten()
     }
 
     /// The value that an object has, given or default, if it has one.
@@ -323,9 +340,14 @@ pub fn entry_name(copy: &str, number: u32) -> &str {
     copy.strip_suffix(&format!(" {}", u64::from(number) + 1)).unwrap_or(copy)
 }
 
-/// The position of a copy. Its coordinates are the numbers that a person would calculate.
+/// The position of a copy.
 fn position(first: Vec3, repeat: &Repeat, number: u32) -> Vec3 {
-    let [column, row] = [Along::Columns, Along::Rows].map(|along| repeat.place(number, along) as f64);
+    at(first, repeat, [Along::Columns, Along::Rows].map(|along| repeat.place(number, along)))
+}
+
+/// The position of the copy in a column and a row. Its coordinates are the numbers that a person would calculate.
+fn at(first: Vec3, repeat: &Repeat, place: [usize; 2]) -> Vec3 {
+    let [column, row] = place.map(|steps| steps as f64);
     let along = |axis: usize| {
         let [at, across, down] = [first, repeat.spacing, repeat.row_spacing].map(|v| decimal(v[axis]));
         (at + column * across + row * down) as f32
@@ -372,6 +394,65 @@ impl Row<'_> {
     #[must_use]
     pub fn range(&self) -> Range<usize> {
         self.first..self.first + self.count
+    }
+
+    /// The positions of the copies at the corners, between which all others are.
+    #[must_use]
+    pub fn corners(&self) -> [Vec3; 4] {
+        let [across, down] =
+            [self.repeat.columns, self.repeat.rows].map(|count| count.saturating_sub(1) as usize);
+        let corners = [[0, 0], [across, 0], [0, down], [across, down]];
+        corners.map(|place| at(self.entry.position, self.repeat, place))
+    }
+
+    /// The largest number of columns, or of rows, with which all copies are in the room of a scene, and which it can hold.
+    #[must_use]
+    pub fn most(&self, along: Along, scene: &Scene) -> u32 {
+        let others = scene.objects.len().saturating_sub(self.count);
+        let across = if along == Along::Rows { self.repeat.columns } else { self.repeat.rows };
+        let room = MAX_OBJECTS.saturating_sub(others) / across.max(1) as usize;
+        let fits = |count: usize| {
+            let mut repeat = self.repeat.clone();
+            let changed = if along == Along::Rows { &mut repeat.rows } else { &mut repeat.columns };
+            *changed = u32::try_from(count).unwrap_or(u32::MAX);
+            let row = Row { repeat: &repeat, ..*self };
+            row.corners().into_iter().all(|p| scene.scene_size.contains(p))
+        };
+        // Further copies are further away.
+        let (mut good, mut bad) = (1, room + 1);
+        while bad - good > 1 {
+            let middle = good.midpoint(bad);
+            if fits(middle) { good = middle } else { bad = middle }
+        }
+        good as u32
+    }
+
+    /// The ends of an axis of the step from column to column, or from row to row, with which all copies are in a room, to
+    /// four decimals; `None` if there is no such step.
+    #[must_use]
+    pub fn ends_of_step(&self, along: Along, axis: usize, room: SceneSize) -> Option<[f64; 2]> {
+        let mut repeat = self.repeat.clone();
+        let (count, step) = match along {
+            Along::Rows => (repeat.rows, &mut repeat.row_spacing),
+            _ => (repeat.columns, &mut repeat.spacing),
+        };
+        step[axis] = 0.0;
+        let steps = f64::from(count.checked_sub(1).filter(|steps| *steps > 0)?);
+        let without = Row { repeat: &repeat, ..*self }.corners().map(|p| f64::from(p[axis]));
+        let [first, last] = [f64::min, f64::max].map(|of| without.into_iter().reduce(of).unwrap_or_default());
+        // Coordinates are greater than 0.
+        let low = (-first / steps * 1e4).floor() + 1.0;
+        let high = ((f64::from(room.corner()[axis]) - last) / steps * 1e4).floor();
+        Some([low, high].map(|end| end / 1e4))
+    }
+
+    /// Gives the lists of values of another row of the same object as many values as there are steps: see
+    /// [`Repeat::fit_lists`].
+    pub fn fit_lists(&self, repeat: &mut Repeat, known: &mut Lists, registry: &Registry) {
+        repeat.fit_lists(known, |varied| {
+            let variable = Variable::with_path(&varied.parameter, &self.entry.object_type, registry)?;
+            variable.next_after(&varied.values)
+        });
     }
 
     /// The values that vary.

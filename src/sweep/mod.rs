@@ -37,7 +37,7 @@ pub use sheet::{Against, Grid, Page, maps};
 pub use write::{Format, Look, Plan};
 
 use crate::{
-    caption::{self, Caption, Part as Words},
+    caption::{self, Caption, Ground, Part as Words},
     optics::TermSelection,
     registry::Registry,
     scene::Scene,
@@ -154,6 +154,12 @@ impl<'a> Sweep<'a> {
         // Far below the limits of file systems.
         name.truncate(120);
         name + ".png"
+    }
+
+    /// The ground of words around the pictures: that of the first.
+    #[must_use]
+    pub fn ground(&self) -> Ground {
+        self.seen(0).map_or(Ground::DARK, |(seen, _)| Ground::of(&seen.display))
     }
 
     /// The caption of all pictures together: what they share, and what varies.

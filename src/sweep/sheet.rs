@@ -4,15 +4,12 @@ use rayon::prelude::*;
 
 use super::Sweep;
 use crate::{
-    caption::{self, Part as Words},
+    caption::{self, Ground, Part as Words},
     compare::{Pair, Shown, Unequal, fitting_amplification, legend_alone, short},
     lettering::Lettering,
     scene::Comparison,
 };
 
-/// The ground between pictures, as that of the strip of a caption.
-const GROUND: [u8; 3] = [24; 3];
-const INK: [u8; 3] = [222; 3];
 /// A single row has at most so many pictures, unless the user says otherwise.
 const ROW: usize = 8;
 
@@ -94,10 +91,10 @@ pub fn maps(
     };
     let comparison = Comparison { amplification: Some(factor), ..*against.comparison };
     let column = sweep.labels(against.column).first().map_or_else(String::new, |label| label.words());
-    let names = ["this".to_owned(), column];
+    let (names, ground) = (["this".to_owned(), column], sweep.ground());
     let one = |i: usize| {
         if i == reference(i) {
-            return Ok((legend_alone(size, GROUND, &comparison, factor, &names), String::new()));
+            return Ok((legend_alone(size, ground.colour, &comparison, factor, &names), String::new()));
         }
         let Some([a, b]) = with(i) else { return Ok(Map::default()) };
         let pair = Pair::new(&a, &b)?;
@@ -126,6 +123,8 @@ pub struct Page<'a> {
     /// True if a line above all says what time it is in a film.
     is_dated: bool,
     has_maps: bool,
+    /// The ground between pictures, as that of the strip of a caption.
+    ground: Ground,
 }
 
 impl<'a> Page<'a> {
@@ -139,7 +138,25 @@ impl<'a> Page<'a> {
         let widest = rows.iter().map(|label| caption::line_width(std::slice::from_ref(*label), px)).max();
         let left = widest.map_or(0, |width| width.min(cell[0]) + gap);
         let line = Lettering::Regular.height(px) + (0.3 * px).round() as u32;
-        Self { grid, cell, px, line, gap, left, columns: labels(0), rows, is_dated: false, has_maps }
+        Self {
+            grid,
+            cell,
+            px,
+            line,
+            gap,
+            left,
+            columns: labels(0),
+            rows,
+            is_dated: false,
+            has_maps,
+            ground: Ground::DARK,
+        }
+    }
+
+    /// Lays the pictures on another ground.
+    #[must_use]
+    pub fn on(self, ground: Ground) -> Self {
+        Self { ground, ..self }
     }
 
     /// Leaves all words out.
@@ -186,7 +203,7 @@ impl<'a> Page<'a> {
     /// The sheet of pictures in order, each with its map if there are maps; `date` is the line above all.
     #[must_use]
     pub fn compose(&self, pictures: &[Vec<u8>], maps: &[Map], date: Option<&Words>) -> Vec<u8> {
-        let mut paper = Paper::new(self.size());
+        let mut paper = Paper::new(self.size(), self.ground.colour);
         let [width, height] = self.cell;
         if let Some(date) = date {
             self.write(&mut paper, date, [self.gap, self.gap], self.size()[0].saturating_sub(2 * self.gap));
@@ -225,7 +242,7 @@ impl<'a> Page<'a> {
         }
         let free = room.saturating_sub(caption::line_width(&parts, self.px));
         let at = [x + free / 2, y].map(|v| v as i32);
-        caption::draw_line(&parts, &mut paper.rgb8, paper.size, at, self.px, INK);
+        caption::draw_line(&parts, &mut paper.rgb8, paper.size, at, self.px, self.ground.title);
     }
 }
 
@@ -236,8 +253,8 @@ struct Paper {
 }
 
 impl Paper {
-    fn new(size: [u32; 2]) -> Self {
-        Self { size, rgb8: GROUND.repeat(size[0] as usize * size[1] as usize) }
+    fn new(size: [u32; 2], ground: [u8; 3]) -> Self {
+        Self { size, rgb8: ground.repeat(size[0] as usize * size[1] as usize) }
     }
 
     /// Puts a picture of some size at a place.
@@ -297,13 +314,17 @@ mod tests {
         }
         // Ink outside of the pictures, smooth at its edges.
         let inked = |sheet: &[u8]| {
-            let plain = |p: &[u8; 3]| p[0] == GROUND[0] || p[0].is_multiple_of(40);
+            let plain = |p: &[u8; 3]| p[0] == Ground::DARK.colour[0] || p[0].is_multiple_of(40);
             sheet.as_chunks::<3>().0.iter().filter(|p| !plain(p)).count()
         };
         assert!(inked(&sheet) > 20);
         let silent = Page::new(&both, grid, cell, false).silent();
         assert!(silent.size()[0] < width && silent.size()[1] < height);
         assert_eq!(inked(&silent.compose(&pictures, &[], None)), 0);
+        // On a light ground the ink is dark.
+        let light = Page::new(&both, grid, cell, false).on(Ground::LIGHT).compose(&pictures, &[], None);
+        let darker = light.as_chunks::<3>().0.iter().filter(|p| p[0] < 40).count();
+        assert!(count(&light, 246) > 500 && darker > 10, "{darker}");
         // A film of one picture without words is the picture.
         let one = Page::new(&[], Grid::of(&[], None).expect("one"), cell, false);
         assert_eq!((one.size(), one.compose(&pictures[..1], &[], None) == pictures[0]), (cell, true));
@@ -324,7 +345,7 @@ mod tests {
         let against = Against { column: 0, comparison: &comparison };
         let maps = maps(&sweep, &pictures, size, against).expect("comparable");
         assert_eq!(maps[0].1, "");
-        assert!(maps[0].0 != GROUND.repeat(240 * 160), "there is a legend");
+        assert!(maps[0].0 != Ground::DARK.colour.repeat(240 * 160), "there is a legend");
         // The same difference has the same colour.
         assert!(maps[1].0 == maps[2].0 && maps[1].1.starts_with("RMSE 0.0392, FLIP "), "{:?}", maps[1].1);
         let page = Page::new(&[&sweep.axes[0]], Grid::of(&[3], None).expect("one"), size, true);

@@ -108,6 +108,7 @@ impl<'a> Plan<'a> {
         let settings = Settings { size, ..settings };
         let time = sweep.axes.get(beside).filter(|time| !time.moves && look.words);
         let page = Page::new(&axes, grid, size, look.against.is_some());
+        let page = page.on(sweep.ground());
         let page = if look.words { page } else { page.silent() };
         let page = if time.is_some() { page.dated() } else { page };
         room(&page, size, sweep.count())?;

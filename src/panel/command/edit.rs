@@ -79,10 +79,17 @@ fn parts(to: &mut List) {
 }
 
 fn rows(to: &mut List) {
-    let part = to.session.selection;
-    let object = if let Selection::Object(i) = part { Some(i) } else { None };
+    let object = match to.session.selection {
+        Selection::Object(i) => Some(i),
+        // There is no other that could be meant.
+        _ => Some(0).filter(|_| to.session.document.objects.len() == 1),
+    };
     let row = object.and_then(|i| to.session.document.row(i));
-    let make = command("row", "Row…", Action::MakeRow(part)).says("Row or grid of the object");
+    let part = object.map_or(Selection::Room, Selection::Object);
+    let make = command("row", "Row…", Action::MakeRow(part))
+        .says("Row or grid of the object")
+        .keys("Ctrl+R")
+        .rank(5);
     let make = make
         .tip("Copies of the object beside each other, edited as one; values may differ from copy to copy.");
     let make = make.unless(object.is_none(), "No object is selected");

@@ -26,7 +26,7 @@ pub(super) fn light(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
         linked::within(ui, Domain::Light, |ui| {
             let types = registry.lights().iter().map(|l| l.declaration);
             let types = types.map(|d| [d.id, d.name, d.summary]);
-            if let Some(id) = type_knob(ui, types, &light.light_type) {
+            if let Some(id) = type_knob(ui, types, &light.light_type, None) {
                 context.edit(Edit::set(part, Light::light_type, id.to_owned()));
             }
             let Some(entry) = registry.light(&light.light_type) else {
@@ -47,7 +47,7 @@ pub(super) fn light(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
                 {
                     context.act(Action::Do(Effect::Pick(Pick::File(Selection::Light(i), p))));
                 }
-                if let Some(v) = knob_of(ui, p.name, p, entry.parameters, &light.parameters) {
+                if let Some(v) = knob_of(ui, p.name, p, (entry.parameters, &light.parameters), None) {
                     context.edit(Edit::parameter(part, p.name, v));
                 }
             }

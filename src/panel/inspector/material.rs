@@ -14,7 +14,7 @@ use crate::{
 impl Shown<'_> {
     /// The knobs of the parameters of the model, and the parameters that it does not use.
     pub(super) fn material(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let Self { session, registry, part, object, model } = *self;
+        let Self { session, registry, part, object, model, .. } = *self;
         let Some(model) = model else {
             ui.label(theme::small(ui, "The parameters come back with the model."));
             return;
@@ -26,7 +26,8 @@ impl Shown<'_> {
         self.filter(ui, model, context);
         let mut knob = |ui: &mut Ui, p: &'static Parameter| {
             let value = marked(ui, Key::Material(p.name), context, |ui| {
-                knob_of(ui, p.name, p, model.parameters, &object.material)
+                let fixed = self.fixed(Key::Material(p.name));
+                knob_of(ui, p.name, p, (model.parameters, &object.material), fixed)
             });
             context.edits(value.map(|v| Edit::material(part, p.name, v)));
         };

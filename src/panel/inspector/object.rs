@@ -2,7 +2,7 @@
 
 use super::{
     model::{equation, missing_model, model_author, model_name, stage, terms},
-    part::{header, knob_of, number, section, type_knob, vector},
+    part::{header, knob_of, section, type_knob, vector},
     row,
     variant::marked,
 };
@@ -16,7 +16,11 @@ use crate::{
     },
     parameter::Value,
     reflection::ModelEntry,
-    scene::{Object, Variant, limits},
+    scene::{
+        Field, Key, Object, Variant, limits,
+        part::Fields as _,
+        rows::{Row, Variable},
+    },
     shading::ShadingEntry,
 };
 
@@ -24,13 +28,14 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
     let Some(object) = session.scene().objects.get(i) else { return };
     header(ui, Selection::Object(i), object.name.as_deref(), context);
-    let in_row = session.document.row(i).is_some();
+    let row = session.document.row(i);
+    let (in_row, varied) = (row.is_some(), row.map_or_else(Vec::new, |row| fixed(&row, session, registry)));
     if in_row {
         row::which(ui, i, context);
         section(ui, "Row", true, |ui| row::row(ui, i, context));
     }
     let model = registry.model(session.scene().model_of(object));
-    let shown = Shown { session, registry, part: Part::Object(i), object, model };
+    let shown = Shown { session, registry, part: Part::Object(i), object, model, varied };
     shown.files(ui, i, context);
     section(ui, "Reflection", true, |ui| shown.reflection(ui, context));
     section(ui, "Material", true, |ui| shown.material(ui, context));
@@ -43,6 +48,15 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     }
 }
 
+/// The values of a row that its copies do not share. Those that the active view sets are its own.
+fn fixed(row: &Row, session: &Session, registry: &Registry) -> Vec<Key> {
+    let is_of_view = |key: &Key| {
+        let sets = |variant: &Variant| matches!(key, Key::Material(_)) || variant.field(key.name()).is_some();
+        session.variant().is_some_and(sets)
+    };
+    row.variables(registry).map(Variable::key).filter(|key| !is_of_view(key)).collect()
+}
+
 /// The object that is shown, and its surroundings.
 pub(super) struct Shown<'a> {
     pub(super) session: &'a Session,
@@ -50,15 +64,24 @@ pub(super) struct Shown<'a> {
     pub(super) part: Part,
     pub(super) object: &'a Object,
     pub(super) model: Option<&'a ModelEntry>,
+    /// What differs from copy to copy of its row.
+    pub(super) varied: Vec<Key>,
 }
 
 impl Shown<'_> {
+    /// The reason why a value cannot be changed here.
+    pub(super) fn fixed(&self, key: impl Into<Key>) -> Option<&'static str> {
+        let why = "it differs from copy to copy: change its range or its list under “Row”, above";
+        self.varied.contains(&key.into()).then_some(why)
+    }
+
     /// The model with its equation and terms, and the stage that evaluates it.
     fn reflection(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let Self { session, registry, part, object, model } = *self;
+        let Self { session, registry, part, object, model, .. } = *self;
         ui.horizontal(|ui| {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let chosen = model_override::control(ui, session, registry, object);
+                let fixed = self.fixed(Object::reflection_model).or(self.fixed(Object::shading_model));
+                let chosen = model_override::control(ui, session, registry, object, fixed);
                 context.edits(chosen.map(|(field, id)| Edit::put(part, field, id)));
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     if let Some(model) = model {
@@ -96,30 +119,51 @@ impl Shown<'_> {
         ui.add_space(4.0);
         ui.label(theme::small(ui, format!("{} shading", shading.declaration.name)));
         for p in own {
-            let value = knob_of(ui, p.name, p, shading.parameters, &object.material);
+            let value = knob_of(
+                ui,
+                p.name,
+                p,
+                (shading.parameters, &object.material),
+                self.fixed(Key::Material(p.name)),
+            );
             context.edits(value.map(|v| Edit::material(part, p.name, v)));
         }
+    }
+
+    /// The caption of a field of the object.
+    fn caption<'c>(&self, field: Field, help: &'c str) -> Caption<'c> {
+        Caption { disabled: self.fixed(field), ..Caption::of(&field, help) }
     }
 
     /// The object type, its size and its place.
     fn geometry(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let Self { session, registry, part, object, .. } = *self;
         let types = registry.shapes().iter().map(|s| s.declaration);
-        if let Some(id) = type_knob(ui, types.map(|d| [d.id, d.name, d.summary]), &object.object_type) {
+        if let Some(id) = type_knob(
+            ui,
+            types.map(|d| [d.id, d.name, d.summary]),
+            &object.object_type,
+            self.fixed(Object::object_type),
+        ) {
             context.edit(Edit::set(part, Object::object_type, id.to_owned()));
         }
         self.shape(ui, context);
         let room = session.document.scene_size;
-        let sizes = [object.size, Object::default().size];
+        let [size, default] = [object.size, Object::default().size].map(f64::from);
+        let caption = self.caption(Object::size, "The largest extent.");
         let limits = limits::object_size(room);
-        context.edits(number(ui, part, Object::size, "The largest extent.", sizes, &limits));
+        let size = knob::number_knob(ui, &caption, Amount::new(size, Some(default), &limits));
+        context.edits(size.map(|v| Edit::set(part, Object::size, v as f32)));
         let help = "Position of the centre; y is up, the origin is a corner of the room.";
         context.edits(vector(ui, part, Object::position, help, object.position, room));
-        let help = "Turned about x first, then y, then z of the room.";
-        context.edits(vector(ui, part, Object::rotation, help, object.rotation, room));
+        let caption = self.caption(Object::rotation, "Turned about x first, then y, then z of the room.");
+        let limits = [0, 1, 2].map(|_| Object::rotation.limits());
+        let rotation = knob::vector_knob(ui, &caption, object.rotation, &limits);
+        context.edits(rotation.map(|v| Edit::set(part, Object::rotation, v)));
         if let Some(shape) = registry.shape(&object.object_type) {
             let d = shape.declaration;
-            let caption = Caption::new("tessellation", "", d.tessellation_help);
+            let disabled = self.fixed(Object::tessellation);
+            let caption = Caption { disabled, ..Caption::new("tessellation", "", d.tessellation_help) };
             let value = f64::from(shape.tessellation(object.tessellation));
             let default = f64::from(d.default_tessellation);
             let chosen = marked(ui, Variant::tessellation, context, |ui| {
@@ -150,7 +194,8 @@ impl Shown<'_> {
         let Some(shape) = registry.shape(&object.object_type) else { return };
         for p in shape.parameters {
             let salt = format!("shape {}", p.name);
-            let value = knob_of(ui, &salt, p, shape.parameters, &object.shape);
+            let value =
+                knob_of(ui, &salt, p, (shape.parameters, &object.shape), self.fixed(Key::Own(p.name)));
             context.edits(value.map(|v| Edit::parameter(part, p.name, v)));
         }
     }

@@ -152,27 +152,29 @@ pub(super) fn number(
     knob::number_knob(ui, &caption, amount).map(|v| Edit::set(part, field, v as f32))
 }
 
-/// The choice of a type from the id, name and summary of each. Returns the id of another one.
+/// The choice of a type from the id, name and summary of each. Returns the id of another one. `fixed` is the reason why it
+/// cannot be changed.
 pub(super) fn type_knob<'t>(
     ui: &mut Ui,
     types: impl Iterator<Item = [&'t str; 3]>,
     id: &str,
+    fixed: Option<&str>,
 ) -> Option<&'t str> {
     let types: Vec<_> = types.collect();
     let names: Vec<_> = types.iter().map(|[_, name, _]| *name).collect();
     let chosen = types.iter().position(|[known, ..]| *known == id);
-    let caption = Caption::new("type", "", chosen.map_or("", |k| types[k][2]));
+    let caption = Caption { disabled: fixed, ..Caption::new("type", "", chosen.map_or("", |k| types[k][2])) };
     knob::choice_knob(ui, &caption, chosen.unwrap_or(usize::MAX), &names).map(|k| types[k][0])
 }
 
-/// The knob of a declared parameter of a part with these values; disabled if they leave it unused.
+/// The knob of a declared parameter of a part with these values; disabled if they leave it unused, or for the reason `fixed`.
 pub(super) fn knob_of(
     ui: &mut Ui,
     salt: &str,
     parameter: &Parameter,
-    all: &[Parameter],
-    values: &Values,
+    (all, values): (&[Parameter], &Values),
+    fixed: Option<&str>,
 ) -> Option<Value> {
     let unused = usage::unused(all, parameter, values);
-    knob::parameter_knob(ui, salt, parameter, &values.get(parameter), unused.as_deref())
+    knob::parameter_knob(ui, salt, parameter, &values.get(parameter), fixed.or(unused.as_deref()))
 }

@@ -1,13 +1,14 @@
 //! The row of an object: how many copies, how far apart, and what differs between them.
 
 use crate::{
+    document::Document,
     panel::{
         knob::{self, Amount, Caption},
         prelude::*,
     },
     parameter::Value,
     scene::{
-        Field, MAX_OBJECTS, Object, Repeat, Repetition, Varied,
+        Field, Object, Repeat, Repetition, Varied,
         held::Word,
         limits::Limits,
         repeat::{Along, MAX_VARIED, Scale},
@@ -37,7 +38,7 @@ pub(super) fn row(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     };
     let document = context.document();
     let models = (document.model_of(row.entry), document.shading_model_of(row.entry));
-    let shown = Shown { i, row, registry: context.registry(), models };
+    let shown = Shown { i, row, document, registry: context.registry(), models };
     context.edits(shown.counts(ui));
     context.edits(shown.steps(ui));
     for j in 0..row.repeat.vary.len() {
@@ -62,6 +63,7 @@ pub(super) fn row(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
 struct Shown<'a> {
     i: usize,
     row: Row<'a>,
+    document: &'a Document,
     registry: &'a Registry,
     /// Its reflection model and its shading model.
     models: (&'a str, &'a str),
@@ -76,6 +78,16 @@ impl Shown<'_> {
         Edit::Row { object: self.i, entry: Some(Box::new(Object { repeat, ..self.row.entry.clone() })), what }
     }
 
+    /// The edit that changes how many copies there are, or from which to which values vary. Copies that come back have their
+    /// listed values again.
+    fn counting(&self, ui: &Ui, what: &'static str, change: impl FnOnce(&mut Repeat)) -> Edit {
+        let id = Id::new(("lists of a row", self.document.object_id(self.row.first)));
+        self.with(what, |row| {
+            change(row);
+            ui.data_mut(|data| self.row.fit_lists(row, data.get_temp_mut_or_default(id), self.registry));
+        })
+    }
+
     /// The edit that changes a varied value.
     fn varying(&self, what: &'static str, j: usize, change: impl FnOnce(&mut Varied)) -> Edit {
         self.with(what, |row| {
@@ -88,37 +100,49 @@ impl Shown<'_> {
     /// The numbers of columns and rows.
     fn counts(&self, ui: &mut Ui) -> Option<Edit> {
         let repeat = self.row.repeat;
-        let count = |ui: &mut Ui, field: Field, value: u32, other: u32| {
-            let limits = Limits::between(1.0, (MAX_OBJECTS / other.max(1) as usize) as f64).whole();
-            let limits = limits.slider(1.0, SLIDER);
+        let count = |ui: &mut Ui, field: Field, value: u32, along: Along| {
+            let most = f64::from(self.row.most(along, self.document));
+            let limits = Limits::between(1.0, most).whole().slider(1.0, SLIDER.min(most.max(2.0)));
+            let limits = Limits { because: Some("there is room for no more".to_owned()), ..limits };
             let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
             knob::number_knob(ui, &caption, Amount::new(value.into(), None, &limits)).map(|v| v as u32)
         };
-        let columns = count(ui, Repeat::columns, repeat.columns, repeat.rows);
-        let rows = count(ui, Repeat::rows, repeat.rows, repeat.columns);
+        let columns = count(ui, Repeat::columns, repeat.columns, Along::Columns);
+        let rows = count(ui, Repeat::rows, repeat.rows, Along::Rows);
         (columns.or(rows)).map(|_| {
             let [columns, rows] = [columns.unwrap_or(repeat.columns), rows.unwrap_or(repeat.rows)];
-            self.with("Number", |row| *row = row.clone().resized(columns, rows))
+            self.counting(ui, "Number", |row| (row.columns, row.rows) = (columns, rows))
         })
     }
 
     /// The steps between columns and rows, and the labels.
     fn steps(&self, ui: &mut Ui) -> Option<Edit> {
         let repeat = self.row.repeat;
-        let step = |ui: &mut Ui, field: Field, value: Vec3| {
-            let limits = [0, 1, 2].map(|_| field.limits());
+        let step = |ui: &mut Ui, field: Field, value: Vec3, along: Along| {
+            let limits = [0, 1, 2].map(|axis| self.limits_of_step(along, axis, value[axis].into(), field));
             let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
             knob::vector_knob(ui, &caption, value, &limits)
         };
-        let mut edit = step(ui, Repeat::spacing, repeat.spacing)
+        let mut edit = step(ui, Repeat::spacing, repeat.spacing, Along::Columns)
             .map(|way| self.with("Spacing", |row| row.spacing = way));
         if repeat.rows > 1 {
-            let changed = step(ui, Repeat::row_spacing, repeat.row_spacing);
+            let changed = step(ui, Repeat::row_spacing, repeat.row_spacing, Along::Rows);
             edit = edit.or(changed.map(|way| self.with("Spacing of rows", |row| row.row_spacing = way)));
         }
         let caption = Caption::new("labels", "", Repeat::labels.help.trim());
         let labels = knob::flag_knob(ui, &caption, repeat.labels);
         edit.or(labels.map(|on| self.with("Labels", |row| row.labels = on)))
+    }
+
+    /// The limits of an axis of a step: all copies stay in the room.
+    fn limits_of_step(&self, along: Along, axis: usize, now: f64, field: Field) -> Limits {
+        match self.row.ends_of_step(along, axis, self.document.scene_size) {
+            Some([low, high]) => Limits {
+                because: Some("all copies must be in the room".to_owned()),
+                ..Limits::between(low.min(now), high.max(now))
+            },
+            None => field.limits(),
+        }
     }
 
     /// The numbers that may vary: those of the object, and of its model.
@@ -149,17 +173,17 @@ impl Shown<'_> {
     /// The knobs of a varied value.
     fn varied(&self, ui: &mut Ui, j: usize) -> Option<Edit> {
         let varied = &self.row.repeat.vary[j];
-        ui.add_space(2.0);
+        ui.add_space(6.0);
         let chosen = self.which_value(ui, j, varied);
         let range =
             if varied.values.is_empty() { self.range(ui, j, varied) } else { self.list(ui, j, varied) };
         let is_grid = self.row.repeat.rows > 1;
         let along = is_grid.then(|| choice(ui, Varied::along, varied.along, Along::ALL)).flatten();
         let along = along.map(|along| {
-            self.with("Direction", |row| {
-                row.vary[j].along = along;
-                // A list gets as many values as there are steps.
-                *row = row.clone().resized(row.columns, row.rows);
+            self.counting(ui, "Direction", |row| {
+                if let Some(varied) = row.vary.get_mut(j) {
+                    varied.along = along;
+                }
             })
         });
         chosen.or(range).or(along)
@@ -172,25 +196,22 @@ impl Shown<'_> {
         let mut names: Vec<_> = numbers.iter().map(|one| one.label()).collect();
         // What only a file can choose is shown as it stands there.
         names.extend(now.is_none().then_some(varied.parameter.as_str()));
-        let mut edit = None;
-        ui.horizontal(|ui| {
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if icon::button(ui, Icon::Bin, "The same for all copies").clicked() {
-                    edit = Some(self.with("Varied value", |row| drop(row.vary.remove(j))));
-                }
-                ui.with_layout(Layout::top_down(Align::Min), |ui| {
-                    let caption = Caption::new("varies", "", Varied::parameter.help.trim());
-                    let new = knob::choice_knob(ui, &caption, now.unwrap_or(numbers.len()), &names);
-                    let new = new.and_then(|k| numbers.get(k)).and_then(|one| one.over_its_range());
-                    if let Some(new) = new {
-                        let along = varied.along;
-                        edit =
-                            Some(self.varying("Varied value", j, |known| *known = Varied { along, ..new }));
-                    }
-                });
-            });
+        let caption = Caption::new("varies", "", Varied::parameter.help.trim());
+        let line = ui.scope(|ui| knob::choice_knob(ui, &caption, now.unwrap_or(numbers.len()), &names));
+        let new = line.inner.and_then(|k| numbers.get(k)).and_then(|one| one.over_its_range());
+        let chosen = new.map(|new| {
+            let along = varied.along;
+            self.varying("Varied value", j, |known| *known = Varied { along, ..new })
         });
-        edit
+        // In the column of the units, so that the choice is in line with those below.
+        let place = Rect::from_min_size(
+            line.response.rect.right_top() + vec2(-icon::SIZE, 2.0),
+            Vec2::splat(icon::SIZE),
+        );
+        let mut unit = ui.new_child(UiBuilder::new().max_rect(place));
+        let same = icon::button(&mut unit, Icon::Bin, "The same for all copies").clicked();
+        let same = same.then(|| self.with("Varied value", |row| drop(row.vary.remove(j))));
+        chosen.or(same)
     }
 
     /// The ends of a range, and its scale.

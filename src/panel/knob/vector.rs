@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::{
     field::{complaint, field},
-    line::{Caption, knob, unit},
+    line::{Caption, explain, knob, tooltip, unit},
     slider::round_to,
 };
 use crate::{
@@ -96,15 +96,15 @@ pub fn vector_knob(ui: &mut Ui, caption: &Caption, value: Vec3, limits: &[Limits
     knob(ui, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let font = TextStyle::Body.resolve(ui.style());
-        let colour = Palette::here(ui).text;
+        let palette = Palette::here(ui);
+        let colour = if caption.disabled.is_none() { palette.text } else { palette.weak };
         let galley = ui.painter().layout_no_wrap(caption.label.to_owned(), font, colour);
         let column = galley.size().x.max(54.0);
         let word = |ui: &mut Ui| {
             let (rect, label) = ui.allocate_exact_size(vec2(column, 22.0), Sense::hover());
             ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, colour);
-            label.on_hover_ui(|ui| {
-                ui.set_max_width(300.0);
-                ui.label(caption.help);
+            explain(label, |ui| {
+                tooltip(ui, caption, "", "");
                 for (letter, limits) in LETTERS.iter().zip(limits) {
                     ui.label(theme::small(ui, format!("{letter}: {}", limits.rule())));
                 }

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::{Session, Severity};
 use crate::{
     document::{Edit, PartId, Selection},
-    parameter::{ALPHA, Parameter, ROUGHNESS, SIGMA},
+    parameter::{ALPHA, ALPHA_X, ALPHA_Y, Parameter, ROUGHNESS, SIGMA},
     reflection::usage,
     registry::Registry,
     scene::{Object, Repeat, Repetition, Varied, limits::significant, observer::WIDE, rows::Variable},
@@ -13,6 +13,13 @@ use crate::{
 
 /// The distance of the objects of a new row, in sizes of an object.
 const APART: f32 = 1.15;
+/// The part of the picture's width and height that a new row takes at most; the rest is a margin.
+const TAKES: f32 = 0.86;
+/// The factor between spacings that are tried, and how often it is applied: as long as copies are easily seen, to a tenth;
+/// and at all, to a thousandth.
+const NARROWER: f32 = 0.97;
+const VISIBLE: i32 = 75;
+const NARROWEST: i32 = 227;
 
 impl Session {
     /// Makes a row of an object, with the value that says most about its model.
@@ -25,57 +32,73 @@ impl Session {
             return self.say(Severity::Info, text);
         }
         let Some(object) = self.document.objects.get(i) else { return };
-        let vary = self.telling(object, registry).into_iter().collect();
+        let vary = self.telling(object, registry);
         let entry = self.row_across(object, Repeat { vary, labels: true, ..Repeat::default() });
         let smaller = entry.size < object.size;
         let revision = self.document.revision();
+        self.select(part);
         self.edit(Edit::Row { object: i, entry: Some(Box::new(entry)), what: "Row" }, registry);
         if smaller && self.document.revision() != revision {
             self.say(Severity::Info, "The objects became smaller, so that the row fits into the picture.");
         }
     }
 
-    /// The value of an object's model that differs along a new row.
-    fn telling(&self, object: &Object, registry: &Registry) -> Option<Varied> {
-        let model = registry.model(self.document.model_of(object))?;
+    /// The values of an object's model that differ along a new row: one, or the two of a highlight that stays round.
+    fn telling(&self, object: &Object, registry: &Registry) -> Vec<Varied> {
+        let Some(model) = registry.model(self.document.model_of(object)) else { return Vec::new() };
         let used = |p: &&Parameter| usage::unused(model.parameters, p, &object.material).is_none();
         let numbers = model.parameters.iter().filter(used).map(Variable::Material);
         let ranges: Vec<_> = numbers.filter_map(Variable::over_its_range).collect();
-        let telling = [ROUGHNESS, ALPHA, SIGMA].map(|p| format!("{}.{}", Object::material.key, p.name));
-        let known = |path: &String| ranges.iter().find(|varied| varied.parameter == *path);
-        telling.iter().find_map(known).or(ranges.last()).cloned()
+        let telling: [&[Parameter]; 4] = [&[ROUGHNESS], &[ALPHA], &[ALPHA_X, ALPHA_Y], &[SIGMA]];
+        let known = |all: &[Parameter]| -> Option<Vec<Varied>> {
+            let path = |p: &Parameter| format!("{}.{}", Object::material.key, p.name);
+            let of = |p: &Parameter| ranges.iter().find(|varied| varied.parameter == path(p)).cloned();
+            all.iter().map(of).collect()
+        };
+        telling.into_iter().find_map(known).unwrap_or_else(|| ranges.last().cloned().into_iter().collect())
     }
 
-    /// An object as the entry of a row around its place, from the left of the picture to the right, within room and
-    /// picture.
+    /// An object as the entry of a row around its place, from the left of the picture to the right: as large as it is, or as
+    /// the room and a picture with a margin have place for all copies.
     fn row_across(&self, object: &Object, repeat: Repeat) -> Object {
-        let (eye, camera) = (self.facts.eye, self.facts.camera);
-        let right = camera * Vec3::X;
+        let right = self.facts.camera * Vec3::X;
         let axis = if right.z.abs() > right.x.abs() {
             Vec3::Z * right.z.signum()
         } else {
             Vec3::X * right.x.signum()
         };
-        let along = |v: Vec3| axis.abs().dot(v);
-        let room = along(self.document.scene_size.corner());
-        let inside = along(object.position).min(room - along(object.position));
-        let seen = camera.inverse() * (object.position - eye);
-        let wide = (0.5 * self.document.observer.field_of_view.to_radians()).tan() * WIDE;
-        // What the camera does not see has the room alone.
-        let in_view = if seen.z < 0.0 { -seen.z * wide - seen.x.abs() } else { inside };
-        let reach = if in_view > 0.0 { in_view.min(inside) } else { inside };
-        let widest = significant(f64::from(1.96 * reach / repeat.columns as f32), 2) as f32;
-        let apart = widest.min(APART * object.size);
-        let size = if apart < APART * object.size {
-            significant(f64::from(apart / APART), 2) as f32
-        } else {
-            object.size
+        let whole = APART * object.size;
+        let rounded = |v: f32| significant(f64::from(v), 2) as f32;
+        let sized = |apart: f32| if apart < whole { rounded(apart / APART) } else { object.size };
+        let half = 0.5 * (repeat.columns - 1) as f32;
+        // What lies between the ends fits if these do.
+        let ends = |apart: f32| [-half, half].map(|steps| object.position + steps * apart * axis);
+        let has_room = |apart: &f32| {
+            let (reach, room) = (0.5 * sized(*apart) * axis, self.document.scene_size);
+            ends(*apart).into_iter().all(|p| room.contains(p - reach) && room.contains(p + reach))
         };
-        let first = object.position - axis * (0.5 * apart * (repeat.columns - 1) as f32);
+        let in_view = |apart: &f32| ends(*apart).into_iter().all(|p| self.shows_well(p, 0.5 * sized(*apart)));
+        let narrower = |k: i32| if k == 0 { whole } else { rounded(whole * NARROWER.powi(k)) };
+        let all = |most: i32| (0..=most).map(narrower);
+        // Beyond sight the room alone counts.
+        let apart = all(VISIBLE).find(|apart| has_room(apart) && in_view(apart));
+        let apart = apart.or_else(|| all(NARROWEST).find(has_room)).unwrap_or(whole);
+        let first = object.position - half * apart * axis;
         // Without the noise of differences.
         let position = (first * 1e4).round() / 1e4;
+        let size = sized(apart);
         let repeat = Repetition::Entry(Box::new(Repeat { spacing: axis * apart, ..repeat }));
         Object { position, size, repeat, ..object.clone() }
+    }
+
+    /// True if the camera sees a sphere, with a margin around the picture.
+    fn shows_well(&self, p: Vec3, radius: f32) -> bool {
+        let seen = self.facts.camera.inverse() * (p - self.facts.eye);
+        let up = TAKES * (0.5 * self.document.observer.field_of_view.to_radians()).tan();
+        let within = |side: f32, opening: f32| {
+            opening * -seen.z - side.abs() >= radius * (1.0 + opening * opening).sqrt()
+        };
+        -seen.z > radius && within(seen.x, WIDE * up) && within(seen.y, up)
     }
 
     /// After a change of a row, selects the copy that was selected, or else the first.

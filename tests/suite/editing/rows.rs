@@ -1,20 +1,25 @@
 //! Rows in the window: made, edited as one, undone in one step, and broken up.
 
+use bevy_egui::egui::{Key, Modifiers, Shape, accesskit::Role, vec2};
 use glam::Vec3;
 use lights_camera_models::{
     document::{Document, Edit, Selection},
     panel::{
         command::all,
-        state::{Action, Session},
+        state::{Action, CompareCommand, Session, ViewChange},
+        theme,
     },
     parameter::Value,
     registry::Registry,
-    scene::{Light, Object, Part, Repeat, Repetition, Scene, SceneSize, Varied, check, rows::Row},
+    scene::{
+        Background, Display, Light, Object, Part, Repeat, Repetition, Scene, SceneSize, Varied, check,
+        rows::Row,
+    },
 };
 
 use crate::{
     helpers::support::{read, written},
-    window::panels::Bench,
+    window::panels::{Bench, Seen},
 };
 
 fn varied() -> Varied {
@@ -222,9 +227,12 @@ fn a_new_row_fits_room_and_picture_and_varies_what_says_most() {
     assert_eq!(check::scene(&session.document, &registry), []);
     let [first, last] = [0, 4].map(|i| session.document.objects[i].position.x);
     assert!((first + last - 10.0).abs() < 1e-3 && first < last, "around its place: {first}, {last}");
-    // Seen from x = 5, 4.5 m away, at 45° and 16:9.
+    // Seen from x = 5, 4.5 m away, at 45° and 16:9: all of it, with a margin, but not lost in the picture.
     let half = 4.5 * 22.5f32.to_radians().tan() * 16.0 / 9.0;
     assert!(last + 0.5 * session.document.objects[4].size <= 5.0 + half);
+    let (side, reach) = (last - 5.0, 0.5 * session.document.objects[4].size);
+    let silhouette = 4.5 * ((side / 4.5).atan() + (reach / side.hypot(4.5)).asin()).tan();
+    assert!((0.75..0.9).contains(&(silhouette / half)), "{silhouette} of {half}");
     assert!(session.messages.iter().any(|note| note.text.contains("smaller")));
     session.apply(Action::Undo, &registry);
     assert!(*session.document.scene() == before, "one undo");
@@ -243,6 +251,19 @@ fn a_new_row_fits_room_and_picture_and_varies_what_says_most() {
 }
 
 #[test]
+fn a_new_row_of_an_object_beyond_sight_fits_the_room() {
+    let registry = Registry::builtin();
+    for position in [Vec3::new(5.0, 5.0, 9.9), Vec3::new(9.9, 1.0, 5.0), Vec3::new(0.05, 9.9, 0.05)] {
+        let mut scene = Scene::default();
+        scene.objects[0].position = position;
+        let mut session = Session::new(scene);
+        session.apply(Action::MakeRow(Selection::Object(0)), &registry);
+        assert_eq!(session.document.objects.len(), 5, "{position}: {:?}", session.messages);
+        assert_eq!(check::scene(&session.document, &registry), []);
+    }
+}
+
+#[test]
 fn every_model_and_object_type_makes_a_legal_row() {
     let registry = Registry::builtin();
     for model in registry.models() {
@@ -250,6 +271,9 @@ fn every_model_and_object_type_makes_a_legal_row() {
         let mut session = Session::new(scene);
         session.apply(Action::MakeRow(Selection::Object(0)), &registry);
         assert_eq!(session.document.objects.len(), 5, "{}: {:?}", model.declaration.id, session.messages);
+        // Highlights stay round.
+        let values: Vec<_> = session.document.objects.iter().map(|o| &o.material.0).collect();
+        assert!(values.iter().all(|v| v.get("alpha_x") == v.get("alpha_y")), "{}", model.declaration.id);
     }
 }
 
@@ -289,4 +313,149 @@ fn the_commands_are_there_when_they_can_be_used() {
     session.apply(Action::Select(Selection::Object(2)), &registry);
     assert_eq!(why_not(&session, "row").as_deref(), Some("The object is in a row already"));
     assert_eq!(why_not(&session, "single_objects"), None);
+}
+
+/// A window with a row whose first value is listed, and its second copy selected.
+fn listed() -> Bench {
+    let values = [0.1, 0.2, 0.3, 0.5].map(Value::Number).to_vec();
+    let varied = Varied { from: None, to: None, values, ..varied() };
+    let repeat =
+        Repeat { columns: 4, spacing: Vec3::new(1.5, 0.0, 0.0), vary: vec![varied], ..Repeat::default() };
+    let scene = Scene { objects: vec![entry(repeat)], ..scene() };
+    let mut bench = Bench::new(Session::new(scene.expanded(&Registry::builtin()).expect("legal")));
+    bench.apply(Action::Select(Selection::Object(1)));
+    bench.settle();
+    bench
+}
+
+#[test]
+fn copies_that_come_back_have_their_listed_values() {
+    let mut bench = listed();
+    let values = |bench: &Bench| -> Vec<f32> {
+        let all = roughness(&bench.session.document);
+        all.into_iter().map(|value| if let Some(Value::Number(v)) = value { v } else { f32::NAN }).collect()
+    };
+    let before = values(&bench);
+    assert_eq!(before, [0.1, 0.2, 0.3, 0.5]);
+    // In one drag, or with other edits in between.
+    bench.type_into("columns", "2");
+    assert_eq!(values(&bench), before[..2]);
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "metallic", Value::Number(1.0))));
+    bench.type_into("columns", "5");
+    assert_eq!(values(&bench), [0.1, 0.2, 0.3, 0.5, 0.5], "the steps are uneven: the last value is repeated");
+    bench.type_into("columns", "3");
+    while bench.session.document.done() > 0 {
+        bench.apply(Action::Undo);
+    }
+    assert_eq!(values(&bench), before);
+    // Even steps go on, as far as they are legal.
+    bench.type_into("columns", "3");
+    bench.apply(Action::Edit(changed(&bench.session.document, 0, |row| {
+        row.vary[0].values = [0.3, 0.5, 0.7].map(Value::Number).to_vec();
+    })));
+    bench.type_into("columns", "5");
+    assert_eq!(values(&bench), [0.3, 0.5, 0.7, 0.9, 0.9]);
+}
+
+#[test]
+fn numbers_of_columns_that_do_not_fit_are_refused_beside_the_field() {
+    let shows = |bench: &mut Bench, words: &str| bench.texts().iter().any(|text| text.contains(words));
+    let mut bench = Bench::new(Session::new(scene()));
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Select(Selection::Object(3)));
+    // From x = 2 in steps of 1.5 m there are six places in a room of 10 m.
+    for (typed, rule) in [
+        ("0", "Must be a whole number between 1 and 6 (there is room for no more); the picture keeps 5"),
+        ("7", "Must be a whole number between 1 and 6 (there is room for no more); the picture keeps 5"),
+        ("99999", "Must be a whole number between 1 and 6"),
+    ] {
+        bench.type_into("columns", typed);
+        assert!(shows(&mut bench, rule), "{typed}: {:?}", bench.texts());
+        assert_eq!(bench.session.document.objects.len(), 7, "{typed}");
+        assert!(bench.session.messages.iter().next().is_none(), "{typed}: {:?}", bench.session.messages);
+        bench.key(Key::Escape, Modifiers::NONE);
+    }
+    bench.type_into("columns", "6");
+    assert_eq!(bench.session.document.objects.len(), 8);
+    // A step that leads a copy out of the room.
+    bench.type_into("spacing x", "3");
+    assert!(
+        shows(&mut bench, "x must be between −0.3999 and 1.6 (all copies must be in the room)"),
+        "{:?}",
+        bench.texts()
+    );
+    assert_eq!(bench.session.document.objects.len(), 8);
+}
+
+#[test]
+fn knobs_of_values_that_vary_are_disabled_and_say_where_the_range_is() {
+    let why = "It differs from copy to copy: change its range or its list under “Row”, above.";
+    let mut bench = Bench::new(Session::new(scene()));
+    bench.apply(Action::Select(Selection::Object(3)));
+    bench.settle();
+    let slider = |bench: &Bench, label: &str| {
+        let is = |s: &&Seen| s.role == Role::Slider && s.label.starts_with(label);
+        bench.tree.iter().find(is).unwrap_or_else(|| panic!("no slider “{label}”")).clone()
+    };
+    assert!(slider(&bench, "roughness").disabled && !slider(&bench, "metallic").disabled);
+    let at = slider(&bench, "roughness").rect.center();
+    bench.hover(at);
+    assert!(bench.says(why), "{:?}", bench.texts());
+    // View B has a roughness of its own, for all copies alike.
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Compare(CompareCommand::Activate(1)));
+    bench.settle();
+    assert!(!slider(&bench, "roughness").disabled);
+    // The size, which is no parameter.
+    let edit = changed(&bench.session.document, 3, |row| {
+        row.vary[0] =
+            Varied { parameter: "size".to_owned(), from: Some(0.5), to: Some(1.0), ..Varied::default() };
+    });
+    bench.apply(Action::Edit(edit));
+    bench.settle();
+    assert!(slider(&bench, "size").disabled, "{:?}", bench.session.messages);
+}
+
+#[test]
+fn labels_in_the_window_suit_the_background() {
+    let mut scene = scene();
+    scene.display.background = Background::Colour;
+    let mut entry = scene.row(1).expect("a row").entry.clone();
+    let Repetition::Entry(repeat) = &mut entry.repeat else { panic!("it is one") };
+    repeat.labels = true;
+    scene.objects = vec![entry];
+    let mut bench = Bench::new(Session::new(scene.expanded(&Registry::builtin()).expect("legal")));
+    let plates = |bench: &mut Bench, palette: theme::Palette| {
+        let fill = palette.panel.gamma_multiply(0.88);
+        let is = |shape: &Shape| matches!(shape, Shape::Rect(rect) if rect.fill == fill);
+        bench.shapes().iter().filter(|shape| is(shape)).count()
+    };
+    let [light, dark] = [theme::LIGHT, theme::DARK].map(|palette| plates(&mut bench, palette));
+    assert!(light >= 3, "{light} light plates, {dark} dark ones");
+    bench.apply(Action::Edit(Edit::set(Part::Display, Display::background_colour, Value::Colour([9; 3]))));
+    let after = [theme::LIGHT, theme::DARK].map(|palette| plates(&mut bench, palette));
+    assert_eq!(after, [0, dark + light]);
+}
+
+#[test]
+fn the_knobs_of_a_row_are_beside_each_other_in_a_laptops_window() {
+    for scale in [100, 150] {
+        let mut bench = Bench::new(Session::new(scene()));
+        bench.size = vec2(1280.0, 720.0);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::Select(Selection::Object(3)));
+        let right = bench.size.x / (f32::from(scale) / 100.0);
+        let left = bench.area.rect.right();
+        for label in ["columns", "rows", "spacing x", "spacing y", "spacing z", "from", "to"] {
+            let rect = bench.field(label).rect;
+            assert!(rect.left() > left && rect.right() < right, "{scale} %: {label} at {rect:?}");
+        }
+        let [x, z] = ["spacing x", "spacing z"].map(|label| bench.field(label).rect);
+        assert!((x.top() - z.top()).abs() < 1.0 && z.left() > x.right(), "{scale} %: {x:?}, {z:?}");
+        let [varies, scale_of] =
+            ["varies: roughness", "scale: linear"].map(|label| bench.find(label).expect(label).rect);
+        assert!((varies.right() - scale_of.right()).abs() < 1.0, "{scale} %: {varies:?}, {scale_of:?}");
+        let bin = bench.find("The same for all copies").expect("beside it").rect;
+        assert!(bin.left() >= varies.right() && bin.right() < right, "{scale} %: {bin:?}");
+    }
 }

@@ -1319,6 +1319,24 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
             b.apply(Action::Edit(Edit::set(Part::Object(2), Object::name, name)));
             b.apply(Action::Select(Selection::Object(2)));
         }),
+        ("copies", (1280.0, 720.0), |b| {
+            b.click("Copies");
+            scroll(b, -2000.0);
+        }),
+        ("row", (1280.0, 720.0), row),
+        ("row-large", (1280.0, 720.0), |b| {
+            b.apply(Action::View(ViewChange::Scale(150)));
+            row(b);
+        }),
+        ("row-large-end", (1280.0, 720.0), |b| {
+            b.apply(Action::View(ViewChange::Scale(150)));
+            row(b);
+            scroll(b, -380.0);
+        }),
+        ("row-error", (1280.0, 720.0), |b| {
+            row(b);
+            b.type_into("columns", "40");
+        }),
         ("room", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Room))),
         ("observer", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Observer))),
         ("candela", (1280.0, 720.0), |b| b.apply(Action::Select(Selection::Light(0)))),
@@ -1431,8 +1449,16 @@ fn pictures_of_the_window() -> Result<(), Box<dyn std::error::Error>> {
         b.session.model_slots.fill(&b.registry);
         b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "everything")));
     }
+    fn row(b: &mut Bench) {
+        b.session.facts.camera = glam::Quat::IDENTITY;
+        b.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "metallic_roughness")));
+        b.apply(Action::MakeRow(Selection::Object(0)));
+        b.type_into("rows", "2");
+        b.click("Vary a value");
+    }
     fn scroll(b: &mut Bench, by: f32) {
-        b.frame(vec![Event::PointerMoved(pos2(1100.0, 400.0))]);
+        let all = b.ctx.content_rect();
+        b.frame(vec![Event::PointerMoved(all.lerp_inside(vec2(0.86, 0.55)))]);
         let delta = vec2(0.0, by);
         b.frame(vec![Event::MouseWheel {
             unit: egui::MouseWheelUnit::Point,

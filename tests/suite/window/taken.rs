@@ -3,7 +3,7 @@
 use std::{fs, path::Path};
 
 use bevy::{app::App, ecs::message::Messages};
-use bevy_egui::egui::{Key, Modifiers, Rect, pos2, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, Rect, pos2, vec2};
 use lights_camera_models::{
     panel::state::{
         Action, Cell, Effect, PictureArea, PictureOptions, PictureSize, Question, Running, Session, Severity,
@@ -521,4 +521,68 @@ fn a_sheet_has_its_options_and_may_show_a_row() {
     assert!(saved[0].1.starts_with("Saved the sheet to "), "{saved:?}");
     let copies = Picture::read(&file);
     assert!(copies.width == views.width && copies.height > views.height, "{}", copies.height);
+}
+
+/// The actions of a user: each is a click, a chord of keys, or a value that is typed and confirmed.
+struct Actions {
+    bench: Bench,
+    count: usize,
+}
+
+impl Actions {
+    fn key(&mut self, key: Key, modifiers: Modifiers) {
+        self.bench.key(key, modifiers);
+        self.count += 1;
+    }
+
+    fn letter(&mut self, key: Key, text: &str) {
+        self.bench.letter(key, text);
+        self.count += 1;
+    }
+
+    fn type_text(&mut self, text: &str) {
+        self.bench.frame(vec![Event::Text(text.to_owned())]);
+        self.bench.settle();
+        self.bench.key(Key::Enter, Modifiers::NONE);
+        self.count += 1;
+    }
+}
+
+#[test]
+fn five_spheres_with_labels_are_a_picture_in_six_actions() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut start = Session::default();
+    // Where the dialog begins.
+    start.path = Some(folder.path().join("lecture.json"));
+    let mut user = Actions { bench: Bench::new(start), count: 0 };
+    user.bench.size = vec2(1280.0, 720.0);
+    user.bench.settle();
+    // As docs/figures.md says.
+    user.letter(Key::R, "r");
+    user.type_text("ggx rough");
+    user.key(Key::R, Modifiers::COMMAND);
+    user.key(Key::P, Modifiers::COMMAND);
+    user.key(Key::Enter, Modifiers::NONE);
+    // In place of the name that is proposed.
+    user.bench.key(Key::A, Modifiers::COMMAND | Modifiers::CTRL);
+    user.type_text("row");
+    assert_eq!(user.count, 6);
+    let asked = user.bench.effects.iter().find_map(|effect| match effect {
+        Effect::Picture { view: None, file: Some(file), overwrite: false } => Some(file.clone()),
+        _ => None,
+    });
+    let asked = asked.unwrap_or_else(|| panic!("{:?}", user.bench.effects));
+    assert_eq!(asked.file_name().and_then(|name| name.to_str()), Some("row"));
+    // The picture that is asked for, at the size of a test.
+    let mut app = lab(folder.path());
+    session(&mut app).document = user.bench.session.document.clone();
+    let _ = take(&mut app, None, &asked, false);
+    let scene = opened(&asked.with_extension("png"));
+    let row = scene.row(0).expect("a row");
+    assert_eq!(
+        (row.count, row.repeat.labels, scene.reflection_model.as_str()),
+        (5, true, "metallic_roughness")
+    );
+    let values: Vec<_> = scene.objects.iter().map(|o| o.material.0.get("roughness").cloned()).collect();
+    assert_eq!(values, [0.1, 0.3, 0.5, 0.7, 0.9].map(|v| Some(Value::Number(v))));
 }
