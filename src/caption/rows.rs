@@ -1,12 +1,11 @@
 //! The labels of rows: the values in which each copy differs from the others.
 
-use super::{Part, words::value};
+use super::{Part, words::said};
 use crate::{
     parameter::Value,
     registry::Registry,
     scene::{
         Object, Scene,
-        field::Kind,
         rows::{Row, Variable},
     },
 };
@@ -31,26 +30,34 @@ pub fn of_row(scene: &Scene, row: &Row, registry: &Registry) -> Vec<Vec<Part>> {
 /// The values of a copy that vary in its row.
 #[must_use]
 pub fn of_copy(object: &Object, variables: &[Variable], registry: &Registry) -> Vec<Part> {
-    let said = |v: &Variable| said(*v, &v.of_object(object)?, registry);
+    let said = |Variable { key, declared }: &Variable| {
+        let held = declared.held(object, *key).filter(|held| !matches!(held, Value::File(_)))?;
+        Some(said(declared.label(), declared.symbol(), declared.shown(&held, registry)))
+    };
     variables.iter().filter_map(said).collect()
 }
 
-/// A value with its symbol or name.
-fn said(variable: Variable, held: &Value, registry: &Registry) -> Option<Part> {
-    match variable {
-        Variable::Field(field) => {
-            let shown = field.shown(held, registry);
-            Some(Part::new(
-                0,
-                match field.kind {
-                    Kind::Id(_) => shown,
-                    _ => format!("{} {shown}", field.label()),
-                },
-            ))
-        }
-        Variable::Shape(p) | Variable::Material(p) => {
-            let (symbol, text) = value(p, held)?;
-            Some(Part { symbol, ..Part::new(0, text + &p.suffix()) })
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::caption::line;
+
+    #[test]
+    fn values_are_named_as_people_call_them_not_by_their_paths() {
+        let registry = Registry::builtin();
+        let torus = Object { object_type: "torus".to_owned(), ..Object::default() };
+        let label = |path: &str| {
+            let variable = Variable::with_path(path, &torus.object_type, &registry).expect(path);
+            line(&of_copy(&torus, &[variable], &registry))
+        };
+        // Lambert does not use it.
+        assert!(label("material.roughness").starts_with("r 0."), "{}", label("material.roughness"));
+        assert_eq!((label("size"), label("visible")), ("size 2 m".to_owned(), "visible true".to_owned()));
+        for path in ["tube_radius", "material.specular_colour", "rotation"] {
+            let said = label(path);
+            let declared = Variable::with_path(path, "torus", &registry).expect(path).declared;
+            let name = if declared.symbol().is_empty() { declared.label() } else { declared.symbol() };
+            assert!(said.starts_with(&format!("{name} ")) && !said.contains("material."), "{path}: {said}");
         }
     }
 }

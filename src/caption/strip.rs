@@ -39,6 +39,8 @@ pub fn draw(caption: &Caption, mut picture: Vec<u8>, size: [u32; 2]) -> (Vec<u8>
     let [width, height] = size;
     let whole = [width, height + strip.height];
     let row = width as usize * 3;
+    // No more than it takes: a picture may be most of the memory.
+    picture.reserve_exact((row * whole[1] as usize).saturating_sub(picture.len()));
     picture.resize(row * height as usize, 0);
     picture.extend(caption.ground.line.repeat(width as usize));
     picture.extend(caption.ground.colour.repeat(width as usize * strip.height.saturating_sub(1) as usize));

@@ -163,6 +163,14 @@ pub(crate) fn value(parameter: &'static Parameter, value: &Value) -> Option<(&'s
     Some((if parameter.kind.options().is_empty() { parameter.symbol } else { "" }, text))
 }
 
+/// A value in words as a part of its own: with its symbol, or with its name where the words alone do not say what they
+/// are about, as numbers, and yes and no.
+pub(crate) fn said(label: &str, symbol: &'static str, shown: String) -> Part {
+    let starts = |c: char| c.is_numeric() || "(-−".contains(c);
+    let is_bare = symbol.is_empty() && (shown.starts_with(starts) || shown.parse::<bool>().is_ok());
+    Part { symbol, ..Part::new(0, if is_bare { format!("{label} {shown}") } else { shown }) }
+}
+
 /// The term, if a single one is shown.
 pub(crate) fn terms_alone(terms: TermSelection) -> Option<Part> {
     (terms != TermSelection::All).then(|| Part::new(1, format!("{} term alone", terms.id())))

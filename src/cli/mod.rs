@@ -37,6 +37,7 @@ use workshop::Places;
 mod albedo;
 mod angles;
 mod assets;
+mod changes;
 mod check;
 mod compare;
 mod custom;

@@ -1,7 +1,6 @@
 //! `lcm render`: scenes to PNG files, and to OpenEXR and Radiance files with linear light.
 
 use std::{
-    borrow::Cow,
     collections::{BTreeSet, HashMap},
     path::{Path, PathBuf},
     sync::atomic::AtomicBool,
@@ -12,7 +11,9 @@ use bevy::app::App;
 use clap::{Args, ValueEnum};
 
 use super::{
-    FINE, Options, Outcome, collected, finite, gauged,
+    FINE, Options, Outcome,
+    changes::Changes,
+    collected, finite, gauged,
     light_samples::{self, Sampling},
     linear::{self, Kinds},
     one_of, outputs, progress,
@@ -25,15 +26,15 @@ use crate::files::Shown as _;
 use crate::{
     caption::{self, Sampled},
     channel::{DebugChannel, Layer, LayerKind, Legend, Setting, layers, settle, too_large},
-    compare::{self, Cell, Shown, compose, with_legends, with_row_labels},
+    compare::{self, Cell, Shown, View, compose, with_legends, with_row_labels},
     explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
     files::{Kind, PNG, is_descriptor, kind, printable},
     linear::{Channels, Format, MAX_PIXELS},
-    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
+    optics::{TermSelection, colour::Encoding},
     progress::Progress,
-    reference::{self, LightSamples, MAX_SIDE, Reached, Until},
+    reference::{self, LightSamples, MAX_SIDE, Reached},
     reflection::ends::check_that_it_ends,
     registry::Registry,
     render::{
@@ -46,7 +47,7 @@ use crate::{
             process::{Budget, TrialProcess},
         },
     },
-    scene::{Comparison, Display, Scene, comparison::Layout, field::Ids, has_extent, variant::LETTERS},
+    scene::{Comparison, Scene, comparison::Layout, has_extent, variant::LETTERS},
     text::{listed, quoted},
 };
 
@@ -79,19 +80,8 @@ pub(super) struct Arguments {
     samples: u32,
     #[command(flatten)]
     sampling: Sampling,
-    /// Use this reflection model for every object
-    #[arg(long, value_name = "ID")]
-    reflection: Option<String>,
-    /// Use this shading model for every object
-    #[arg(long, value_name = "ID")]
-    shading: Option<String>,
-    #[arg(long, value_name = "NAME", help = format!(
-        "Use this tone mapping instead of the scene's: {}", listed(&ToneMapping::ALL.map(ToneMapping::id), "or")
-    ))]
-    tone_mapping: Option<String>,
-    /// Use this exposure in EV instead of the scene's; each step up doubles the light
-    #[arg(long, value_name = "EV", allow_hyphen_values = true, value_parser = exposure)]
-    exposure: Option<f32>,
+    #[command(flatten)]
+    changes: Changes,
     /// Show only one term of the reflection model's equation
     #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular")]
     term: TermSelection,
@@ -160,11 +150,6 @@ pub(super) fn sides(text: &str) -> Result<[u32; 2], String> {
     let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=MAX_SIDE).contains(n));
     let both = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
     both.ok_or_else(|| format!("it must be WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE}, e.g. 800x600"))
-}
-
-/// Parser of the exposure; its range is checked with those of all changes.
-fn exposure(text: &str) -> Result<f32, String> {
-    text.trim().parse().map_err(|_| "it must be a number of EV, e.g. -1.5".to_owned())
 }
 
 pub(super) fn samples(text: &str) -> Result<u32, String> {
@@ -237,7 +222,7 @@ impl Job<'_> {
 
     /// True if what is shown of a scene depends on samples of lights with extent.
     fn converges(&self, scene: &Scene, registry: &Registry) -> bool {
-        self.channel.is_none_or(|setting| rests_on_samples(setting.channel))
+        self.channel.is_none_or(|setting| setting.channel.rests_on_samples())
             && has_extent(scene.shining(), registry)
     }
 }
@@ -250,22 +235,13 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if sources.iter().filter(|s| **s == Source::Stdin).count() > 1 {
         return Err(Failure::Usage("- can be given only once: standard input holds one scene".to_owned()));
     }
-    if let Some(id) = &arguments.reflection {
-        workshop.need(id);
-    }
-    let changes = Changes::new(arguments, &workshop.registry)?;
+    arguments.changes.check(workshop)?;
     let files = files(&sources, arguments.output.as_deref())?;
     files.iter().try_for_each(|file| fits(arguments, file))?;
     let renderer = renderer(arguments)?;
 
     // All scenes are read before the first is rendered, so that errors in the last one appear at once.
-    let scenes = collected(sources.iter().map(|source| {
-        let mut scene = changes.apply(source.open(workshop, options)?);
-        let mut beyond = scene.bring_into_range(&workshop.registry);
-        beyond.extend(scene.beyond_the_range_of_views(&workshop.registry));
-        beyond.iter().for_each(|said| options.tell(format_args!("{}: {said}", source.name())));
-        Ok(scene)
-    }))?;
+    let scenes = collected(sources.iter().map(|source| arguments.changes.open(source, workshop, options)))?;
 
     let registry = &workshop.registry;
     let size = arguments.size;
@@ -416,8 +392,8 @@ fn compares(arguments: &Arguments, plan: &Plan) -> Result<(), String> {
 /// The requested renderer. Samples of lights with extent are counted on the CPU.
 fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
     let Some(given) = arguments.sampling.given() else { return Ok(arguments.renderer) };
-    if let Some(channel) = arguments.channel.filter(|channel| !rests_on_samples(*channel)) {
-        let known = DebugChannel::ALL.into_iter().filter(|known| rests_on_samples(*known));
+    if let Some(channel) = arguments.channel.filter(|channel| !channel.rests_on_samples()) {
+        let known = DebugChannel::ALL.into_iter().filter(|known| known.rests_on_samples());
         let known: Vec<_> = known.map(DebugChannel::id).collect();
         let said = format!("{given} cannot be used with --channel {}", channel.id());
         let rule = format!("channels that do are {}", listed(&known, "and"));
@@ -430,11 +406,6 @@ fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
         ))),
         Renderer::Auto | Renderer::Cpu => Ok(Renderer::Cpu),
     }
-}
-
-/// True for channels whose values derive from the light that leaves the surface.
-fn rests_on_samples(channel: DebugChannel) -> bool {
-    channel.is_of_light() && !channel.has_wires()
 }
 
 /// The result of drawing a picture.
@@ -754,40 +725,18 @@ fn try_apart(app: &mut App, registry: &Registry, program: Option<PathBuf>) {
 fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> Result<Drawn, Failure> {
     can_draw(job, part, registry)?;
     let Cell { width, height, .. } = part.cell;
-    let settings = reference::Settings { width, height, samples: job.arguments.samples, terms: part.terms };
+    let view = View {
+        scene: &part.scene,
+        registry,
+        settings: reference::Settings { width, height, samples: job.arguments.samples, terms: part.terms },
+        channel: job.channel,
+        until: job.arguments.sampling.until(),
+        lit: job.plan.needs_light() || job.arguments.numbers,
+    };
     // A channel does not record non-finite light.
     let odd = AtomicBool::new(job.channel.is_some() && has_untested(registry));
-    let of_codes = |rgb8| Shown::of_codes(width, height, rgb8).map_err(|e| Failure::Invalid(e.to_string()));
-    let alone = job.channel.filter(|setting| setting.channel.is_picture());
-    let lit =
-        alone.map_or_else(|| Cow::Borrowed(&part.scene), |setting| Cow::Owned(setting.lit(&part.scene)));
-    let until = job.arguments.sampling.until();
-    let converged = || {
-        reference::render_until(&lit, registry, &settings, until, &odd, progress)
-            .map_err(|cancelled| Failure::Invalid(cancelled.to_string()))
-    };
-    let mut reached = None;
-    let shown = if let Some(setting) = job.channel.filter(|_| alone.is_none()) {
-        if job.converges(&lit, registry) {
-            // A channel is not a mean of others, so it takes all samples at once: as many as the picture
-            // takes.
-            reached = Some(match until {
-                Until { noise: Some(_), .. } => converged()?.1,
-                Until { samples, noise: None } => Reached { samples, noise: None },
-            });
-        }
-        let samples = reached.map_or_else(LightSamples::default, |reached| LightSamples::of(reached.samples));
-        of_codes(reference::render_channel_by(&lit, registry, &settings, &setting, samples))?
-    } else if job.converges(&lit, registry) {
-        let (picture, end) = converged()?;
-        reached = Some(end);
-        Shown::of_light(picture, &lit.display)
-    } else if job.plan.needs_light() || job.arguments.numbers {
-        let picture = reference::render_samples(&lit, registry, &settings, LightSamples::default(), &odd);
-        Shown::of_light(picture, &lit.display)
-    } else {
-        of_codes(reference::render_rgb8_noting(&lit, registry, &settings, &odd))?
-    };
+    let (shown, reached) =
+        view.draw(&odd, progress).map_err(|undrawn| Failure::Invalid(undrawn.to_string()))?;
     // An endless function is detected only when it runs.
     can_draw(job, part, registry)?;
     let odd = odd.into_inner().then(|| finite::remark_on_cpu(part, registry)).flatten();
@@ -851,63 +800,9 @@ pub(super) fn cpu_can_draw(scene: &Scene, registry: &Registry) -> Outcome {
 
 /// Like [`cpu_can_draw`], with a suggestion of an alternative.
 fn cpu_can_draw_or(scene: &Scene, registry: &Registry, instead: &str) -> Outcome {
-    for model in scene.objects.iter().filter_map(|o| registry.model(scene.model_of(o))) {
-        if let Some(why) = model.not_on_cpu() {
-            return Err(not_on_cpu(model, &why, instead));
-        }
-    }
-    Ok(())
-}
-
-/// Changes from the command line, applied to every scene.
-struct Changes<'a> {
-    arguments: &'a Arguments,
-    tone_mapping: Option<ToneMapping>,
-}
-
-impl<'a> Changes<'a> {
-    fn new(arguments: &'a Arguments, registry: &Registry) -> Result<Self, Failure> {
-        let usage = |flag: &str, value: &str, rule: String| {
-            Failure::Usage(format!("--{flag} is {}, but {rule}", quoted(value)))
-        };
-        if let Some(id) = &arguments.reflection {
-            Ids::ReflectionModel.check(registry, id).map_err(|rule| {
-                super::evaluate::unknown(registry, id, format!("--reflection is {}, but {rule}", quoted(id)))
-            })?;
-        }
-        if let Some(id) = &arguments.shading {
-            Ids::ShadingModel.check(registry, id).map_err(|rule| usage("shading", id, rule))?;
-        }
-        if let Some(ev) = arguments.exposure {
-            Display::exposure.check_number(ev).map_err(|rule| usage("exposure", &ev.to_string(), rule))?;
-        }
-        if let Some(id) = &arguments.tone_mapping {
-            Display::tone_mapping.check_text(id).map_err(|rule| usage("tone-mapping", id, rule))?;
-        }
-        Ok(Self { arguments, tone_mapping: arguments.tone_mapping.as_deref().and_then(ToneMapping::from_id) })
-    }
-
-    /// The scene with the changes. A model from the command line also replaces the overrides of objects and
-    /// views: the purpose is to see the whole scene with it.
-    fn apply(&self, mut scene: Scene) -> Scene {
-        let Arguments { reflection, shading, exposure, .. } = self.arguments;
-        if let Some(id) = reflection {
-            scene.reflection_model.clone_from(id);
-            scene.objects.iter_mut().for_each(|o| o.reflection_model = None);
-        }
-        if let Some(id) = shading {
-            scene.shading_model.clone_from(id);
-            scene.objects.iter_mut().for_each(|o| o.shading_model = None);
-        }
-        scene.display.tone_mapping = self.tone_mapping.unwrap_or(scene.display.tone_mapping);
-        scene.display.exposure = exposure.unwrap_or(scene.display.exposure);
-        for variant in &mut scene.variants {
-            variant.reflection_model.take_if(|_| reflection.is_some());
-            variant.shading_model.take_if(|_| shading.is_some());
-            variant.tone_mapping.take_if(|_| self.tone_mapping.is_some());
-            variant.exposure.take_if(|_| exposure.is_some());
-        }
-        scene
+    match reference::not_on_cpu(scene, registry) {
+        Some((model, why)) => Err(not_on_cpu(model, &why, instead)),
+        None => Ok(()),
     }
 }
 

@@ -6,7 +6,9 @@ use clap::Args;
 use glam::Vec3;
 
 use super::{
-    Options, Outcome, gauged,
+    Options, Outcome,
+    changes::Changes,
+    gauged,
     light_samples::Sampling,
     outputs,
     render::{cpu_can_draw, samples, sides},
@@ -31,7 +33,8 @@ pub(super) struct Arguments {
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Vary a value of the scene, or its view: objects[0].material.roughness=0.1..0.9:5, lights[0].intensity=1..100:5:log,
-    /// reflection_model=lambert,phong, view=A,B; can be repeated: the first makes the columns of a sheet, the second its rows
+    /// reflection_model=lambert,phong, view=A,B; can be repeated: the first makes the columns of a sheet, the second its rows;
+    /// a single value is the same in all pictures
     #[arg(long, value_name = "PATH=VALUES")]
     vary: Vec<String>,
     /// Turn the observer about the middle of the objects, 360:24, or something else: lights[0]=360:24, objects[0]=360:24,
@@ -61,6 +64,8 @@ pub(super) struct Arguments {
     samples: u32,
     #[command(flatten)]
     sampling: Sampling,
+    #[command(flatten)]
+    changes: Changes,
     /// Draw this view: A, B, C or D, or the name of a variant
     #[arg(long, value_name = "VIEW", default_value = "A")]
     view: String,
@@ -132,13 +137,19 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             values.split(',').for_each(|id| workshop.need(id.trim()));
         }
     }
+    arguments.changes.check(workshop)?;
     let source = Source::of(arguments.scene.as_deref(), workshop);
-    let scene = source.open(workshop, options)?;
+    let scene = arguments.changes.open(&source, workshop, options)?;
     let registry = &workshop.registry;
     let view =
         views::find(&scene, &arguments.view).map_err(|why| Failure::Usage(format!("--view: {why}")))?;
     let axes = axes(arguments, &scene, registry)?;
-    let sweep = Sweep::new(&scene, view, axes, registry).map_err(Failure::Usage)?;
+    let sweep = Sweep::new(&scene, view, axes, registry).map_err(|why| {
+        let turn = arguments.turn.as_deref();
+        let instead = turn.and_then(|turn| sweep::instead_of_turn(turn, &scene, registry));
+        Failure::Usage([Some(why), instead].into_iter().flatten().collect::<Vec<_>>().join("\n"))
+    })?;
+    sweep.remarks().iter().for_each(|remark| options.tell(format_args!("{}: {remark}", source.name())));
     let read = inputs(source.path(), [&scene], registry);
     let idle = arguments.sampling.idle(&scene, registry);
     idle.iter().for_each(|idle| options.tell(format_args!("{}: {idle}", source.name())));
@@ -166,8 +177,15 @@ fn fits(arguments: &Arguments, form: Form) -> Outcome {
             "need --against",
         ),
     ];
-    match given.into_iter().find(|(wrong, ..)| *wrong) {
-        Some((_, flag, why)) => Err(Failure::Usage(format!("{flag} {why}"))),
+    if let Some((_, flag, why)) = given.into_iter().find(|(wrong, ..)| *wrong) {
+        return Err(Failure::Usage(format!("{flag} {why}")));
+    }
+    let varied: Vec<_> = arguments.vary.iter().filter_map(|vary| vary.split_once('=')).collect();
+    let both = |path: &str| varied.iter().any(|(varied, _)| varied.trim() == path);
+    match arguments.changes.given().find(|(_, path)| both(path)) {
+        Some((flag, path)) => Err(Failure::Usage(format!(
+            "{flag} sets {path}, but --vary {path}=… does so, too; leave one out"
+        ))),
         None => Ok(()),
     }
 }

@@ -21,6 +21,7 @@
 mod canvas;
 mod channel;
 mod colours;
+mod drawn;
 mod labels;
 mod layout;
 mod legend;
@@ -31,6 +32,7 @@ mod shown;
 mod words;
 
 pub use channel::with_legends;
+pub use drawn::{Undrawn, View};
 pub use labels::with_row_labels;
 pub use layout::{Cell, cells, compose, edge, size_around};
 pub use legend::{fitting_amplification, legend_alone, short};

@@ -45,7 +45,12 @@ impl Shown {
         if rgb8.len() != 3 * pixels {
             return Err(WrongSize { width, height, found: rgb8.len() / 3 });
         }
-        Ok(Self { width, height, rgb8, light: None, covered: None, outlines: None, is_linear: false })
+        Ok(Self::with_codes([width, height], rgb8))
+    }
+
+    /// A picture of as many display codes as it has.
+    pub(super) fn with_codes([width, height]: [u32; 2], rgb8: Vec<u8>) -> Self {
+        Self { width, height, rgb8, light: None, covered: None, outlines: None, is_linear: false }
     }
 
     /// Adds which pixels are covered by objects.

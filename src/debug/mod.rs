@@ -102,6 +102,13 @@ impl DebugChannel {
         matches!(self.declaration().shows, Shows::Edges | Shows::Normals(_) | Shows::Dots(_))
     }
 
+    /// True if its values derive from the light that leaves the surface, so that they depend on samples of lights with
+    /// extent.
+    #[must_use]
+    pub const fn rests_on_samples(self) -> bool {
+        self.is_of_light() && !self.has_wires()
+    }
+
     /// True if it marks every vertex by a dot.
     #[must_use]
     pub const fn has_dots(self) -> bool {

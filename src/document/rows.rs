@@ -73,8 +73,8 @@ impl Document {
         let copy = &self.scene.objects[object];
         let mut entry = row.entry.clone();
         for (key, value) in values {
-            if let Some(variable) = row.variables(registry).find(|variable| variable.key() == *key) {
-                let label = capitalised(variable.label());
+            if let Some(variable) = row.variables(registry).find(|variable| variable.key == *key) {
+                let label = capitalised(variable.declared.label());
                 return Err(format!("{label} differs from copy to copy: change it under “Row”."));
             }
             let value = match value {

@@ -70,7 +70,7 @@ pub use input::{is_descriptor, is_stream, read_input};
 pub use inside::inside;
 pub use litter::{Unfinished, tidy};
 pub use living::give_up;
-pub use output::{EXR, HDR, Output, PICTURES, PNG, Refused, Signature, may_overwrite, spare};
+pub use output::{EXR, HDR, Output, PICTURES, PNG, Refused, Signature, may_overwrite, may_replace, spare};
 pub use shown::{OnOneLine, Shown, printable, printable_json};
 pub use stamp::Stamp;
 pub use words::words;

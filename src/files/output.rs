@@ -69,6 +69,12 @@ pub enum Refused {
         /// The reason.
         error: FileError,
     },
+    /// The file exists, and the user did not agree to replace it.
+    #[error("{} exists; choose it in the list of files to replace it", .output.shown())]
+    Exists {
+        /// The output.
+        output: PathBuf,
+    },
 }
 
 fn overlap(output: &Path, input: &Path) -> String {
@@ -124,6 +130,18 @@ pub fn may_overwrite<'a>(
         Ok(start) if start.is_empty() || start == sort.begins => Ok(()),
         Ok(_) => Err(Refused::Foreign { output: owned(), what: sort.what }),
         Err(error) => Err(Refused::Unknown { output: owned(), error }),
+    }
+}
+
+/// Checks the same for a window, in which the user agrees to replace the file, or not.
+///
+/// # Errors
+/// Returns [`Refused::Exists`] if nothing but the user's consent is missing, or else the errors of [`may_overwrite`].
+pub fn may_replace(output: &Path, sort: Signature, agreed: bool, inputs: &[PathBuf]) -> Result<(), Refused> {
+    may_overwrite(output, sort, inputs.iter().map(PathBuf::as_path))?;
+    match agreed || !output.exists() {
+        true => Ok(()),
+        false => Err(Refused::Exists { output: output.to_owned() }),
     }
 }
 

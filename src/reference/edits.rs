@@ -1,9 +1,9 @@
-//! Edited shaders that have no effect on the CPU renderer.
+//! What only the GPU renderer draws: edited shaders, and models that the CPU cannot run.
 
 use std::collections::BTreeSet;
 
 use crate::{
-    reflection::Family,
+    reflection::{Family, ModelEntry},
     registry::{
         Registry,
         compose::{Part, files},
@@ -31,6 +31,14 @@ pub fn ignored_edits(registry: &Registry, scene: &Scene) -> BTreeSet<String> {
                 .map(|file| file.path)
         })
         .collect()
+}
+
+/// The first model of a scene that the CPU cannot run, and why. An endless function of a custom model is known only after it
+/// ran.
+#[must_use]
+pub fn not_on_cpu<'r>(scene: &Scene, registry: &'r Registry) -> Option<(&'r ModelEntry, String)> {
+    let mut models = scene.objects.iter().filter_map(|object| registry.model(scene.model_of(object)));
+    models.find_map(|model| Some((model, model.not_on_cpu()?)))
 }
 
 #[cfg(test)]

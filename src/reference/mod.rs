@@ -26,6 +26,7 @@
 //! [`Stage::Polygon`]: crate::shading::Stage::Polygon
 
 use std::{
+    ops::Range,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -67,7 +68,7 @@ pub(crate) use converge::relative_error;
 pub use converge::{Reached, Until, render_until};
 use display::DisplayTransform;
 pub use display::{DisplaySteps, encode8};
-pub use edits::ignored_edits;
+pub use edits::{ignored_edits, not_on_cpu};
 pub use extended::LightSamples;
 use instead::Instead;
 pub(crate) use instead::Leaving;
@@ -166,7 +167,8 @@ impl<'a> Shot<'a> {
 
     /// A picture for whose light nobody watches, with the usual samples.
     fn drawing(self) -> Drawing<'a> {
-        Drawing { shot: self, sight: None, samples: LightSamples::default(), end: None, odd: None }
+        let samples = LightSamples::default();
+        Drawing { shot: self, sight: None, samples, end: None, odd: None, tiles: TILES_AT_ONCE }
     }
 }
 
@@ -259,6 +261,10 @@ pub fn render_channel_by(
 /// Maximum number of polygons held at a time: bounds the memory for scenes of any size.
 const POLYGONS_PER_BATCH: usize = 1 << 16;
 
+/// Maximum number of tiles drawn at a time, 64 KiB each while further batches are to come: bounds the memory for pictures
+/// of any size to 1 GiB beside their pixels. Pictures of up to 16 million pixels are drawn as a whole.
+const TILES_AT_ONCE: usize = 1 << 14;
+
 /// Replaces the light of an object by another way of drawing it.
 type Seen<'s> = dyn for<'a> Fn(Draw<'a>) -> Draw<'a> + Sync + 's;
 
@@ -273,6 +279,8 @@ struct Drawing<'a> {
     end: Option<Instant>,
     /// Set if light was not finite.
     odd: Option<&'a AtomicBool>,
+    /// Maximum number of tiles drawn at a time; a row of them at least.
+    tiles: usize,
 }
 
 impl Drawing<'_> {
@@ -302,7 +310,7 @@ impl Drawing<'_> {
 }
 
 fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
-    &Drawing { shot, sight, samples, end, odd }: &Drawing,
+    &Drawing { shot, sight, samples, end, odd, tiles: at_once }: &Drawing,
     finish: impl Fn(Vec4, usize) -> T + Sync,
 ) -> Vec<T> {
     let Shot { scene, registry, settings } = shot;
@@ -322,88 +330,94 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     // Other ways of drawing show only objects.
     let visible = sight.is_none().then(|| VisibleLights::new(shot));
 
-    let mut tiles: Vec<Option<Tile<S>>> = (0..screen.tiles()).map(|_| None).collect();
     let shown: Vec<_> = scene.shown().collect();
-    let mut rest = &shown[..];
-    loop {
-        let (mut batch, mut polygons) = (Vec::new(), 0);
-        while let [object, later @ ..] = rest
-            && !late()
-        {
-            if let Some(shape) = meshes.first(rest)
-                && !hidden(object, &shape, &frustum)
+    for band in bands(&screen, at_once) {
+        let mut tiles: Vec<Option<Tile<S>>> = band.clone().map(|_| None).collect();
+        let mut rest = &shown[..];
+        loop {
+            let (mut batch, mut polygons) = (Vec::new(), 0);
+            while let [object, later @ ..] = rest
+                && !late()
             {
-                polygons += shape.mesh.polygons.len();
-                if polygons > POLYGONS_PER_BATCH && !batch.is_empty() {
-                    break;
-                }
-                batch.push((*object, shape));
-            }
-            rest = later;
-        }
-
-        let draws: Vec<Draw> = batch
-            .into_par_iter()
-            .filter_map(|(object, shape)| (!late()).then(|| Draw::new(scene, registry, object, shape))?)
-            .map(|draw| match sight {
-                Some(seen) => seen(draw),
-                None => draw,
-            })
-            .collect();
-        let triangles: Vec<Vec<Triangle>> = draws
-            .par_iter()
-            .map(|draw| if late() { Vec::new() } else { draw.triangles(&lights, &clip_from_room, &screen) })
-            .collect();
-        let bins = bin(&triangles, &screen);
-
-        // A tile is finished as soon as the last batch has been drawn into it, which keeps few of them in
-        // memory; the picture is assembled when all are finished.
-        let finished: Vec<(usize, Finished<T>)> = tiles
-            .par_iter_mut()
-            .zip(&bins)
-            .enumerate()
-            .filter_map(|(i, (tile, bin))| {
-                for &(object, triangle) in bin {
-                    if late() {
+                if let Some(shape) = meshes.first(rest)
+                    && !hidden(object, &shape, &frustum)
+                {
+                    polygons += shape.mesh.polygons.len();
+                    if polygons > POLYGONS_PER_BATCH && !batch.is_empty() {
                         break;
                     }
-                    let draw = &draws[object as usize];
-                    let triangle = &triangles[object as usize][triangle as usize];
-                    let lighting = draw.under(&lights);
-                    let tile = tile.get_or_insert_with(Tile::new);
-                    tile.draw(triangle, &*draw.shading, &lighting, origin(i, &screen), &screen);
+                    batch.push((*object, shape));
                 }
-                if !rest.is_empty() {
-                    return None;
-                }
-                let origin = origin(i, &screen);
-                let mut tile = tile.take();
-                let visible = visible.as_ref().filter(|_| !late());
-                if let Some(lights) = visible.and_then(|visible| visible.within(origin, TILE, S)) {
-                    if let (None, Some(light)) = (&tile, lights.throughout) {
-                        return Some((i, Finished::Even(finish(even::<S>(light), origin[1]))));
+                rest = later;
+            }
+
+            let draws: Vec<Draw> = batch
+                .into_par_iter()
+                .filter_map(|(object, shape)| (!late()).then(|| Draw::new(scene, registry, object, shape))?)
+                .map(|draw| match sight {
+                    Some(seen) => seen(draw),
+                    None => draw,
+                })
+                .collect();
+            let triangles: Vec<Vec<Triangle>> = draws
+                .par_iter()
+                .map(
+                    |draw| {
+                        if late() { Vec::new() } else { draw.triangles(&lights, &clip_from_room, &screen) }
+                    },
+                )
+                .collect();
+            let bins = bin(&triangles, &screen, &band);
+
+            // A tile is finished as soon as the last batch has been drawn into it, which keeps few of them in
+            // memory; the picture is assembled when all are finished.
+            let finished: Vec<(usize, Finished<T>)> = tiles
+                .par_iter_mut()
+                .zip(&bins)
+                .zip(band.clone())
+                .filter_map(|((tile, bin), i)| {
+                    for &(object, triangle) in bin {
+                        if late() {
+                            break;
+                        }
+                        let draw = &draws[object as usize];
+                        let triangle = &triangles[object as usize][triangle as usize];
+                        let lighting = draw.under(&lights);
+                        let tile = tile.get_or_insert_with(Tile::new);
+                        tile.draw(triangle, &*draw.shading, &lighting, origin(i, &screen), &screen);
                     }
-                    tile.get_or_insert_with(Tile::new).show(&lights);
-                }
-                let tile = tile?;
-                let pixels = tile.resolve().enumerate();
-                let pixels = pixels.map(|(at, pixel)| finish(pixel, origin[1] + at / TILE)).collect();
-                Some((i, Finished::Pixels(pixels)))
-            })
-            .collect();
-        for (i, pixels) in finished {
-            let [left, top] = origin(i, &screen);
-            let columns = TILE.min(width - left);
-            for (row, out) in out.chunks_exact_mut(width).skip(top).take(TILE).enumerate() {
-                let out = &mut out[left..left + columns];
-                match &pixels {
-                    Finished::Even(pixel) => out.fill(*pixel),
-                    Finished::Pixels(pixels) => out.copy_from_slice(&pixels[row * TILE..][..columns]),
+                    if !rest.is_empty() {
+                        return None;
+                    }
+                    let origin = origin(i, &screen);
+                    let mut tile = tile.take();
+                    let visible = visible.as_ref().filter(|_| !late());
+                    if let Some(lights) = visible.and_then(|visible| visible.within(origin, TILE, S)) {
+                        if let (None, Some(light)) = (&tile, lights.throughout) {
+                            return Some((i, Finished::Even(finish(even::<S>(light), origin[1]))));
+                        }
+                        tile.get_or_insert_with(Tile::new).show(&lights);
+                    }
+                    let tile = tile?;
+                    let pixels = tile.resolve().enumerate();
+                    let pixels = pixels.map(|(at, pixel)| finish(pixel, origin[1] + at / TILE)).collect();
+                    Some((i, Finished::Pixels(pixels)))
+                })
+                .collect();
+            for (i, pixels) in finished {
+                let [left, top] = origin(i, &screen);
+                let columns = TILE.min(width - left);
+                for (row, out) in out.chunks_exact_mut(width).skip(top).take(TILE).enumerate() {
+                    let out = &mut out[left..left + columns];
+                    match &pixels {
+                        Finished::Even(pixel) => out.fill(*pixel),
+                        Finished::Pixels(pixels) => out.copy_from_slice(&pixels[row * TILE..][..columns]),
+                    }
                 }
             }
-        }
-        if rest.is_empty() || late() {
-            break;
+            if rest.is_empty() || late() {
+                break;
+            }
         }
     }
     if let Some(odd) = odd {
@@ -425,18 +439,56 @@ fn origin(tile: usize, screen: &Screen) -> [usize; 2] {
     [(tile % screen.tiles_across()) * TILE, (tile / screen.tiles_across()) * TILE]
 }
 
-/// For each tile, the triangles that may touch it, in drawing order: object, triangle.
-fn bin(triangles: &[Vec<Triangle>], screen: &Screen) -> Vec<Vec<(u32, u32)>> {
-    let mut bins = vec![Vec::new(); screen.tiles()];
+/// Consecutive rows of tiles that are drawn one after the other.
+fn bands(screen: &Screen, at_once: usize) -> impl Iterator<Item = Range<usize>> {
+    let (across, all) = (screen.tiles_across(), screen.tiles());
+    let most = (at_once / across).max(1) * across;
+    (0..all).step_by(most).map(move |first| first..all.min(first + most))
+}
+
+/// For each tile of a band, the triangles that may touch it, in drawing order: object, triangle.
+fn bin(triangles: &[Vec<Triangle>], screen: &Screen, band: &Range<usize>) -> Vec<Vec<(u32, u32)>> {
+    let mut bins = vec![Vec::new(); band.len()];
+    let across = screen.tiles_across();
+    let rows = band.start / across..=(band.end - 1) / across;
     for (object, triangles) in triangles.iter().enumerate() {
         for (i, triangle) in triangles.iter().enumerate() {
             let Some([left, right, top, bottom]) = triangle.bounds(screen) else { continue };
-            for row in top / TILE..=bottom / TILE {
+            for row in (top / TILE).max(*rows.start())..=(bottom / TILE).min(*rows.end()) {
                 for column in left / TILE..=right / TILE {
-                    bins[row * screen.tiles_across() + column].push((object as u32, i as u32));
+                    bins[row * across + column - band.start].push((object as u32, i as u32));
                 }
             }
         }
     }
     bins
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Object;
+
+    #[test]
+    fn large_pictures_are_drawn_in_bands_without_seams() {
+        let registry = Registry::builtin();
+        let mut scene = Scene::default();
+        // Several batches of polygons.
+        scene.objects = (0..5)
+            .map(|i| Object {
+                position: glam::Vec3::new(2.0 + 1.5 * i as f32, 5.0, 5.0),
+                tessellation: Some(192),
+                ..Object::default()
+            })
+            .collect();
+        let settings = Settings { width: 150, height: 130, ..Settings::default() };
+        let shot = Shot::new(&scene, &registry, &settings);
+        let screen = Screen::new(150, 130, 4);
+        let bands: Vec<_> = bands(&screen, 12).collect();
+        assert_eq!(bands, [0..10, 10..20, 20..25], "two rows of five tiles each, and the last one");
+        let whole = render_rgb8(&scene, &registry, &settings);
+        for tiles in [1, 12] {
+            assert!(Drawing { tiles, ..shot.drawing() }.rgb8(&scene.display) == whole, "{tiles}");
+        }
+    }
 }

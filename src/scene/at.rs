@@ -10,28 +10,20 @@ use super::{
     load::MAX_DEPTH,
     part::Fields,
     read::keys::OTHER_WORDS,
+    used::{idle, other_types},
 };
+pub use super::{declaration::Declared, used::Idle};
 use crate::{
     parameter::{
-        Parameter, Value,
+        Value,
         kind::{
             Kind as _,
             colour::{Colour, hexadecimal},
         },
-        limits::number,
     },
     registry::Registry,
     text::{did_you_mean, json::canonical, numbers, plural, quoted, shortened},
 };
-
-/// The declaration of a value.
-#[derive(Clone, Copy, Debug)]
-pub enum Declared {
-    /// A field of a part.
-    Field(&'static Field),
-    /// A parameter of a type or of a material.
-    Parameter(&'static Parameter),
-}
 
 /// A value of a scene: where it is, and how it is declared.
 #[derive(Clone, Debug)]
@@ -61,42 +53,20 @@ impl Place {
         let whole = Self { path: key.within(part), part, declared, key, component: None };
         match tail {
             [] => Ok(whole),
-            [Segment::Index(i)] if *i < whole.components() => {
+            [Segment::Index(i)] if *i < declared.components() => {
                 Ok(Self { path: whole.path.index(*i), component: Some(*i), ..whole })
             }
-            [Segment::Index(_)] if whole.components() > 1 => {
+            [Segment::Index(_)] if declared.components() > 1 => {
                 Err(format!("{} has the components [0], [1] and [2]", whole.path))
             }
             _ => Err(format!("{} is a single value; the path ends there", whole.path)),
         }
     }
 
-    /// Number of the components of the value.
-    fn components(&self) -> usize {
-        match self.declared {
-            Declared::Field(field) => match field.kind {
-                Kind::Position | Kind::Direction | Kind::Rotation | Kind::Colour => 3,
-                _ => 1,
-            },
-            Declared::Parameter(parameter) => parameter.kind.components(),
-        }
-    }
-
-    fn is_colour(&self) -> bool {
-        match self.declared {
-            Declared::Field(field) => matches!(field.kind, Kind::Colour),
-            Declared::Parameter(parameter) => parameter.kind.owns(&Value::Colour([0; 3])),
-        }
-    }
-
     /// True for values that are whole numbers.
     #[must_use]
     pub fn is_whole(&self) -> bool {
-        match self.declared {
-            Declared::Field(field) if matches!(field.kind, Kind::Count(_)) => true,
-            Declared::Parameter(parameter) if parameter.kind.owns(&Value::Integer(0)) => true,
-            _ => self.is_colour(),
-        }
+        self.declared.is_whole()
     }
 
     /// True if other values depend on this one: models judge materials, and types have parameters.
@@ -118,12 +88,12 @@ impl Place {
                 (0.0..=255.0).contains(&value.numbers()[0]) && value.numbers()[0].fract() == 0.0
             };
             return match value {
-                Some(value) if !self.is_colour() || code(&value) => Ok(value),
-                _ if self.is_colour() => Err(broken("it must be a whole number from 0 to 255")),
+                Some(value) if !self.declared.is_colour() || code(&value) => Ok(value),
+                _ if self.declared.is_colour() => Err(broken("it must be a whole number from 0 to 255")),
                 _ => Err(broken("it must be a number")),
             };
         }
-        if let Some(rgb) = hexadecimal(text).filter(|_| self.is_colour()) {
+        if let Some(rgb) = hexadecimal(text).filter(|_| self.declared.is_colour()) {
             return Ok(Value::Colour(rgb));
         }
         match self.declared {
@@ -143,15 +113,15 @@ impl Place {
     /// The value that a scene has here, given or by default.
     #[must_use]
     pub fn value(&self, scene: &Scene) -> Option<Value> {
-        let given = scene.part(self.part).and_then(|part| part.value(self.key));
-        match self.declared {
-            Declared::Parameter(parameter) => Some(given.unwrap_or_else(|| parameter.default_value())),
-            Declared::Field(_) => given,
-        }
+        self.declared.held(scene.part(self.part)?, self.key)
     }
 
-    /// Puts a value into a scene. False if the scene has no such part, or the value another type.
+    /// Puts a value into a scene, unless the type of the part has no such parameter. False if the scene has no such part,
+    /// or the value another type.
     fn put(&self, scene: &mut Scene, value: &Value, registry: &Registry) -> bool {
+        if !self.is_in_type(scene, registry) {
+            return true;
+        }
         let value = match self.component {
             None => value.clone(),
             Some(i) => {
@@ -182,49 +152,40 @@ impl Place {
         }
     }
 
+    /// True unless it is a parameter that the type of the part does not have.
+    fn is_in_type(&self, scene: &Scene, registry: &Registry) -> bool {
+        let (Declared::Parameter(parameter), Key::Own(_)) = (self.declared, self.key) else { return true };
+        let part = scene.part(self.part);
+        part.is_none_or(|part| part.parameters(registry).iter().any(|p| p.name == parameter.name))
+    }
+
+    /// The reason why a scene makes no use of the value; `None` if it does. Models and types need not have each parameter,
+    /// and some use one only with some choices.
+    #[must_use]
+    pub fn idle(&self, scene: &Scene, registry: &Registry) -> Option<Idle> {
+        match self.declared {
+            Declared::Parameter(parameter) => idle((self.part, self.key), parameter, scene, registry),
+            Declared::Field(_) => None,
+        }
+    }
+
     /// A value in words, with its unit.
     #[must_use]
     pub fn shown(&self, value: &Value, registry: &Registry) -> String {
-        let numbers = value.numbers().map(number);
-        let listed = |unit: &str| match value {
-            Value::Triple(_) | Value::Colour(_) => format!("({}){unit}", numbers.join(", ")),
-            _ => format!("{}{unit}", numbers[0]),
-        };
-        match (self.declared, value) {
-            (Declared::Field(field), Value::Choice(_)) => field.shown(value, registry),
-            (Declared::Parameter(parameter), Value::Choice(_)) => {
-                parameter.kind.caption(parameter.label, value).unwrap_or_else(|| value.to_string())
-            }
-            (Declared::Parameter(parameter), _) => listed(&parameter.suffix()),
-            (Declared::Field(field), _) => match field.unit {
-                "" | "sRGB" => listed(""),
-                "°" => listed("°"),
-                unit => listed(&format!(" {unit}")),
-            },
-        }
+        self.declared.shown(value, registry)
     }
 
     /// The symbol of the value; empty if it has none.
     #[must_use]
     pub fn symbol(&self) -> &'static str {
-        match self.declared {
-            Declared::Parameter(parameter)
-                if self.component.is_none() && parameter.kind.options().is_empty() =>
-            {
-                parameter.symbol
-            }
-            _ => "",
-        }
+        if self.component.is_some() { "" } else { self.declared.symbol() }
     }
 
     /// The name of the value: "roughness", "position, x".
     #[must_use]
     pub fn label(&self) -> String {
-        let label = match self.declared {
-            Declared::Field(field) => field.label(),
-            Declared::Parameter(parameter) => parameter.label,
-        };
-        let names = if self.is_colour() { ["red", "green", "blue"] } else { ["x", "y", "z"] };
+        let label = self.declared.label();
+        let names = if self.declared.is_colour() { ["red", "green", "blue"] } else { ["x", "y", "z"] };
         match self.component.and_then(|i| names.get(i)) {
             Some(component) => format!("{label}, {component}"),
             None => label.to_owned(),
@@ -321,10 +282,10 @@ fn declared<'p>(
                 Some(name) => {
                     format!("; parameters of materials belong to objects: objects[0].material.{name}")
                 }
-                None => {
+                None => other_types(part, fields, name, registry).unwrap_or_else(|| {
                     let others = OTHER_WORDS.iter().copied().filter(|(_, key)| known.contains(key));
                     did_you_mean(name, known.iter().map(|k| (*k, *k)).chain(others))
-                }
+                }),
             };
             Err(format!("there is no {}{hint}", at.key(name.clone())))
         }
@@ -359,13 +320,24 @@ impl Scene {
         values: impl IntoIterator<Item = (&'a Place, &'a Value)>,
         registry: &Registry,
     ) -> Result<Self, Vec<Problem>> {
-        let mut scene = self.clone();
+        let mut values = values.into_iter().peekable();
+        if values.peek().is_none() {
+            return Ok(self.clone());
+        }
+        let (scene, mut problems) = self.with_unchecked(values, registry);
+        problems.extend(check::scene(&scene, registry));
+        if problems.is_empty() { Ok(scene) } else { Err(problems) }
+    }
+
+    /// The same, without the rules of scenes: with the problems of values that have no place in it.
+    pub(crate) fn with_unchecked<'a>(
+        &self,
+        values: impl IntoIterator<Item = (&'a Place, &'a Value)>,
+        registry: &Registry,
+    ) -> (Self, Vec<Problem>) {
+        let (mut scene, mut problems) = (self.clone(), Vec::new());
         let (first, others): (Vec<_>, Vec<_>) =
             values.into_iter().partition(|(place, _)| place.comes_first());
-        if first.is_empty() && others.is_empty() {
-            return Ok(scene);
-        }
-        let mut problems = Vec::new();
         let mut put = |scene: &mut Self, (place, value): &(&Place, &Value)| {
             if !place.put(scene, value, registry) {
                 let rule = "this cannot be set here";
@@ -377,8 +349,7 @@ impl Scene {
             scene.bring_into_range(registry);
         }
         others.iter().for_each(|one| put(&mut scene, one));
-        problems.extend(check::scene(&scene, registry));
-        if problems.is_empty() { Ok(scene) } else { Err(problems) }
+        (scene, problems)
     }
 }
 

@@ -80,6 +80,12 @@ impl Ids {
         self.all(registry).find(|listed| listed.id == id)
     }
 
+    /// The ids of those that declare a parameter with a name.
+    pub(super) fn having(self, parameter: &str, registry: &Registry) -> Vec<&'static str> {
+        let has = |listed: &Listed| listed.parameters.iter().any(|p| p.name == parameter);
+        self.all(registry).filter(has).map(|listed| listed.id).collect()
+    }
+
     /// Checks that an id is registered.
     ///
     /// # Errors

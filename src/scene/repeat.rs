@@ -34,6 +34,23 @@ choice! {
     }
 }
 
+impl Scale {
+    /// So many numbers from one to another; both ends are exact.
+    pub fn between(self, [from, to]: [f64; 2], count: usize) -> impl Iterator<Item = f64> {
+        (0..count).map(move |i| match i {
+            0 => from,
+            i if i + 1 == count => to,
+            i => {
+                let t = i as f64 / (count - 1) as f64;
+                match self {
+                    Self::Linear => from + (to - from) * t,
+                    Self::Logarithmic => from * (to / from).powf(t),
+                }
+            }
+        })
+    }
+}
+
 word! {
     Scale: |scale| scale.name(), scale.summary();
     Along: |along| along.name(), along.summary();
@@ -138,5 +155,21 @@ impl Lists {
     fn longest(&self, varied: &Varied) -> Vec<Value> {
         let known = self.0.get(&varied.parameter).filter(|known| known.starts_with(&varied.values));
         known.unwrap_or(&varied.values).clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_equal_or_have_equal_factors_between_exact_ends() {
+        let of = |scale: Scale, ends, count| scale.between(ends, count).collect::<Vec<_>>();
+        assert_eq!(of(Scale::Linear, [1.0, 0.0], 3), [1.0, 0.5, 0.0]);
+        assert_eq!(of(Scale::Linear, [0.1, 0.7], 2), [0.1, 0.7]);
+        assert_eq!(of(Scale::Linear, [2.0, 3.0], 1), [2.0]);
+        let factors = of(Scale::Logarithmic, [1.0, 100.0], 3);
+        assert!((factors[1] - 10.0).abs() < 1e-12, "{factors:?}");
+        assert_eq!((factors[0], factors[2]), (1.0, 100.0));
     }
 }

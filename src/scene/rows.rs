@@ -10,6 +10,7 @@ use glam::Vec3;
 
 use super::{
     Field, MAX_OBJECTS, Object, Repeat, Repetition, Scene, SceneSize, Varied,
+    declaration::Declared,
     error::{Path, Problem, Segment},
     field::Kind,
     part::{Fields, Key, Structure as _},
@@ -17,7 +18,7 @@ use super::{
     repeat::{Along, Lists, MAX_VARIED, Scale},
 };
 use crate::{
-    parameter::{Parameter, Value, limits::Limits},
+    parameter::{Parameter, Value},
     registry::Registry,
     text::{did_you_mean, plural, quoted},
 };
@@ -27,13 +28,11 @@ const MOST_PROBLEMS: usize = 200;
 
 /// A value of an object that may differ from copy to copy.
 #[derive(Clone, Copy, Debug)]
-pub enum Variable {
-    /// A field.
-    Field(&'static Field),
-    /// A parameter of the object's type.
-    Shape(&'static Parameter),
-    /// A parameter of the material.
-    Material(&'static Parameter),
+pub struct Variable {
+    /// Its key within the object.
+    pub key: Key,
+    /// Its declaration.
+    pub declared: Declared,
 }
 
 impl Variable {
@@ -47,17 +46,27 @@ impl Variable {
             )
         };
         let shape = registry.shape(object_type).map_or(&[][..], |shape| shape.parameters);
-        let fields = Object::FIELDS.iter().filter(may_vary).map(|field| Self::Field(field));
-        fields.chain(shape.iter().map(Self::Shape)).chain(registry.material_parameters().map(Self::Material))
+        let own = |p: &'static Parameter| Self { key: Key::Own(p.name), declared: Declared::Parameter(p) };
+        let fields = Object::FIELDS
+            .iter()
+            .filter(may_vary)
+            .map(|field| Self { key: Key::Own(field.key), declared: Declared::Field(field) });
+        fields.chain(shape.iter().map(own)).chain(registry.material_parameters().map(Self::of_material))
+    }
+
+    /// A parameter of the material.
+    #[must_use]
+    pub fn of_material(parameter: &'static Parameter) -> Self {
+        Self { key: Key::Material(parameter.name), declared: Declared::Parameter(parameter) }
     }
 
     /// The one with a path within the object, if there is one.
     #[must_use]
     pub fn with_path(path: &str, object_type: &str, registry: &Registry) -> Option<Self> {
         let of_material = path.strip_prefix(Object::material.key).and_then(|rest| rest.strip_prefix('.'));
-        Self::all(object_type, registry).find(|known| match known {
-            Self::Material(p) => of_material == Some(p.name),
-            known => known.key().name() == path,
+        Self::all(object_type, registry).find(|known| match known.key {
+            Key::Material(name) => of_material == Some(name),
+            Key::Own(name) => name == path,
         })
     }
 
@@ -72,8 +81,8 @@ impl Variable {
         let known: Vec<_> = Self::all(object_type, registry).map(|one| (one.path(), one)).collect();
         // A path is nearer than a name, and a name than what it is called.
         let paths = known.iter().map(|(path, _)| (&**path, &**path));
-        let names = known.iter().map(|(path, one)| (one.key().name(), &**path));
-        let labels = known.iter().map(|(path, one)| (one.label(), &**path));
+        let names = known.iter().map(|(path, one)| (one.key.name(), &**path));
+        let labels = known.iter().map(|(path, one)| (one.declared.label(), &**path));
         let spellings = paths.chain(names).chain(labels);
         let rule = "it must be the path of a value of the object that can differ, such as \"size\" or \
                     \"material.roughness\"";
@@ -83,50 +92,9 @@ impl Variable {
     /// Its path within the object.
     #[must_use]
     pub fn path(self) -> Cow<'static, str> {
-        match self {
-            Self::Field(field) => field.key.into(),
-            Self::Shape(p) => p.name.into(),
-            Self::Material(p) => format!("{}.{}", Object::material.key, p.name).into(),
-        }
-    }
-
-    /// Its key within the object.
-    #[must_use]
-    pub fn key(self) -> Key {
-        match self {
-            Self::Field(field) => Key::Own(field.key),
-            Self::Shape(p) => Key::Own(p.name),
-            Self::Material(p) => Key::Material(p.name),
-        }
-    }
-
-    /// Its name for people.
-    #[must_use]
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Field(field) => field.label(),
-            Self::Shape(p) | Self::Material(p) => p.label,
-        }
-    }
-
-    /// The value with a number; `None` if it is not a number.
-    #[must_use]
-    pub fn of_number(self, v: f64) -> Option<Value> {
-        match self {
-            Self::Field(Field { kind: Kind::Number { .. }, .. }) => Some(Value::Number(v as f32)),
-            Self::Field(Field { kind: Kind::Count(_), .. }) => Some(Value::Integer(v.round() as i64)),
-            Self::Field(_) => None,
-            Self::Shape(p) | Self::Material(p) => p.kind.is_number().then(|| p.kind.of_numbers([v; 3])),
-        }
-    }
-
-    /// The legal numbers, if it is a number.
-    #[must_use]
-    pub fn limits(self) -> Option<Limits> {
-        self.of_number(0.0)?;
-        match self {
-            Self::Field(field) => Some(field.limits()),
-            Self::Shape(p) | Self::Material(p) => p.kind.limits(),
+        match self.key {
+            Key::Own(name) => name.into(),
+            Key::Material(name) => format!("{}.{name}", Object::material.key).into(),
         }
     }
 
@@ -134,7 +102,7 @@ impl Variable {
     /// has no ends.
     #[must_use]
     pub fn over_its_range(self) -> Option<Varied> {
-        let limits = self.limits()?;
+        let limits = self.declared.limits()?;
         let (low, high) = (limits.slider_min, limits.slider_max.min(limits.top()));
         let at = |part: f64| {
             let wanted = significant(low + part * (high - low), 2);
@@ -149,7 +117,7 @@ impl Variable {
     /// The value that follows listed ones in equal steps; `None` if their steps differ, or it would not be legal.
     #[must_use]
     pub fn next_after(self, values: &[Value]) -> Option<Value> {
-        let limits = self.limits()?;
+        let limits = self.declared.limits()?;
         let number = |value: &Value| match value {
             Value::Number(v) => Some(decimal(*v)),
             Value::Integer(n) => Some(*n as f64),
@@ -160,16 +128,16 @@ impl Variable {
         let (last, step) = (numbers.last()?, steps.last()?);
         let even = steps.iter().all(|other| (other - step).abs() <= 1e-4 * step.abs());
         let next = significant(last + step, 6);
-        (even && limits.allows(next)).then(|| self.of_number(next)).flatten()
+        (even && limits.allows(next)).then(|| self.declared.of_number(next)).flatten()
     }
 
     /// The value that an object has, given or default, if it has one.
     #[must_use]
     pub fn of_object(self, object: &Object) -> Option<Value> {
-        match self {
-            Self::Field(_) => object.value(self.key()),
-            Self::Shape(p) => Some(object.shape.get(p)),
-            Self::Material(p) => Some(object.material.get(p)),
+        match (self.declared, self.key) {
+            (Declared::Field(_), key) => object.value(key),
+            (Declared::Parameter(p), Key::Own(_)) => Some(object.shape.get(p)),
+            (Declared::Parameter(p), Key::Material(_)) => Some(object.material.get(p)),
         }
     }
 }
@@ -177,22 +145,6 @@ impl Variable {
 /// A number of 32 bits as people write it, so that steps between 0.1 and 0.9 end in 0.3, 0.5 and 0.7.
 fn decimal(v: f32) -> f64 {
     v.to_string().parse().unwrap_or_else(|_| v.into())
-}
-
-/// So many numbers from one to another; both ends are exact.
-fn between(from: f32, to: f32, scale: Scale, count: usize) -> impl Iterator<Item = f64> {
-    let [a, b] = [from, to].map(decimal);
-    (0..count).map(move |i| match i {
-        0 => a,
-        i if i + 1 == count => b,
-        i => {
-            let t = i as f64 / (count - 1) as f64;
-            match scale {
-                Scale::Linear => a + (b - a) * t,
-                Scale::Logarithmic => a * (b / a).powf(t),
-            }
-        }
-    })
 }
 
 /// The value of each step of a varied value, and which it is. Problems have paths from `at`.
@@ -234,10 +186,11 @@ fn series(
             format!("factors lead from {from} to {to} only if both have the same sign and neither is 0");
         return Err(Problem::value(path(Varied::scale), quoted(varied.scale.id()), rule));
     }
-    let values: Option<Vec<_>> =
-        between(from, to, varied.scale, steps).map(|v| variable.of_number(v)).collect();
+    let numbers = varied.scale.between([from, to].map(decimal), steps);
+    let values: Option<Vec<_>> = numbers.map(|v| variable.declared.of_number(v)).collect();
     let values = values.ok_or_else(|| {
-        let rule = format!("the {} is not a number; give its values one by one", variable.label());
+        let label = variable.declared.label();
+        let rule = format!("the {label} is not a number; give its values one by one");
         Problem::value(path(Varied::from), from, rule)
     })?;
     Ok((variable, values))
@@ -297,7 +250,7 @@ fn copies_of(entry: &Arc<Object>, registry: &Registry) -> Result<Vec<Object>, Ve
         }
     }
     // A type brings the values that it allows.
-    all.sort_by_key(|(_, _, variable, _)| variable.key() != Object::object_type.into());
+    all.sort_by_key(|(_, _, variable, _)| variable.key != Object::object_type.into());
     // Without the row, whose lists may be as long as the row itself.
     let plain = Object { repeat: Repetition::None, ..(**entry).clone() };
     let total = repeat.total() as u32;
@@ -312,12 +265,12 @@ fn copies_of(entry: &Arc<Object>, registry: &Registry) -> Result<Vec<Object>, Ve
         for (j, along, variable, values) in &all {
             let place = repeat.place(number, *along);
             let Some(value) = values.get(place) else { continue };
-            if !copy.set(variable.key(), Some(value.clone()), registry) {
+            if !copy.set(variable.key, Some(value.clone()), registry) {
                 let path = vary.index(*j).key(Varied::values.key).index(place);
                 problems.push(Problem::value(
                     path,
                     value.written(),
-                    format!("it is no {}", variable.label()),
+                    format!("it is no {}", variable.declared.label()),
                 ));
             }
         }
@@ -629,7 +582,7 @@ impl Scene {
             (all.len() == now.len() && all.iter().zip(now).all(alike)).then_some(all)
         };
         let varies = |name: &str| {
-            row.variables(registry).any(|one| matches!(one, Variable::Material(p) if p.name == name))
+            row.variables(registry).any(|one| matches!(one.key, Key::Material(own) if own == name))
         };
         let mut entry = row.entry.clone();
         entry.material.0.retain(|name, _| varies(name));
@@ -640,11 +593,11 @@ impl Scene {
             let Repetition::Entry(repeat) = &mut entry.repeat else { return None };
             for varied in &mut repeat.vary {
                 let variable = Variable::with_path(&varied.parameter, &row.entry.object_type, registry);
-                let Some(Variable::Material(p)) = variable else { continue };
+                let Some(Key::Material(name)) = variable.map(|variable| variable.key) else { continue };
                 let along = varied.along;
                 let of_step = |step: u64| {
                     let copy = if along == Along::Rows { step * u64::from(row.repeat.columns) } else { step };
-                    now.get(usize::try_from(copy).ok()?)?.material.0.get(p.name).cloned()
+                    now.get(usize::try_from(copy).ok()?)?.material.0.get(name).cloned()
                 };
                 let values: Option<Vec<_>> = (0..row.repeat.steps(along)).map(of_step).collect();
                 if let Some(values) = values {

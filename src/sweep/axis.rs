@@ -1,18 +1,13 @@
-//! What a sweep varies: values by path, turns about the vertical, ways through the room.
+//! What a sweep varies: values by path, views, copies of a row, and ways through the room.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 use super::values;
 use crate::{
     caption::{self, Part as Words, header},
     parameter::Value,
     registry::Registry,
-    scene::{
-        Object, Part, Scene,
-        at::Place,
-        rotation::{rotation, turned},
-        variant::LETTERS,
-    },
+    scene::{Object, Part, Scene, at::Place, variant::LETTERS},
     text::{listed, quoted},
 };
 
@@ -25,8 +20,6 @@ const VIEW: &str = "view";
 const COPY: &str = "copy";
 /// Maximum number of copies of which each has a picture.
 const MAX_COPIES: usize = 256;
-/// Maximum number of places of all parts that turn, in all pictures together: they are in memory at once.
-const MAX_PLACES: usize = 1_000_000;
 
 /// One direction of a sweep: values that are set together, step by step.
 #[derive(Clone, Debug)]
@@ -62,8 +55,8 @@ impl Axis {
         let place = Place::find(path.trim(), scene, registry)?;
         let values = values::read_distinct(given.trim(), &place, registry)?;
         let label =
-            |value: &Value| Words { symbol: place.symbol(), ..Words::new(0, place.shown(value, registry)) };
-        let labels: Vec<_> = values.iter().map(label).collect();
+            |value: &Value| caption::said(&place.label(), place.symbol(), place.shown(value, registry));
+        let labels = values.iter().map(label).collect();
         let name = match place.part {
             Part::Object(_) if scene.objects.len() > 1 => {
                 format!("{} of {}", place.label(), place.part.path())
@@ -71,16 +64,6 @@ impl Axis {
             Part::Light(_) => format!("{} of {}", place.label(), place.part.path()),
             _ => place.label(),
         };
-        // Numbers, and yes and no, do not say what they are about.
-        let bare = |words: &Words| {
-            let starts = |c: char| c.is_numeric() || "(-−".contains(c);
-            words.symbol.is_empty() && (words.text.starts_with(starts) || words.text.parse::<bool>().is_ok())
-        };
-        let prefix = |words: Words| match bare(&words) {
-            true => Words { text: format!("{} {}", place.label(), words.text), ..words },
-            false => words,
-        };
-        let labels = labels.into_iter().map(prefix).collect();
         let word = path.trim().rsplit('.').next().unwrap_or_default().to_owned();
         let written = values.iter().map(ToString::to_string).collect();
         Ok(Self { name, labels, moves: false, word, written, sets: vec![(place, values)], views: Vec::new() })
@@ -136,74 +119,6 @@ impl Axis {
             word: COPY.to_owned(),
             written: (1..=row.count).map(|number| number.to_string()).collect(),
             sets: row.range().map(set).collect::<Result<_, String>>()?,
-            views: Vec::new(),
-        })
-    }
-
-    /// A turn about the vertical through the middle of the visible objects: `360:24`, or with the thing that turns,
-    /// `objects[0]=360:24`; without it, the observer. Objects by number turn about themselves. Whole turns leave out their
-    /// end, which is their beginning.
-    ///
-    /// # Errors
-    /// Returns the mistake.
-    pub fn turn(text: &str, scene: &Scene, registry: &Registry) -> Result<Self, String> {
-        let (what, amount) = text.split_once('=').unwrap_or(("observer", text));
-        let form = "write DEGREES:COUNT, as in 360:24, or objects[0]=360:24";
-        let (degrees, count) = amount.split_once(':').ok_or_else(|| format!("{}: {form}", quoted(text)))?;
-        let degrees: Option<f32> = degrees.trim().parse().ok();
-        let degrees = degrees.filter(|v| v.is_finite() && *v != 0.0 && v.abs() <= 36_000.0);
-        let degrees = degrees.ok_or_else(|| {
-            format!(
-                "{}: the angle must be a number of degrees other than 0, at most 36000; {form}",
-                quoted(text)
-            )
-        })?;
-        let count = super::count(count).map_err(|why| format!("{}: {why}; {form}", quoted(text)))?;
-        let steps = if degrees % 360.0 == 0.0 { count } else { count - 1 };
-        let angles: Vec<f32> = (0..count).map(|i| degrees * i as f32 / steps as f32).collect();
-        let what = what.trim();
-        let parts = turning(what, scene).ok_or_else(|| {
-            format!(
-                "{} cannot turn; it must be observer, lights, lights[0], objects, objects[0], …",
-                quoted(what)
-            )
-        })?;
-        if parts.len().saturating_mul(count) > MAX_PLACES {
-            let parts = parts.len();
-            let most = MAX_PLACES / parts;
-            let rule = format!(
-                "{count} pictures are too many for {parts} parts that turn; at most {most} are possible"
-            );
-            return Err(format!("{}: {rule}", quoted(text)));
-        }
-        let centre = middle(scene);
-        let mut sets = Vec::new();
-        for part in parts {
-            for key in ["position", "direction", "rotation"] {
-                if key == "position" && what.starts_with("objects[") {
-                    continue;
-                }
-                // Not every part has all of them.
-                let Ok(place) = Place::find(&part.path().key(key).to_string(), scene, registry) else {
-                    continue;
-                };
-                let Some(Value::Triple(from)) = place.value(scene) else { continue };
-                let values =
-                    angles.iter().map(|angle| Value::Triple(turn(key, from.into(), *angle, centre).into()));
-                sets.push((place, values.collect()));
-            }
-        }
-        let written: Vec<_> =
-            angles.iter().map(|angle| (angle * 100.0).round() / 100.0).map(|v| v.to_string()).collect();
-        let labels =
-            written.iter().map(|angle| Words::new(0, format!("{}°", angle.replace('-', "−")))).collect();
-        Ok(Self {
-            name: format!("{what} turned"),
-            labels,
-            moves: true,
-            word: "turn".to_owned(),
-            written,
-            sets,
             views: Vec::new(),
         })
     }
@@ -271,72 +186,10 @@ impl Axis {
     }
 }
 
-/// The parts that turn, by their path.
-fn turning(what: &str, scene: &Scene) -> Option<Vec<Part>> {
-    let (lights, objects) = (0..scene.lights.len(), 0..scene.objects.len());
-    match what {
-        "observer" => return Some(vec![Part::Observer]),
-        "lights" => return Some(lights.map(Part::Light).collect()),
-        "objects" => return Some(objects.map(Part::Object).collect()),
-        _ => {}
-    }
-    let all = lights.map(Part::Light).chain(objects.map(Part::Object));
-    all.into_iter().find(|part| part.path().to_string() == what).map(|part| vec![part])
-}
-
-/// The middle of the visible objects.
-fn middle(scene: &Scene) -> Vec3 {
-    let (mut least, mut most) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    for object in scene.shown() {
-        least = least.min(object.position - 0.5 * object.size);
-        most = most.max(object.position + 0.5 * object.size);
-    }
-    if least.is_finite() { 0.5 * (least + most) } else { 0.5 * scene.scene_size.corner() }
-}
-
-/// A value of a part after a turn.
-fn turn(key: &str, from: Vec3, degrees: f32, centre: Vec3) -> Vec3 {
-    if degrees % 360.0 == 0.0 {
-        return from;
-    }
-    let radians = degrees.to_radians();
-    let turn = Quat::from_rotation_y(radians);
-    match key {
-        "position" => centre + turn * (from - centre),
-        "direction" => turn * from,
-        _ => turned(rotation(from), Vec3::Y, radians),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::{Repeat, Repetition, Variant, Varied};
-
-    fn turned_to(text: &str, i: usize) -> Scene {
-        let (scene, registry) = (Scene::default(), Registry::builtin());
-        let axis = Axis::turn(text, &scene, &registry).unwrap_or_else(|e| panic!("{text}: {e}"));
-        let values = axis.sets.iter().map(|(place, values)| (place, &values[i]));
-        scene.with(values, &registry).expect("in the room")
-    }
-
-    #[test]
-    fn the_observer_turns_about_the_objects_and_looks_at_them() {
-        let quarter = turned_to("360:4", 1);
-        assert!((quarter.observer.position - Vec3::new(9.5, 5.0, 5.0)).length() < 1e-4);
-        assert!((quarter.observer.direction - Vec3::NEG_X).length() < 1e-6);
-        assert_eq!(turned_to("360:4", 0), Scene::default());
-        // Part of a turn has both ends.
-        assert!((turned_to("90:2", 1).observer.position - quarter.observer.position).length() < 1e-4);
-    }
-
-    #[test]
-    fn lights_and_objects_turn_too() {
-        let light = turned_to("lights[0]=180:2", 1).lights[0].position.expect("has one");
-        assert!((light - Vec3::new(2.5, 8.0, 1.0)).length() < 1e-4, "{light}");
-        let object = &turned_to("objects[0]=360:8", 1).objects[0];
-        assert_eq!((object.rotation, object.position), (Vec3::new(0.0, 45.0, 0.0), Vec3::splat(5.0)));
-    }
 
     #[test]
     fn a_way_may_look_at_a_point() {
@@ -405,22 +258,8 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_named() {
+    fn mistakes_in_ways_are_named() {
         let (scene, registry) = (Scene::default(), Registry::builtin());
-        for (text, expected) in [
-            ("360", "write DEGREES:COUNT"),
-            ("0:4", "other than 0"),
-            ("nan:4", "a number of degrees"),
-            ("360:1", "at least 2"),
-            ("lamp=360:4", "\"lamp\" cannot turn"),
-            ("objects[3]=360:4", "\"objects[3]\" cannot turn"),
-        ] {
-            let said = Axis::turn(text, &scene, &registry).expect_err(text);
-            assert!(said.contains(expected), "{text}: {said}");
-        }
-        let many = Scene { objects: vec![Object::default(); 2000], ..Scene::default() };
-        let said = Axis::turn("objects=360:1000", &many, &registry).expect_err("too much memory");
-        assert!(said.contains("1000 pictures are too many for 2000 parts that turn; at most 500"), "{said}");
         for (text, expected) in [
             ("lights[0]", "has no ="),
             ("lights[0]=[1, 2, 3]", "two points or more"),

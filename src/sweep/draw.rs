@@ -19,12 +19,13 @@ use super::{
 };
 use crate::{
     caption::Sampled,
+    compare::View,
     failure::Failure,
     progress::{Cancelled, Progress},
     reference::{self, Until},
     registry::Registry,
     render::capture::png::{self, About},
-    scene::{Scene, has_extent},
+    scene::Scene,
 };
 
 /// The time after which it is asked again whether the user has cancelled.
@@ -143,7 +144,8 @@ struct One<'a> {
 
 impl<'a> One<'a> {
     fn new(sweep: &Sweep<'a>, settings: &Settings, i: usize) -> Result<Self, Failure> {
-        let (scene, terms) = sweep.seen(i).map_err(Failure::Invalid)?;
+        let none = || Failure::Invalid("there is no such view".to_owned());
+        let (scene, terms) = sweep.seen(i).ok_or_else(none)?;
         let Settings { size: [width, height], samples, until } = *settings;
         let settings = reference::Settings { width, height, samples, terms };
         let stamp = parts::stamp(&scene, &settings, until, sweep.registry);
@@ -154,19 +156,16 @@ impl<'a> One<'a> {
     fn draw(&self, check: Check, cancelled: &AtomicBool) -> Result<(Vec<u8>, Option<Sampled>), Failure> {
         let Self { scene, settings, registry, .. } = self;
         check(scene)?;
-        let odd = AtomicBool::default();
-        let drawn = if has_extent(scene.shining(), registry) {
-            let ends = || cancelled.load(Ordering::Relaxed);
-            let progress = Progress { tell: &|_, _| (), cancelled: &ends };
-            let drawn = reference::render_until(scene, registry, settings, self.until, &odd, &progress);
-            let (light, sampled) = drawn.map_err(ended)?;
-            (light.to_rgb8(&scene.display), Some(sampled))
-        } else {
-            (reference::render_rgb8_noting(scene, registry, settings, &odd), None)
-        };
+        let view =
+            View { scene, registry, settings: *settings, channel: None, until: self.until, lit: false };
+        let ends = || cancelled.load(Ordering::Relaxed);
+        let progress = Progress { tell: &|_, _| (), cancelled: &ends };
+        let (shown, sampled) = view
+            .draw(&AtomicBool::default(), &progress)
+            .map_err(|undrawn| Failure::Invalid(undrawn.to_string()))?;
         // An endless function of a custom model is detected only when it runs.
         check(scene)?;
-        Ok(drawn)
+        Ok((shown.into_rgb8(), sampled))
     }
 }
 

@@ -24,6 +24,8 @@ mod draw;
 mod film;
 mod parts;
 mod sheet;
+mod turn;
+mod unused;
 mod values;
 mod write;
 
@@ -34,15 +36,17 @@ pub use draw::{Check, Drawn, Settings, Written, files, pictures};
 pub use film::{GIF, MAX_RATE, gif};
 pub use parts::Parts;
 pub use sheet::{Against, Grid, Page, maps};
+pub use turn::instead_of_turn;
 pub use write::{Format, Look, Plan};
 
 use crate::{
     caption::{self, Caption, Ground, Part as Words},
     optics::TermSelection,
     registry::Registry,
-    scene::Scene,
+    scene::{Scene, at::Idle, check, error::Problem},
     text::listed,
 };
+use unused::Unused;
 
 /// Maximum number of pictures in a sweep.
 pub const MAX_PICTURES: usize = 10_000;
@@ -62,46 +66,43 @@ pub struct Sweep<'a> {
     pub axes: Vec<Axis>,
     /// The known models and types.
     pub registry: &'a Registry,
+    remarks: Vec<String>,
 }
 
 impl<'a> Sweep<'a> {
-    /// A sweep, all of whose scenes are valid.
+    /// A sweep, all of whose scenes are valid. Labels of steps with which a parameter has no effect say so.
     ///
     /// # Errors
     /// Returns an error if there is nothing to vary, if two axes set the same value, if there are more than [`MAX_PICTURES`]
-    /// pictures, or if a value breaks a rule of scenes: then the first such picture and its problems.
+    /// pictures, if no picture uses a parameter that varies, or if a value breaks a rule of scenes: then the first such
+    /// picture and its problems.
     pub fn new(
         scene: &'a Scene,
         view: usize,
         axes: Vec<Axis>,
         registry: &'a Registry,
     ) -> Result<Self, String> {
-        if axes.is_empty() {
-            return Err(
-                "nothing varies; name a value, as in --vary objects[0].material.roughness=0.1..0.9:5"
-                    .to_owned(),
-            );
+        possible(&axes)?;
+        let mut sweep = Self { scene, view, axes, registry, remarks: Vec::new() };
+        let checked: Vec<_> = (0..sweep.count()).into_par_iter().map(|i| sweep.checked(i)).collect();
+        let unused = Unused(checked.into_iter().collect::<Result<_, _>>()?);
+        sweep.remarks = unused.remarks(&sweep)?;
+        for (axis, step, mark) in unused.marks(&sweep) {
+            let label = &mut sweep.axes[axis].labels[step];
+            label.text = format!("{} ({mark})", label.text);
         }
-        let mut paths: Vec<_> =
-            axes.iter().flat_map(|axis| &axis.sets).map(|(place, _)| place.path.to_string()).collect();
-        paths.extend(axes.iter().filter(|axis| !axis.views.is_empty()).map(|axis| axis.name.clone()));
-        paths.sort();
-        if let Some(pair) = paths.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(format!("{} is varied twice; vary it once, with all its values", pair[0]));
-        }
-        let count = axes.iter().fold(1_usize, |count, axis| count.saturating_mul(axis.count()));
-        if count > MAX_PICTURES {
-            let factors: Vec<_> = axes.iter().map(|axis| axis.count().to_string()).collect();
-            return Err(format!(
-                "{} are {count} pictures, but a sweep has at most {MAX_PICTURES}; vary less",
-                factors.join(" × ")
-            ));
-        }
-        let sweep = Self { scene, view, axes, registry };
-        match (0..count).into_par_iter().find_map_first(|i| sweep.seen(i).err()) {
-            Some(problem) => Err(problem),
-            None => Ok(sweep),
-        }
+        Ok(sweep)
+    }
+
+    /// What the user should know of the pictures, a sentence each.
+    #[must_use]
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
+
+    /// The axes along which pictures differ: a single value is the same everywhere.
+    pub fn varied(&self) -> impl Iterator<Item = &Axis> {
+        self.axes.iter().filter(|axis| axis.count() > 1)
     }
 
     /// Number of pictures.
@@ -126,21 +127,39 @@ impl<'a> Sweep<'a> {
         self.axes.iter().zip(self.steps(picture)).map(|(axis, step)| &axis.labels[step]).collect()
     }
 
-    /// The scene that a picture shows, and its terms.
-    ///
-    /// # Errors
-    /// Returns the rules of scenes that its values break.
-    pub fn seen(&self, picture: usize) -> Result<(Scene, TermSelection), String> {
+    /// The scene that a picture shows, and its terms; `None` if there is no such view. Its rules were checked before.
+    #[must_use]
+    pub fn seen(&self, picture: usize) -> Option<(Scene, TermSelection)> {
+        let (scene, view, _) = self.set(picture);
+        scene.seen(view, self.registry)
+    }
+
+    /// The scene with the values of a picture, the view that it shows, and the problems of values without a place.
+    fn set(&self, picture: usize) -> (Scene, usize, Vec<Problem>) {
         let steps = self.steps(picture);
         let sets = self.axes.iter().zip(&steps);
         let values =
             sets.flat_map(|(axis, step)| axis.sets.iter().map(|(place, values)| (place, &values[*step])));
-        let scene = self.scene.with(values, self.registry).map_err(|problems| {
+        let (scene, problems) = self.scene.with_unchecked(values, self.registry);
+        (scene, sets_view(&self.axes, &steps).unwrap_or(self.view), problems)
+    }
+
+    /// Checks the scene of a picture. Returns for each axis why it has no effect there, if so.
+    fn checked(&self, picture: usize) -> Result<Vec<Option<Idle>>, String> {
+        let (scene, view, mut problems) = self.set(picture);
+        // Views alone leave the scene as it is.
+        if self.axes.iter().any(|axis| !axis.sets.is_empty()) {
+            problems.extend(check::scene(&scene, self.registry));
+        }
+        if !problems.is_empty() {
             let named: Vec<_> = problems.iter().take(MAX_NAMED).map(ToString::to_string).collect();
-            named.join("\n")
-        })?;
-        let view = sets_view(&self.axes, &steps).unwrap_or(self.view);
-        scene.seen(view, self.registry).ok_or_else(|| "there is no such view".to_owned())
+            return Err(named.join("\n"));
+        }
+        let (seen, _) = scene.seen(view, self.registry).ok_or("there is no such view")?;
+        // No reason is less than any: one value with an effect is enough.
+        let idle =
+            |axis: &Axis| axis.sets.iter().map(|(place, _)| place.idle(&seen, self.registry)).min().flatten();
+        Ok(self.axes.iter().map(idle).collect())
     }
 
     /// The name of the file of a picture: its number, which keeps names apart, and its values.
@@ -166,7 +185,7 @@ impl<'a> Sweep<'a> {
     #[must_use]
     pub fn caption(&self) -> Caption {
         let of = |i: usize| {
-            let (seen, terms) = self.seen(i).ok()?;
+            let (seen, terms) = self.seen(i)?;
             Some(caption::of_scene(&seen, terms, self.registry))
         };
         let all: Vec<_> = (0..self.count()).into_par_iter().filter_map(of).collect();
@@ -188,6 +207,29 @@ impl<'a> Sweep<'a> {
     pub fn summary(&self) -> String {
         listed(&self.axes.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>(), "and")
     }
+}
+
+/// Fails if there is nothing to vary, too much, or a value twice.
+fn possible(axes: &[Axis]) -> Result<(), String> {
+    if axes.is_empty() {
+        return Err("nothing varies; name a value, as in --vary objects[0].size=1..3:5".to_owned());
+    }
+    let mut paths: Vec<_> =
+        axes.iter().flat_map(|axis| &axis.sets).map(|(place, _)| place.path.to_string()).collect();
+    paths.extend(axes.iter().filter(|axis| !axis.views.is_empty()).map(|axis| axis.name.clone()));
+    paths.sort();
+    if let Some(pair) = paths.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(format!("{} is varied twice; vary it once, with all its values", pair[0]));
+    }
+    let count = axes.iter().fold(1_usize, |count, axis| count.saturating_mul(axis.count()));
+    if count > MAX_PICTURES {
+        let factors: Vec<_> = axes.iter().map(|axis| axis.count().to_string()).collect();
+        return Err(format!(
+            "{} are {count} pictures, but a sweep has at most {MAX_PICTURES}; vary less",
+            factors.join(" × ")
+        ));
+    }
+    Ok(())
 }
 
 /// The view in a picture, if views vary.
@@ -213,6 +255,7 @@ fn count(text: &str) -> Result<usize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Variant;
 
     fn sweep<'a>(scene: &'a Scene, registry: &'a Registry, texts: &[&str]) -> Result<Sweep<'a>, String> {
         let axes =
@@ -239,6 +282,50 @@ mod tests {
             !facts.starts_with("Lambert") && facts.contains("Gouraud"),
             "what varies is not shared: {facts}"
         );
+    }
+
+    #[test]
+    fn what_no_model_uses_is_refused_and_what_some_do_not_use_is_marked() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let roughness = "objects[0].material.roughness=0.1..0.9:3";
+        for texts in
+            [&[roughness][..], &[roughness, "objects[0].size=1,2"], &[roughness, "reflection_model=phong"]]
+        {
+            let said = sweep(&scene, &registry, texts).expect_err("no model has it");
+            let model = if texts.len() > 1 && texts[1].contains("phong") { "Phong" } else { "Lambert" };
+            let start = format!(
+                "objects[0].material.roughness has no effect: {model} has no roughness; it belongs to "
+            );
+            assert!(said.starts_with(&start) && said.contains("eon"), "{said}");
+        }
+        let made = sweep(&scene, &registry, &[roughness, "reflection_model=lambert,eon,phong"])
+            .expect("EON has it");
+        let words = |axis: usize| made.axes[axis].labels.iter().map(Words::words).collect::<Vec<_>>();
+        assert_eq!(words(0), ["r 0.1", "r 0.5", "r 0.9"]);
+        assert_eq!(words(1), ["Lambert (no roughness)", "EON", "Phong (no roughness)"]);
+        let expected = "objects[0].material.roughness has no effect in 6 of 9 pictures: Lambert has no roughness; \
+                        Phong has no roughness";
+        assert_eq!(made.remarks(), [expected]);
+        assert!(made.file(0).ends_with("reflection-model_lambert.png"), "{}", made.file(0));
+        // A view may choose the model.
+        let eon = Variant { reflection_model: Some("eon".to_owned()), ..Variant::default() };
+        let scene = Scene { variants: vec![eon], ..scene };
+        let axis = Axis::vary(roughness, &scene, &registry).expect("numbers");
+        assert!(
+            Sweep::new(&scene, 1, vec![axis.clone()], &registry).is_ok_and(|made| made.remarks().is_empty())
+        );
+        assert!(Sweep::new(&scene, 0, vec![axis], &registry).is_err());
+    }
+
+    #[test]
+    fn scenes_are_checked_once() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let made = sweep(&scene, &registry, &["objects[0].size=1,2"]).expect("valid");
+        let mut broken = scene.clone();
+        broken.lights.clear();
+        assert!(sweep(&broken, &registry, &["objects[0].size=1,2"]).is_err(), "it is checked");
+        let later = Sweep { scene: &broken, ..made };
+        assert!(later.seen(1).is_some_and(|(seen, _)| seen.objects[0].size == 2.0), "but not again");
     }
 
     #[test]

@@ -72,7 +72,7 @@ pub fn maps(
     size: [u32; 2],
     against: Against,
 ) -> Result<Vec<Map>, Unequal> {
-    let across = sweep.axes.first().map_or(1, super::Axis::count);
+    let across = sweep.varied().next().map_or(1, super::Axis::count);
     let reference = |i: usize| i / across * across + against.column;
     let shown = |i: usize| Shown::of_codes(size[0], size[1], pictures[i].clone());
     let with = |i: usize| Some([shown(reference(i)).ok()?, shown(i).ok()?]);
@@ -90,7 +90,8 @@ pub fn maps(
         }
     };
     let comparison = Comparison { amplification: Some(factor), ..*against.comparison };
-    let column = sweep.labels(against.column).first().map_or_else(String::new, |label| label.words());
+    let first = sweep.varied().next().and_then(|axis| axis.labels.get(against.column));
+    let column = first.map(Words::words).unwrap_or_default();
     let (names, ground) = (["this".to_owned(), column], sweep.ground());
     let one = |i: usize| {
         if i == reference(i) {

@@ -6,7 +6,7 @@ use super::MAX_PICTURES;
 use crate::{
     parameter::Value,
     registry::Registry,
-    scene::at::Place,
+    scene::{at::Place, limits::significant, repeat::Scale},
     text::{items, numbers, quoted, shortened},
 };
 
@@ -66,9 +66,9 @@ fn listed(text: &str) -> Vec<String> {
 fn range(text: &str, place: &Place, registry: &Registry) -> Result<Vec<String>, String> {
     let (points, rest) =
         text.split_once(':').ok_or_else(|| format!("the number of values is missing; {FORM}"))?;
-    let (count, log) = match rest.split_once(':') {
-        None => (rest, false),
-        Some((count, "log")) => (count, true),
+    let (count, scale) = match rest.split_once(':') {
+        None => (rest, Scale::Linear),
+        Some((count, "log")) => (count, Scale::Logarithmic),
         Some((_, other)) => return Err(format!("{} is not log; {FORM}", quoted(other))),
     };
     let count = super::count(count).map_err(|why| format!("{why}; {FORM}"))?;
@@ -90,32 +90,23 @@ fn range(text: &str, place: &Place, registry: &Registry) -> Result<Vec<String>, 
     }
     let is_single = |text: &str| items(text).len() == 1 && !text.trim().starts_with('#');
     let single = points.len() > 1 && text.split("..").next().is_some_and(is_single);
-    let all: Vec<[f64; 3]> = match (log, points.as_slice()) {
-        (true, [from, to]) if single && from[0] > 0.0 && to[0] > 0.0 => {
-            let [from, to] = [from[0].ln(), to[0].ln()];
-            (0..count).map(|i| [mix(from, to, part(i, count - 1)).exp(); 3]).collect()
+    let log = scale == Scale::Logarithmic;
+    let all: Vec<[f64; 3]> = match points.as_slice() {
+        [from, to] if single && (!log || from[0] > 0.0 && to[0] > 0.0) => {
+            scale.between([from[0], to[0]], count).map(|v| [v; 3]).collect()
         }
-        (true, _) => return Err("a logarithmic range has two ends, both above 0".to_owned()),
-        (false, points) => along(points, count),
+        _ if log => return Err("a logarithmic range has two ends, both above 0".to_owned()),
+        points => along(points, count),
     };
     let one = |v: f64| {
-        // The logarithm's rounding is not the user's.
-        let v = if log { format!("{v:.6e}").parse().unwrap_or(v) } else { v };
+        // Nobody types the digits of an irrational factor.
+        let v = if log { significant(v, 7) } else { v };
         if place.is_whole() { v.round().to_string() } else { (v as f32).to_string() }
     };
     Ok(all
         .into_iter()
         .map(|[x, y, z]| if single { one(x) } else { format!("[{}, {}, {}]", one(x), one(y), one(z)) })
         .collect())
-}
-
-/// The fraction of a whole; 1 for nothing of nothing.
-fn part(i: usize, whole: usize) -> f64 {
-    i as f64 / whole.max(1) as f64
-}
-
-fn mix(from: f64, to: f64, part: f64) -> f64 {
-    from * (1.0 - part) + to * part
 }
 
 /// Points at equal distances along a way through others: at its ends too, unless it is closed.
@@ -126,11 +117,11 @@ fn along(points: &[[f64; 3]], count: usize) -> Vec<[f64; 3]> {
     let is_closed = points.len() > 2 && points.first() == points.last();
     let steps = if is_closed { count } else { count - 1 };
     let at = |i: usize| {
-        let mut left = whole * part(i, steps);
+        let mut left = whole * i as f64 / steps.max(1) as f64;
         for (k, length) in lengths.iter().enumerate() {
             if left <= *length || k + 1 == lengths.len() {
                 let part = if *length > 0.0 { (left / length).min(1.0) } else { 0.0 };
-                return std::array::from_fn(|c| mix(points[k][c], points[k + 1][c], part));
+                return std::array::from_fn(|c| points[k][c] * (1.0 - part) + points[k + 1][c] * part);
             }
             left -= length;
         }

@@ -88,8 +88,8 @@ impl<'a> Plan<'a> {
     /// # Errors
     /// Returns an error if there are too many axes, if there is no such column, or if the result is too large.
     pub fn new(sweep: &'a Sweep<'a>, look: Look, settings: Settings) -> Result<Self, String> {
-        let beside = sweep.axes.len() - usize::from(look.format.is_film());
-        let axes: Vec<&Axis> = sweep.axes[..beside].iter().collect();
+        let mut axes: Vec<&Axis> = sweep.varied().collect();
+        let last = if look.format.is_film() { axes.pop() } else { None };
         let counts: Vec<_> = axes.iter().map(|axis| axis.count()).collect();
         let grid = Grid::of(&counts, look.columns)?;
         let each: usize = counts.iter().product();
@@ -106,7 +106,7 @@ impl<'a> Plan<'a> {
         }
         let size = look.size.unwrap_or(if each > 1 { SMALL } else { MIDDLE });
         let settings = Settings { size, ..settings };
-        let time = sweep.axes.get(beside).filter(|time| !time.moves && look.words);
+        let time = last.filter(|time| !time.moves && look.words);
         let page = Page::new(&axes, grid, size, look.against.is_some());
         let page = page.on(sweep.ground());
         let page = if look.words { page } else { page.silent() };

@@ -3,17 +3,16 @@
 //! The CPU renderer draws them, which tells its progress and can be stopped. Models that it cannot run, and edited
 //! shaders, which it ignores, are drawn by a renderer of their own on the GPU; the window goes on meanwhile.
 
-use std::{borrow::Cow, sync::atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
 use crate::{
     caption::Sampled,
     channel::Setting,
-    compare::Shown,
+    compare::{self, Shown, View},
+    linear::MAX_PIXELS,
     optics::TermSelection,
     progress::{Cancelled, Progress},
-    reference::{
-        LightSamples, Settings, Until, ignored_edits, render_channel_by, render_rgb8_noting, render_until,
-    },
+    reference::{LightSamples, Settings, Until, ignored_edits, not_on_cpu},
     registry::Registry,
     render::capture::gpu::{GpuRenderer, Output},
     scene::{Scene, has_extent},
@@ -33,6 +32,15 @@ pub(super) enum Undrawn {
 impl From<Cancelled> for Undrawn {
     fn from(_: Cancelled) -> Self {
         Self::Cancelled
+    }
+}
+
+impl From<compare::Undrawn> for Undrawn {
+    fn from(undrawn: compare::Undrawn) -> Self {
+        match undrawn {
+            compare::Undrawn::Cancelled => Self::Cancelled,
+            compare::Undrawn::TooLarge(_) => Self::of(undrawn),
+        }
     }
 }
 
@@ -60,48 +68,34 @@ impl OffScreen<'_> {
     /// Draws the view. Returns also how lights with extent were sampled, if there are some.
     pub(super) fn draw(&self, progress: &Progress) -> Result<(Shown, Option<Sampled>), Undrawn> {
         progress.step(0.0, "drawing")?;
-        let drawn = if self.needs_gpu() { self.on_gpu()? } else { self.on_cpu(progress)? };
+        let needs_gpu = self.needs_gpu();
+        let drawn = if needs_gpu { self.on_gpu()? } else { self.on_cpu(progress)? };
         // An endless function of a custom model is detected only when it runs.
-        if let Some(why) = self.not_on_cpu().filter(|_| !self.needs_gpu()) {
+        if let Some((_, why)) = not_on_cpu(self.seen, self.registry).filter(|_| !needs_gpu) {
             return Err(Undrawn::Failed(why));
         }
         progress.step(1.0, "drawn")?;
         Ok(drawn)
     }
 
-    /// The reason why the CPU cannot draw it, if any.
-    fn not_on_cpu(&self) -> Option<String> {
-        let Self { seen, registry, .. } = self;
-        let mut models = seen.objects.iter().filter_map(|object| registry.model(seen.model_of(object)));
-        models.find_map(|model| model.not_on_cpu())
-    }
-
     /// True if the CPU would draw it otherwise than the window, or not at all.
     pub(super) fn needs_gpu(&self) -> bool {
-        self.not_on_cpu().is_some() || !ignored_edits(self.registry, self.seen).is_empty()
+        not_on_cpu(self.seen, self.registry).is_some() || !ignored_edits(self.registry, self.seen).is_empty()
     }
 
     fn on_cpu(&self, progress: &Progress) -> Result<(Shown, Option<Sampled>), Undrawn> {
         let Self { seen, registry, size: [width, height], samples, terms, channel, lit } = *self;
         let settings = Settings { width, height, samples, terms };
-        let alone = channel.filter(|setting| setting.channel.is_picture());
-        let seen = alone.map_or(Cow::Borrowed(seen), |setting| Cow::Owned(setting.lit(seen)));
-        let of_codes = |rgb8| Shown::of_codes(width, height, rgb8).map_err(Undrawn::of);
-        if let Some(setting) = channel.filter(|_| alone.is_none()) {
-            let samples = LightSamples::default();
-            return Ok((of_codes(render_channel_by(&seen, registry, &settings, &setting, samples))?, None));
-        }
-        let odd = AtomicBool::default();
-        if !lit && !has_extent(seen.shining(), registry) {
-            return Ok((of_codes(render_rgb8_noting(&seen, registry, &settings, &odd))?, None));
-        }
-        let (light, sampled) = render_until(&seen, registry, &settings, Until::default(), &odd, progress)?;
-        let sampled = Some(sampled).filter(|sampled| sampled.samples > 0);
-        Ok((Shown::of_light(light, &seen.display), sampled))
+        let view = View { scene: seen, registry, settings, channel, until: Until::default(), lit };
+        Ok(view.draw(&AtomicBool::default(), progress)?)
     }
 
     fn on_gpu(&self) -> Result<(Shown, Option<Sampled>), Undrawn> {
         let Self { seen, registry, size: [width, height], samples, terms, channel, .. } = *self;
+        if width as usize * height as usize > MAX_PIXELS {
+            let said = format!("{width}×{height} are too many pixels for the GPU");
+            return Err(Undrawn::Failed(format!("{said}; at most {MAX_PIXELS} are possible")));
+        }
         let samples = if samples > 1 { 4 } else { 1 };
         let renderer = GpuRenderer::extended(width, height, samples, Output::Display, |app| {
             app.insert_resource(registry.clone());

@@ -25,12 +25,12 @@ use crate::{
     channel::{DebugChannel, Legend, Setting, layers, too_large},
     compare::{self, Pair, Shown, Unequal, cells, compose, size_around, with_legends, with_row_labels},
     export::write::inputs,
-    files::{self, Shown as _, words},
+    files::{self, Refused, Shown as _, words},
     linear::{Format, MAX_PIXELS},
     optics::TermSelection,
     panel::state::{Effect, PictureEnd, PictureOptions, Question, Session, Severity},
     progress::Progress,
-    reference::{Settings, Until, render_layers},
+    reference::{Settings, Until, not_on_cpu, render_layers},
     registry::Registry,
     render::{
         capture::{
@@ -284,9 +284,11 @@ fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registr
         ));
     };
     let inputs = inputs(session.path.as_deref(), [session.document.scene()], registry);
-    files::may_overwrite(file, format, inputs.iter().map(PathBuf::as_path))
-        .map_err(|refused| format!("The picture was not saved: {refused}."))?;
-    Ok(overwrite || !file.exists())
+    match files::may_replace(file, format, overwrite, &inputs) {
+        Ok(()) => Ok(true),
+        Err(Refused::Exists { .. }) => Ok(false),
+        Err(refused) => Err(format!("The picture was not saved: {refused}.")),
+    }
 }
 
 /// Says that a linear picture takes long, if it does.
@@ -519,12 +521,10 @@ impl Job {
             return Err(failed("it holds the light of one view; save the view alone"));
         };
         let seen = self.views.seen(view).ok_or_else(|| failed("the view is no longer there"))?;
-        for model in seen.objects.iter().filter_map(|object| registry.model(seen.model_of(object))) {
-            if let Some(why) = model.not_on_cpu() {
-                let command = "lcm render --renderer gpu -o FILE.exr draws it";
-                let id = model.declaration.id;
-                return Err(Undrawn::Failed(format!("the CPU cannot run {id}: {why}; {command}")));
-            }
+        if let Some((model, why)) = not_on_cpu(&seen, registry) {
+            let command = "lcm render --renderer gpu -o FILE.exr draws it";
+            let id = model.declaration.id;
+            return Err(Undrawn::Failed(format!("the CPU cannot run {id}: {why}; {command}")));
         }
         let kinds = if format == Format::Exr { self.options.kinds() } else { Vec::new() };
         let layers = layers(&seen, terms, &kinds, registry);

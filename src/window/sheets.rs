@@ -9,9 +9,10 @@ use crate::files::Shown as _;
 use crate::{
     export::write::inputs,
     failure::Failure,
-    files,
+    files::{self, PNG},
     panel::state::{Session, Severity, SheetOptions},
     progress::Progress,
+    reference,
     registry::Registry,
     scene::{Comparison, Scene, comparison::Compared},
     sweep::{Axis, Format, Look, Parts, Plan, Settings, Sweep},
@@ -39,8 +40,13 @@ impl SheetFiles {
         let file = if asked { path } else { path.with_extension("png") };
         let mut scene = session.document.scene().clone();
         let inputs = inputs(session.path.as_deref(), [&scene], registry);
-        if let Err(why) = may_write(&file, asked, &inputs) {
-            return session.sheet_written(&file, Err(why));
+        let is_png = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+        let allowed = match is_png {
+            true => files::may_replace(&file, PNG, asked, &inputs).map_err(|refused| refused.to_string()),
+            false => Err(format!("{} is not the name of a PNG file", file.shown())),
+        };
+        if allowed.is_err() {
+            return session.sheet_written(&file, allowed);
         }
         // As seen from the current camera.
         scene.observer = session.facts.observer(scene.observer);
@@ -60,19 +66,6 @@ impl SheetFiles {
         if let Some((path, outcome)) = self.0.take() {
             session.sheet_written(&path, outcome);
         }
-    }
-}
-
-/// Fails if a file must not be replaced by a sheet.
-fn may_write(file: &Path, asked: bool, inputs: &[PathBuf]) -> Result<(), String> {
-    if !file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        return Err(format!("{} is not the name of a PNG file", file.shown()));
-    }
-    files::may_overwrite(file, files::PNG, inputs.iter().map(PathBuf::as_path))
-        .map_err(|refused| refused.to_string())?;
-    match !asked && file.exists() {
-        true => Err(format!("{} exists; choose it in the list of files to replace it", file.shown())),
-        false => Ok(()),
     }
 }
 
@@ -121,9 +114,8 @@ impl Job<'_> {
 
     /// Fails if the CPU renderer cannot draw a scene.
     fn check(&self, seen: &Scene) -> Result<(), Failure> {
-        let mut models = seen.objects.iter().filter_map(|object| self.registry.model(seen.model_of(object)));
-        match models.find_map(|model| model.not_on_cpu()) {
-            Some(why) => Err(Failure::NoRenderer(format!("the CPU cannot draw it: {why}"))),
+        match reference::not_on_cpu(seen, self.registry) {
+            Some((_, why)) => Err(Failure::NoRenderer(format!("the CPU cannot draw it: {why}"))),
             None => Ok(()),
         }
     }

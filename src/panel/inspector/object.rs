@@ -19,7 +19,7 @@ use crate::{
     scene::{
         Field, Key, Object, Variant, limits,
         part::Fields as _,
-        rows::{Row, Variable},
+        rows::Row,
     },
     shading::ShadingEntry,
 };
@@ -54,7 +54,7 @@ fn fixed(row: &Row, session: &Session, registry: &Registry) -> Vec<Key> {
         let sets = |variant: &Variant| matches!(key, Key::Material(_)) || variant.field(key.name()).is_some();
         session.variant().is_some_and(sets)
     };
-    row.variables(registry).map(Variable::key).filter(|key| !is_of_view(key)).collect()
+    row.variables(registry).map(|one| one.key).filter(|key| !is_of_view(key)).collect()
 }
 
 /// The object that is shown, and its surroundings.

@@ -8,7 +8,7 @@ use crate::{
     },
     parameter::Value,
     scene::{
-        Field, Object, Repeat, Repetition, Varied,
+        Field, Key, Object, Repeat, Repetition, Varied,
         held::Word,
         limits::Limits,
         repeat::{Along, MAX_VARIED, Scale},
@@ -150,17 +150,17 @@ impl Shown<'_> {
         let entry = self.row.entry;
         let model = self.registry.model(self.models.0);
         let shading = self.registry.shading_model(self.models.1);
-        let used = |variable: &Variable| match variable {
-            Variable::Material(p) => {
-                let of_model = model.and_then(|model| model.parameter(p.name));
-                of_model.or(shading.and_then(|shading| shading.parameter(p.name))).is_some()
+        let used = |variable: &Variable| match variable.key {
+            Key::Material(name) => {
+                let of_model = model.and_then(|model| model.parameter(name));
+                of_model.or(shading.and_then(|shading| shading.parameter(name))).is_some()
             }
-            _ => true,
+            Key::Own(_) => true,
         };
         let all = Variable::all(&entry.object_type, self.registry);
-        let mut numbers: Vec<_> = all.filter(|one| one.limits().is_some()).filter(used).collect();
+        let mut numbers: Vec<_> = all.filter(|one| one.declared.limits().is_some()).filter(used).collect();
         // Those of the material are asked for most.
-        numbers.sort_by_key(|one| !matches!(one, Variable::Material(_)));
+        numbers.sort_by_key(|one| !matches!(one.key, Key::Material(_)));
         numbers
     }
 
@@ -193,9 +193,9 @@ impl Shown<'_> {
     fn which_value(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
         let numbers = self.numbers();
         let now = numbers.iter().position(|one| one.path() == varied.parameter);
-        let mut names: Vec<_> = numbers.iter().map(|one| one.label()).collect();
-        // What only a file can choose is shown as it stands there.
-        names.extend(now.is_none().then_some(varied.parameter.as_str()));
+        let mut names: Vec<_> = numbers.iter().map(|one| one.declared.label()).collect();
+        let other = now.is_none().then(|| self.name_of_other(varied));
+        names.extend(other.as_deref());
         let caption = Caption::new("varies", "", Varied::parameter.help.trim());
         let line = ui.scope(|ui| knob::choice_knob(ui, &caption, now.unwrap_or(numbers.len()), &names));
         let new = line.inner.and_then(|k| numbers.get(k)).and_then(|one| one.over_its_range());
@@ -214,10 +214,24 @@ impl Shown<'_> {
         chosen.or(same)
     }
 
+    /// The name of a varied value that is none of the numbers: only a file can choose it, or the model does not use it.
+    fn name_of_other(&self, varied: &Varied) -> String {
+        let known = Variable::with_path(&varied.parameter, &self.row.entry.object_type, self.registry);
+        known.map_or_else(
+            || varied.parameter.clone(),
+            |one| match one.key {
+                Key::Material(_) if one.declared.limits().is_some() => {
+                    format!("{} (not used)", one.declared.label())
+                }
+                _ => one.declared.label().to_owned(),
+            },
+        )
+    }
+
     /// The ends of a range, and its scale.
     fn range(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
         let known = self.numbers().into_iter().find(|one| one.path() == varied.parameter);
-        let limits = known.and_then(Variable::limits).unwrap_or_else(|| Varied::from.limits());
+        let limits = known.and_then(|one| one.declared.limits()).unwrap_or_else(|| Varied::from.limits());
         let end = |ui: &mut Ui, field: Field, value: Option<f32>| {
             let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
             let value = f64::from(value.unwrap_or_default());

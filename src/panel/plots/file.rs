@@ -58,11 +58,7 @@ pub fn write(
     progress: &Progress,
 ) -> Result<Vec<String>, String> {
     let format = Format::of(file)?;
-    files::may_overwrite(file, format.signature(), inputs.iter().map(PathBuf::as_path))
-        .map_err(|refused| refused.to_string())?;
-    if !replace && file.exists() {
-        return Err(format!("{} exists; choose it in the list of files to replace it", file.shown()));
-    }
+    files::may_replace(file, format.signature(), replace, inputs).map_err(|refused| refused.to_string())?;
     let setup = request.setup;
     let mut made = Vec::new();
     let mut notes = Vec::new();

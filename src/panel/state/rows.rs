@@ -47,7 +47,7 @@ impl Session {
     fn telling(&self, object: &Object, registry: &Registry) -> Vec<Varied> {
         let Some(model) = registry.model(self.document.model_of(object)) else { return Vec::new() };
         let used = |p: &&Parameter| usage::unused(model.parameters, p, &object.material).is_none();
-        let numbers = model.parameters.iter().filter(used).map(Variable::Material);
+        let numbers = model.parameters.iter().filter(used).map(Variable::of_material);
         let ranges: Vec<_> = numbers.filter_map(Variable::over_its_range).collect();
         let telling: [&[Parameter]; 4] = [&[ROUGHNESS], &[ALPHA], &[ALPHA_X, ALPHA_Y], &[SIGMA]];
         let known = |all: &[Parameter]| -> Option<Vec<Varied>> {

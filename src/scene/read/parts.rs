@@ -9,6 +9,7 @@ use crate::{
     parameter::{Parameter, Value, Values, kind::colour},
     scene::{
         Field, Light, Object, Repeat, Repetition, Scene, Variant, Varied, check,
+        declaration::Declared,
         field::{Absent, Ids, Kind},
         part::Structure,
         rows::Variable,
@@ -219,9 +220,9 @@ impl Reader<'_> {
             return varied;
         };
         let (count, shape) = (list.len(), self.registry.shape(object_type));
-        let read = |value| match variable {
-            Variable::Field(field) => self.field(value, field, shape),
-            Variable::Shape(p) | Variable::Material(p) => self.parameter(value, p),
+        let read = |value| match variable.declared {
+            Declared::Field(field) => self.field(value, field, shape),
+            Declared::Parameter(p) => self.parameter(value, p),
         };
         varied.values = list.filter_map(read).collect();
         if varied.values.len() < count {

@@ -186,6 +186,80 @@ fn what_is_wrong_is_said_before_anything_is_drawn() {
 }
 
 #[test]
+fn what_a_model_does_not_use_is_refused_and_where_some_do_not_it_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let roughness = ["--vary", "objects[0].material.roughness=0.1..0.9:3", "-o", "x.png"];
+    let run = sweep(folder.path(), &roughness);
+    refused(&run, 2, "objects[0].material.roughness has no effect: Lambert has no roughness; it belongs to ");
+    assert!(run.err.contains("eon"), "{}", run.err);
+    assert_eq!(names(folder.path()), Vec::<String>::new());
+    // A model from the command line uses it, as in lcm render.
+    let run = done(folder.path(), &[&roughness[..], &["--reflection", "eon", "--shading", "phong"]].concat());
+    assert!(!run.err.contains("no effect"), "{}", run.err);
+    let scene = load::file(&folder.path().join("x.png"), &Registry::builtin(), Defaults::Refuse);
+    let scene = scene.expect("has a scene").scene;
+    assert_eq!((&*scene.reflection_model, &*scene.shading_model), ("eon", "phong"));
+    let run = done(folder.path(), &[&roughness[..], &["--vary", "reflection_model=lambert,eon"]].concat());
+    let said = "objects[0].material.roughness has no effect in 3 of 6 pictures: Lambert has no roughness";
+    assert!(run.err.contains(said), "{}", run.err);
+    // Typing errors in models have the nearest.
+    for (arguments, expected) in [
+        (["--vary", "reflection_model=lamber,phong"], "did you mean \"lambert\"?"),
+        (["--vary", "objects[0].shading_model=goraud,flat"], "did you mean \"gouraud\"?"),
+        (["--reflection", "fong"], "did you mean \"phong\"?"),
+    ] {
+        refused(
+            &sweep(folder.path(), &[&arguments[..], &["--vary", SIZES, "-o", "y.png"]].concat()),
+            2,
+            expected,
+        );
+    }
+    let twice = ["--reflection", "eon", "--vary", "reflection_model=phong,eon", "-o", "y.png"];
+    refused(
+        &sweep(folder.path(), &twice),
+        2,
+        "--reflection sets reflection_model, but --vary reflection_model=…",
+    );
+}
+
+#[test]
+fn a_single_value_is_fixed_and_needs_no_axis() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let two = ["--vary", SIZES, "--vary", "reflection_model=lambert,phong"];
+    done(
+        folder.path(),
+        &[&two[..], &["--vary", "display.exposure=1", "-o", "fixed.png", "--no-labels"]].concat(),
+    );
+    done(folder.path(), &[&two[..], &["--exposure", "1", "-o", "given.png", "--no-labels"]].concat());
+    done(folder.path(), &[&two[..], &["-o", "usual.png", "--no-labels"]].concat());
+    let read = |name: &str| read_png(&folder.path().join(name)).expect("a picture");
+    assert!(read("fixed.png") == read("given.png"));
+    assert!(read("fixed.png") != read("usual.png"));
+    // Wherever it stands, and in films and maps, too.
+    let first = [&["--vary", "display.exposure=1"][..], &two, &["-o", "first.png", "--no-labels"]].concat();
+    done(folder.path(), &first);
+    assert!(read("first.png") == read("fixed.png"));
+    for more in [&["-o", "film.gif"][..], &["-o", "maps.png", "--against", "2"]] {
+        done(folder.path(), &[&["--vary", "display.exposure=1"][..], &two, more].concat());
+    }
+    done(folder.path(), &["--vary", "display.exposure=1", "-o", "one.png"]);
+}
+
+#[test]
+fn a_turn_that_leaves_the_room_says_what_is_possible() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut scene = Scene::default();
+    scene.scene_size.width = 8.0;
+    let scene = save::to_json(&scene, None, &Registry::builtin());
+    fs::write(folder.path().join("narrow.json"), scene).expect("written");
+    let run = sweep(folder.path(), &["narrow.json", "--turn", "360:8", "-o", "x.gif"]);
+    refused(&run, 2, "observer.position is ");
+    assert!(run.err.contains("possible: --turn "), "{}", run.err);
+    assert!(run.err.contains("--turn objects=360:8"), "{}", run.err);
+    done(folder.path(), &["narrow.json", "--turn", "objects=360:8", "-o", "x.gif"]);
+}
+
+#[test]
 fn nothing_is_replaced_that_is_no_picture_and_nothing_is_half_written() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
