@@ -417,6 +417,10 @@ mod tests {
                     Lobe::Power { exponent } => {
                         Lobes::new(&[(Lobe::Power { exponent: exponent + 2.0 }, 1.0)])
                     }
+                    Lobe::CosineBelow => Lobes::cosine(),
+                    Lobe::GgxBelow { alpha, eta } => {
+                        Lobes::new(&[(Lobe::GgxBelow { alpha: 0.8 * alpha, eta }, 1.0)])
+                    }
                 };
                 let found = chi_squared(|u| lobes.sample(u, v), |l| wrong.pdf(l, v));
                 assert!(!passes(found), "wrong twin of {i} from {theta}°: {found:?}");

@@ -125,6 +125,7 @@ pub(super) const fn equation<const N: usize>(text: &'static str) -> ([EquationPa
             b"ambient" => Some(Term::Ambient),
             b"diffuse" => Some(Term::Diffuse),
             b"specular" => Some(Term::Specular),
+            b"transmitted" => Some(Term::Transmitted),
             _ => None,
         };
         if let Some(term) = term {
@@ -177,7 +178,7 @@ impl Declaration {
                 b"source" => all.source = text,
                 b"summary" => all.summary = text,
                 b"laws" => all.laws = laws(text),
-                b"synonyms" | b"total" | b"ambient" | b"diffuse" | b"specular" => {}
+                b"synonyms" | b"total" | b"ambient" | b"diffuse" | b"specular" | b"transmitted" => {}
                 b"where" | b"is" | b"by" | b"when" => {}
                 _ => panic!("a line of the texts begins with another word"),
             }
