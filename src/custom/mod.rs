@@ -154,6 +154,7 @@ fn declared(
         laws: said.laws,
         ambient,
         anisotropic: said.anisotropic,
+        transmits: said.transmits,
         ..Declaration::new(intern::text(id), said.name, wgsl)
     });
     let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();

@@ -153,12 +153,13 @@ pub(super) fn entry(
                 on_cpu: on_cpu.clone(),
                 ambient: declaration.ambient,
                 anisotropic: declaration.anisotropic,
+                transmits: declaration.transmits,
                 parameters: flattened(parameters, values, encoding),
                 row: read.as_ref().map_or_else(Vec::new, |(lobe, curves)| {
                     row(declaration, parameters, values, encoding, *lobe, curves)
                 }),
                 read,
-                lobes: reads.lobes.lobes(parameters, values, encoding),
+                lobes: reads.lobes.lobes(declaration, parameters, values, encoding),
                 curve: OnceLock::new(),
             })
         })
@@ -190,7 +191,7 @@ struct Grey {
 impl Surface for Grey {
     fn response(&self, l: Vec3, _: Vec3, frame: &Frame) -> Terms {
         let diffuse = Vec3::splat(GREY * frame.n.dot(l).max(0.0));
-        Terms { ambient: Vec3::ZERO, diffuse, specular: Vec3::ZERO }
+        Terms::of(diffuse, Vec3::ZERO)
     }
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
@@ -234,6 +235,7 @@ struct Interpreted {
     on_cpu: Arc<OnCpu>,
     ambient: Ambient,
     anisotropic: bool,
+    transmits: bool,
     parameters: Vec<u32>,
     /// The row as in the shader's table, without the curve; empty if it is not read.
     row: Vec<u32>,
@@ -245,6 +247,15 @@ struct Interpreted {
 }
 
 impl Interpreted {
+    /// The part of uniform light that passes through.
+    fn through(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        const SAMPLES: u32 = 1 << 10;
+        if !self.transmits {
+            return Vec3::ZERO;
+        }
+        albedo::through(|l| self.response(l, v, frame).transmitted, &self.lobes, v, frame, SAMPLES)
+    }
+
     /// The results of a function of directions, the frame and the parameters.
     fn ask<const N: usize>(
         &self,
@@ -270,7 +281,12 @@ impl Surface for Interpreted {
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let terms: [f32; 9] = self.ask(|p| Some(&p.response), &[l, v], frame);
         let vector = |at: usize| Vec3::new(terms[at], terms[at + 1], terms[at + 2]);
-        Terms { ambient: vector(0), diffuse: vector(3), specular: vector(6) }
+        let through = self.transmits && frame.n.dot(l) * frame.n.dot(v) < 0.0;
+        Terms::of_shader([0, 3, 6].map(vector), through)
+    }
+
+    fn transmits(&self) -> bool {
+        self.transmits
     }
 
     fn quantity(&self, symbol: &str, arguments: &[f32], l: Vec3, v: Vec3, frame: &Frame) -> Option<Vec3> {
@@ -293,13 +309,19 @@ impl Surface for Interpreted {
             Ambient::Formula => self.ask::<3>(|p| p.ambient.as_ref(), &[v], frame).into(),
             Ambient::Albedo => match self.curve() {
                 Some(curve) => curve.at(v, frame),
-                None => albedo::directional(|l| self.response(l, v, frame), v, frame).as_vec3(),
+                None => {
+                    let reflected = albedo::directional(|l| self.response(l, v, frame), v, frame).as_vec3();
+                    reflected + self.through(v, frame)
+                }
             },
         }
     }
 
     fn curve(&self) -> Option<AlbedoCurve> {
-        let new = || AlbedoCurve::new(|l, v| self.response(l, v, &Frame::LOCAL), self.anisotropic);
+        let new = || {
+            let curve = AlbedoCurve::new(|l, v| self.response(l, v, &Frame::LOCAL), self.anisotropic);
+            curve.with(|v| self.through(v, &Frame::LOCAL), self.anisotropic)
+        };
         *self.curve.get_or_init(|| (self.ambient == Ambient::Albedo).then(new))
     }
 

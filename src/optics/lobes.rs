@@ -4,6 +4,7 @@
 
 use std::f32::consts::PI;
 
+use arrayvec::ArrayVec;
 use glam::{Vec2, Vec3, Vec4};
 
 use super::{equivalence::alpha_of_exponent, sampling};
@@ -38,6 +39,17 @@ pub enum Lobe {
     Power {
         /// The exponent.
         exponent: f32,
+    },
+    /// Proportional to the cosine to the normal, below the surface.
+    CosineBelow,
+    /// Refraction in the visible facets of a GGX surface: B. Walter, S. Marschner, H. Li, K. Torrance (2007),
+    /// *Microfacet Models for Refraction through Rough Surfaces*.
+    GgxBelow {
+        /// Width of the distribution of facets.
+        alpha: f32,
+        /// Refractive index below the surface divided by that above it. 1 stands for a thin sheet, which transmits the
+        /// lobe that it reflects, mirrored in the surface.
+        eta: f32,
     },
 }
 
@@ -88,6 +100,8 @@ impl Lobe {
             Self::Cosine => [0.0, 0.0, 0.0],
             Self::Ggx { alpha_x, alpha_y } => [1.0, alpha_x, alpha_y],
             Self::Power { exponent } => [2.0, exponent, 0.0],
+            Self::CosineBelow => [3.0, 0.0, 0.0],
+            Self::GgxBelow { alpha, eta } => [4.0, alpha, eta],
         }
     }
 
@@ -95,7 +109,8 @@ impl Lobe {
     fn clamped(self) -> Self {
         let width = |alpha: f32| if alpha >= NARROWEST { alpha.min(1.0) } else { NARROWEST };
         match self {
-            Self::Cosine => self,
+            Self::Cosine | Self::CosineBelow => self,
+            Self::GgxBelow { alpha, eta } => Self::GgxBelow { alpha: width(alpha), eta: eta.clamp(0.1, 10.0) },
             Self::Ggx { alpha_x, alpha_y } => Self::Ggx { alpha_x: width(alpha_x), alpha_y: width(alpha_y) },
             Self::Power { exponent } => {
                 Self::Power { exponent: if exponent >= 0.0 { exponent.min(STEEPEST) } else { 0.0 } }
@@ -108,12 +123,7 @@ impl Lobe {
         match self {
             Self::Cosine => sampling::cosine(u),
             Self::Ggx { alpha_x, alpha_y } => {
-                let wide = Vec3::new(v.x * alpha_x, v.y * alpha_y, v.z).normalize();
-                let phi = 2.0 * PI * u.x;
-                let z = (1.0 - u.y) * (1.0 + wide.z) - wide.z;
-                let sine = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
-                let cap = Vec3::new(sine * phi.cos(), sine * phi.sin(), z) + wide;
-                let h = Vec3::new(cap.x * alpha_x, cap.y * alpha_y, cap.z.max(0.0)).normalize_or_zero();
+                let h = visible_normal(u, v, alpha_x, alpha_y);
                 2.0 * v.dot(h) * h - v
             }
             Self::Power { exponent } => {
@@ -123,6 +133,18 @@ impl Lobe {
                 let local = Vec3::new(sine * phi.cos(), sine * phi.sin(), cosine);
                 sampling::about(Vec3::new(-v.x, -v.y, v.z), local)
             }
+            Self::CosineBelow => -sampling::cosine(u),
+            Self::GgxBelow { alpha, eta } => {
+                let h = visible_normal(u, v, alpha, alpha);
+                let cosine = v.dot(h);
+                if eta == 1.0 {
+                    let l = 2.0 * cosine * h - v;
+                    return Vec3::new(l.x, l.y, -l.z);
+                }
+                let squared = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
+                // Above the surface, where this lobe has no density, if all light is reflected.
+                if squared <= 0.0 { Vec3::Z } else { (cosine / eta - squared.sqrt()) * h - v / eta }
+            }
         }
     }
 
@@ -130,17 +152,22 @@ impl Lobe {
     fn pdf(self, l: Vec3, v: Vec3) -> f32 {
         match self {
             Self::Cosine => l.z.max(0.0) / PI,
-            Self::Ggx { alpha_x, alpha_y } => {
-                let sum = l + v;
-                let squared = sum.length_squared();
-                if sum.z <= 0.0 || squared <= 0.0 {
+            Self::Ggx { alpha_x, alpha_y } => facets(l + v, v, alpha_x, alpha_y) / 4.0,
+            Self::CosineBelow => (-l.z).max(0.0) / PI,
+            Self::GgxBelow { .. } if l.z >= 0.0 => 0.0,
+            Self::GgxBelow { alpha, eta } if eta == 1.0 => {
+                facets(Vec3::new(l.x, l.y, -l.z) + v, v, alpha, alpha) / 4.0
+            }
+            Self::GgxBelow { alpha, eta } => {
+                let sum = v + eta * l;
+                let h = sum.normalize_or_zero() * if sum.z < 0.0 { -1.0 } else { 1.0 };
+                let (towards_v, towards_l) = (v.dot(h), l.dot(h));
+                if towards_v <= 0.0 || towards_l >= 0.0 {
                     return 0.0;
                 }
-                // D(h) G₁(v) / (4 N·V), with G₁/(N·V) = 2/(N·V + √(…)).
-                let stretched = (sum.x / alpha_x).powi(2) + (sum.y / alpha_y).powi(2) + sum.z * sum.z;
-                let d = squared * squared / (PI * alpha_x * alpha_y * stretched * stretched);
-                let seen = ((alpha_x * v.x).powi(2) + (alpha_y * v.y).powi(2) + v.z * v.z).sqrt();
-                d / (2.0 * (v.z + seen))
+                // The facets' density times the Jacobian of refraction.
+                let across = towards_v + eta * towards_l;
+                facets(h, v, alpha, alpha) * towards_v * eta * eta * -towards_l / (across * across).max(1e-12)
             }
             Self::Power { exponent } => {
                 let cosine = (v.z * l.z - v.x * l.x - v.y * l.y).min(1.0);
@@ -151,6 +178,29 @@ impl Lobe {
             }
         }
     }
+}
+
+/// A GGX facet seen from `v`.
+fn visible_normal(u: Vec2, v: Vec3, alpha_x: f32, alpha_y: f32) -> Vec3 {
+    let wide = Vec3::new(v.x * alpha_x, v.y * alpha_y, v.z).normalize();
+    let phi = 2.0 * PI * u.x;
+    let z = (1.0 - u.y) * (1.0 + wide.z) - wide.z;
+    let sine = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
+    let cap = Vec3::new(sine * phi.cos(), sine * phi.sin(), z) + wide;
+    Vec3::new(cap.x * alpha_x, cap.y * alpha_y, cap.z.max(0.0)).normalize_or_zero()
+}
+
+/// The density of visible GGX facets with a normal along `h`, of any length, divided by V·H: D(h) G₁(v) / N·V, with
+/// G₁/(N·V) = 2/(N·V + √(…)).
+fn facets(h: Vec3, v: Vec3, alpha_x: f32, alpha_y: f32) -> f32 {
+    let squared = h.length_squared();
+    if h.z <= 0.0 || squared <= 0.0 {
+        return 0.0;
+    }
+    let stretched = (h.x / alpha_x).powi(2) + (h.y / alpha_y).powi(2) + h.z * h.z;
+    let d = squared * squared / (PI * alpha_x * alpha_y * stretched * stretched);
+    let seen = ((alpha_x * v.x).powi(2) + (alpha_y * v.y).powi(2) + v.z * v.z).sqrt();
+    2.0 * d / (v.z + seen)
 }
 
 impl Lobes {
@@ -170,6 +220,21 @@ impl Lobes {
         }
         out.iter_mut().for_each(|(_, share)| *share /= sum);
         Self(out)
+    }
+
+    /// The lobes below the surface; without any, a cosine.
+    #[must_use]
+    pub fn below(&self) -> Self {
+        let is_below = |lobe: &Lobe| matches!(lobe, Lobe::CosineBelow | Lobe::GgxBelow { .. });
+        let below: ArrayVec<_, MAX_LOBES> =
+            self.0.into_iter().filter(|(lobe, share)| is_below(lobe) && *share > 0.0).collect();
+        if below.is_empty() { Self::new(&[(Lobe::CosineBelow, 1.0)]) } else { Self::new(&below) }
+    }
+
+    /// The default of models that light passes through: the other default, and a cosine below the surface.
+    #[must_use]
+    pub fn of_both_sides() -> Self {
+        Self::new(&[(Lobe::Cosine, 0.25), (Lobe::ggx(0.4), 0.25), (Lobe::CosineBelow, 0.5)])
     }
 
     /// The cosine lobe alone, for checks.
@@ -209,7 +274,7 @@ impl Lobes {
         self.0.iter().all(|(lobe, _)| !matches!(lobe, Lobe::Ggx { alpha_x, alpha_y } if alpha_x != alpha_y))
     }
 
-    /// The lobes in the shaders' layout: for each its kind (0 cosine, 1 GGX, 2 power), its numbers, its
+    /// The lobes in the shaders' layout: for each its kind (0 cosine, 1 GGX, 2 power, 3 and 4 cosine and GGX below), its numbers, its
     /// share.
     #[must_use]
     pub fn rows(&self) -> [Vec4; MAX_LOBES] {
@@ -225,8 +290,7 @@ impl Lobes {
         self.rows().iter().flat_map(|row| row.to_array()).flat_map(f32::to_le_bytes).collect()
     }
 
-    /// A direction in the local frame (normal z, tangent x) for a viewer on the same side; it may be below
-    /// the surface.
+    /// A direction in the local frame (normal z, tangent x) for a viewer above the surface; it may be below.
     #[must_use]
     pub fn sample(&self, u: Vec2, v: Vec3) -> Vec3 {
         let v = above(v);
@@ -263,7 +327,7 @@ mod tests {
     use super::*;
     use crate::optics::{geometry::direction, sequence::Sequence};
 
-    fn all() -> [Lobes; 8] {
+    fn all() -> [Lobes; 13] {
         [
             Lobes::cosine(),
             Lobes::default(),
@@ -273,6 +337,11 @@ mod tests {
             Lobes::new(&[(Lobe::Power { exponent: 20.0 }, 1.0)]),
             Lobes::new(&[(Lobe::Power { exponent: 0.0 }, 1.0)]),
             Lobes::new(&[(Lobe::Cosine, 1.0), (Lobe::ggx(0.3), 2.0), (Lobe::Power { exponent: 50.0 }, 1.0)]),
+            Lobes::new(&[(Lobe::CosineBelow, 1.0)]),
+            Lobes::new(&[(Lobe::GgxBelow { alpha: 0.3, eta: 1.0 }, 1.0)]),
+            Lobes::new(&[(Lobe::GgxBelow { alpha: 0.2, eta: 1.5 }, 1.0)]),
+            Lobes::new(&[(Lobe::GgxBelow { alpha: 0.5, eta: 0.7 }, 1.0)]),
+            Lobes::new(&[(Lobe::ggx(0.4), 1.0), (Lobe::GgxBelow { alpha: 0.4, eta: 2.4 }, 2.0)]),
         ]
     }
 

@@ -35,6 +35,8 @@ impl Declaration {
             ambient: Ambient::Formula,
             anisotropic: false,
             matte: false,
+            transmits: false,
+            sharp: false,
             wgsl,
         }
     }
@@ -72,6 +74,12 @@ impl Declaration {
 
         /// Makes a cosine its lobe for sampling light with extent.
         matte() { matte: true }
+
+        /// Makes it a model that light passes through: it has a transmitted term.
+        transmitting() { transmits: true }
+
+        /// Makes it a model that also reflects or transmits without spreading.
+        sharp() { sharp: true }
     }
 
     /// Claims reciprocity: the path of light may be reversed.

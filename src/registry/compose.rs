@@ -14,9 +14,10 @@ use crate::{
     optics::{
         albedo::{NODES, Spacing},
         lobes::MAX_LOBES,
+        sharp,
     },
     parameter::{Parameter, Values, lanes},
-    reflection::{Ambient, Family, ModelEntry},
+    reflection::{Ambient, Declaration, Family, ModelEntry},
     shader::{
         Source,
         compose::{
@@ -79,6 +80,9 @@ fn push_model(c: &mut Composer, model: &ModelEntry, more: &str) {
     }
     if !model.curves().is_empty() {
         c.push("(curves)", &named_curves(model));
+    }
+    if model.declaration.sharp {
+        c.push("(sharp directions)", &part("sharp", &[]));
     }
     c.source(&model.declaration.wgsl);
     if model.declaration.ambient == Ambient::Albedo {
@@ -231,6 +235,19 @@ pub fn compose_shading(sources: &Sources, shading: &ShadingEntry) -> Composed {
     c.composed
 }
 
+/// The parts of the light loop that depend on whether light passes through a model's surface, and on whether it does so
+/// without spreading.
+#[must_use]
+pub(crate) fn sides(model: &Declaration, extent: bool) -> String {
+    let side = if model.transmits { "transmits" } else { "reflects" };
+    let names = match (extent, model.sharp) {
+        (false, _) => side.to_owned(),
+        (true, false) => format!("{side} spread"),
+        (true, true) => format!("{side} unspread radiance"),
+    };
+    part(&names, &[("most", &sharp::MOST)])
+}
+
 /// The complete source for drawing with a model and a shading model under the given light types, those of the
 /// scene: an error in another type does not affect the picture.
 #[must_use]
@@ -256,6 +273,7 @@ pub fn compose(
     }
     lights.iter().for_each(|light| push_light(&mut c, light));
     c.push("(light types)", &light_dispatch(lights));
+    c.push("(sides of the surface)", &sides(model.declaration, extent));
     c.source(&LOOP);
     if extent {
         c.source(&EXTENDED);

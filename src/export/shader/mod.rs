@@ -19,10 +19,10 @@ use super::{
 use crate::{
     light::Twin,
     optics::{colour::Encoding, lobes::MAX_LOBES, tone::ToneMapping},
-    reflection::{Ambient, ModelEntry},
+    reflection::{Ambient, Declaration, ModelEntry},
     registry::{
         Registry,
-        compose::{named_curves, part},
+        compose::{named_curves, part, sides},
     },
     shader::{
         Source,
@@ -117,7 +117,7 @@ pub fn compose(
         },
         Section {
             heading: "The light that leaves a point: the sum over the lights.".to_owned(),
-            items: items(&(light_loop(sources, lights)? + &dispatch(lights))),
+            items: items(&(light_loop(sources, lights, own)? + &dispatch(lights))),
         },
     ];
     for entry in &lights.types {
@@ -134,7 +134,8 @@ pub fn compose(
     for part in own.equation {
         let _ = write!(heading, "\n    {}", part.text);
     }
-    let mut response = text(sources, &own.wgsl)?;
+    let mut response = if own.sharp { part("sharp", &[]) } else { String::new() };
+    response.push_str(&text(sources, &own.wgsl)?);
     if own.ambient == Ambient::Albedo {
         response.push_str(&part("ambient", &[]));
     }
@@ -209,7 +210,7 @@ fn text(sources: &Sources, source: &Source) -> Result<String, ExportError> {
 }
 
 /// The light loop, with a known number of lights and all terms. Of the built-in one, what the scene does not need goes.
-fn light_loop(sources: &Sources, lights: &Lights) -> Result<String, ExportError> {
+fn light_loop(sources: &Sources, lights: &Lights, model: &Declaration) -> Result<String, ExportError> {
     let extent = lights.has_extent();
     let (mut joined, mut simpler) = (String::new(), SIMPLER);
     for source in [LOOP, EXTENDED].iter().take(if extent { 2 } else { 1 }) {
@@ -227,6 +228,13 @@ fn light_loop(sources: &Sources, lights: &Lights) -> Result<String, ExportError>
     if !lights.uniform {
         joined = joined.replace(EITHER, DIRECTED);
     }
+    if !model.transmits {
+        joined = joined.replace("counts(local.z)", "local.z > 0.0");
+    }
+    if !model.sharp {
+        joined = joined.replace(UNSPREAD, "");
+    }
+    joined.push_str(&sides(model, extent));
     Ok(joined)
 }
 
@@ -241,7 +249,15 @@ const SIMPLER: &[(&str, &str)] = &[
         "    for (var i = 0u; i < LIGHT_COUNT; i++) {\n",
     ),
     ("    let selection = illumination.terms;\n", ""),
-    ("select_terms(terms, selection)", "(terms.ambient + terms.diffuse + terms.specular)"),
+    (
+        "select_terms(terms, on_side(selection, dot(frame.n, arriving.l)))",
+        "(terms.ambient + terms.diffuse + terms.specular)",
+    ),
+    (
+        "select_terms(terms, on_side(selection, dot(frame.n, chosen.l)))",
+        "(terms.ambient + terms.diffuse + terms.specular)",
+    ),
+    (", frame, selection)", ", frame, TERM_ALL)"),
 ];
 /// Expressions known for the scene, in any light loop.
 const KNOWN: &[(&str, &str)] = &[
@@ -263,6 +279,9 @@ const EITHER: &str = "        var terms: Terms;
 ";
 /// The replacement of that part without uniform light.
 const DIRECTED: &str = "        let terms = response(arriving.l, v, frame, parameters);\n";
+
+/// The part of the light loop for light that does not spread.
+const UNSPREAD: &str = " + unspread(position, view_direction, frame, TERM_ALL)";
 
 /// The functions that dispatch a light to its type.
 fn dispatch(lights: &Lights) -> String {
