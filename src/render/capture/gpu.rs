@@ -228,10 +228,7 @@ impl GpuRenderer {
                 .disable::<LogPlugin>()
                 // There is no user input.
                 .disable::<TerminalCtrlCHandlerPlugin>()
-                .disable::<AccessibilityPlugin>()
-                .disable::<PickingPlugin>()
-                .disable::<InteractionPlugin>()
-                .disable::<PointerInputPlugin>(),
+                .disable::<AccessibilityPlugin>(),
         )
         .add_plugins(ScenePlugin);
         extend(&mut app);
