@@ -3,21 +3,28 @@
 //! Functions needed by shaders have a twin in `assets/shaders/terms.wgsl` or `assets/shaders/optics/` with the same
 //! name. The two are written separately on purpose: each checks the other.
 
+pub mod absorption;
 pub mod albedo;
+#[cfg(test)]
+pub(crate) mod chi_squared;
 pub mod colour;
 pub mod diffuse;
+pub mod dispersion;
 pub mod distribution;
 pub mod equivalence;
 pub mod film;
 pub mod fresnel;
 pub mod geometry;
+pub mod interface;
 pub mod lobe;
 pub mod lobes;
 pub mod masking;
 pub mod radiometry;
+pub mod refraction;
 pub mod sampling;
 pub mod sequence;
 pub mod sharp;
+pub mod slab;
 pub mod table;
 pub mod temperature;
 pub mod tone;

@@ -109,6 +109,8 @@ texts! {
         Microfacet = "Microfacet",
         /// The practical standard.
         Standard = "Standard",
+        /// Surfaces that light passes through.
+        Transmission = "Transmission",
         /// Models written by users.
         Custom = "Custom models",
     }

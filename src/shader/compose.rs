@@ -23,6 +23,11 @@ pub const OPTICS: &[Source] = &[
     wgsl!("optics/diffuse.wgsl"),
     wgsl!("optics/lobe.wgsl"),
     wgsl!("optics/film.wgsl"),
+    wgsl!("optics/refraction.wgsl"),
+    wgsl!("optics/interface.wgsl"),
+    wgsl!("optics/slab.wgsl"),
+    wgsl!("optics/dispersion.wgsl"),
+    wgsl!("optics/absorption.wgsl"),
 ];
 /// The directional albedo from the curve in a row, for models that have one.
 pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");
