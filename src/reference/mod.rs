@@ -48,6 +48,7 @@ mod converge;
 mod display;
 mod edits;
 mod extended;
+pub mod inside;
 mod instead;
 mod layers;
 mod lighting;
