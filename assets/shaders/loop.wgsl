@@ -20,5 +20,5 @@ fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec
         }
         colour += select_terms(terms, on_side(selection, dot(frame.n, arriving.l))) * arriving.intensity * light.colour;
     }
-    return colour + extended(position, v, frame);
+    return colour + extended(position, v, frame) + through(position, v, frame, selection);
 }

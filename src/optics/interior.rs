@@ -25,6 +25,9 @@ pub struct Interior {
 }
 
 impl Interior {
+    /// No body at all.
+    pub const AIR: Self = Self { ior: 1.0, cauchy_b: 0.0, alpha: 0.0, absorption: Vec3::ZERO };
+
     /// The body for light of a wavelength in nanometres alone, which is not dispersed.
     #[must_use]
     pub fn at(&self, nm: f32) -> Self {

@@ -59,6 +59,7 @@ impl Plugin for ScenePlugin {
             .register_type::<parts::SceneObserver>()
             .register_type::<parts::Animated>()
             .init_resource::<ShapeMeshes>()
+            .init_resource::<Solids>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
             .init_schedule(LabFrame)

@@ -43,6 +43,8 @@ pub const EXTENDED: Source = wgsl!("extended.wgsl");
 pub const HIERARCHY: Source = wgsl!("hierarchy.wgsl");
 /// The way of light within a solid, after [`HIERARCHY`].
 pub const INSIDE: Source = wgsl!("inside.wgsl");
+/// The light that comes through a solid body, after [`INSIDE`].
+pub const THROUGH: Source = wgsl!("through.wgsl");
 /// The light loop.
 pub const LOOP: Source = wgsl!("loop.wgsl");
 /// The inputs and outputs of a shading model.

@@ -13,7 +13,7 @@ fn response(l_room: vec3<f32>, v_room: vec3<f32>, frame: Frame, m: Parameters) -
     if v.z <= 0.0 || l.z <= 0.0 || alpha < MINIMUM_ALPHA {
         return Terms(vec3(0.0), vec3(0.0), vec3(0.0));
     }
-    let f = interface_bsdf(Interface(1u, vec2(alpha), m.refractive_index), l, v);
+    let f = interface_bsdf(Interface(0u, vec2(alpha), m.refractive_index), l, v);
     return Terms(vec3(0.0), vec3(0.0), vec3(PI * l.z * f));
 }
 

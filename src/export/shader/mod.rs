@@ -108,6 +108,13 @@ pub fn compose(
     let sources = registry.sources();
     let faces = shading.declaration.stage == Stage::Polygon;
     let (own, standing) = (model.declaration, shading.declaration);
+    if own.solid {
+        let why = format!(
+            "{} follows the mesh of the object, which exported shaders do not hold; choose thin_glass, or render the picture",
+            own.id
+        );
+        return Err(ExportError::refused(why));
+    }
     let mut sections = vec![
         Section { heading: String::new(), items: items(&wrapper::text(host, faces, lights.has_extent())) },
         Section { heading: String::new(), items: items(&inputs(lights, model, shading, host)) },
@@ -222,6 +229,7 @@ fn light_loop(sources: &Sources, lights: &Lights, model: &Declaration) -> Result
     if !extent {
         joined = joined.replace(" + extended(position, v, frame)", "");
     }
+    joined = joined.replace(" + through(position, v, frame, selection)", "");
     for (general, special) in simpler.iter().chain(KNOWN) {
         joined = joined.replace(general, special);
     }
