@@ -69,14 +69,14 @@ impl Solid<'_> {
     /// A ray of the room, in the mesh.
     pub(super) fn ray(&self, origin: Vec3, direction: Vec3) -> Ray {
         Ray {
-            origin: self.to_mesh(origin),
+            origin: self.local(origin),
             direction: (self.rotation.transpose() * direction).normalize_or_zero(),
         }
     }
 
     /// The point of a hit, and its outer normals of the shading and of the triangle, in the room.
     pub(super) fn boundary(&self, hit: &Hit) -> (Vec3, [Vec3; 2]) {
-        let position = self.to_room(self.hierarchy.point(hit.triangle, hit.weights));
+        let position = self.room(self.hierarchy.point(hit.triangle, hit.weights));
         (position, self.normals(hit).map(|normal| self.rotation * normal))
     }
 

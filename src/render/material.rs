@@ -248,7 +248,7 @@ fn attachment<M: Clone + 'static>(app: &mut App) -> Attachment {
 /// shared by the views without overrides, and separate for each view with overrides.
 #[derive(Resource)]
 struct SharedMaterials<M: Clone + 'static>(
-    HashMap<[UntypedAssetId; 3], Handle<ModelMaterial<M>>>,
+    HashMap<[bevy::asset::UntypedAssetId; 3], Handle<ModelMaterial<M>>>,
 );
 
 fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, inputs: MaterialInputs) {

@@ -20,6 +20,7 @@ use super::{
     schedule::{LabFrame, LabSystems, detect},
     seen,
     shown::{Shown, show_lights},
+    solids::Solids,
     stage::{Stage, set_stages},
     straight::StraightPlugin,
     swap::swap,
