@@ -214,7 +214,7 @@ fn lobe_sample(lobe: vec4<f32>, u: vec2<f32>, v: vec3<f32>) -> vec3<f32> {
         let facing = dot(v, h);
         let squared = 1.0 - (1.0 - facing * facing) / (lobe.z * lobe.z);
         if squared <= 0.0 {
-            return vec3(0.0, 0.0, 1.0);
+            return vec3(0.0);
         }
         return (facing / lobe.z - sqrt(squared)) * h - v / lobe.z;
     }
@@ -241,11 +241,8 @@ fn lobe_facets(widths: vec2<f32>, h: vec3<f32>, v: vec3<f32>) -> f32 {
 }
 
 fn lobe_pdf_below(lobe: vec4<f32>, l: vec3<f32>, v: vec3<f32>) -> f32 {
-    if l.z >= 0.0 {
-        return 0.0;
-    }
     if lobe.x == 3.0 {
-        return -l.z / PI;
+        return max(-l.z, 0.0) / PI;
     }
     if lobe.z == 1.0 {
         return lobe_facets(lobe.yy, vec3(l.xy, -l.z) + v, v) / 4.0;

@@ -129,11 +129,12 @@ mod tests {
 
     #[test]
     fn the_term_is_named_that_gives_the_most() {
-        assert_eq!(by_term([0.0, 0.0, 2.0]).as_deref(), Some(", by the specular term"));
-        assert_eq!(by_term([0.1, 0.7, 0.2]).as_deref(), Some(", mostly by the diffuse term"));
-        assert_eq!(by_term([0.3, 0.3, 0.4]), None);
+        assert_eq!(by_term([0.0, 0.0, 2.0, 0.0]).as_deref(), Some(", by the specular term"));
+        assert_eq!(by_term([0.1, 0.7, 0.2, 0.0]).as_deref(), Some(", mostly by the diffuse term"));
+        assert_eq!(by_term([0.1, 0.0, 0.1, 0.8]).as_deref(), Some(", mostly by the transmitted term"));
+        assert_eq!(by_term([0.3, 0.3, 0.4, 0.0]), None);
         assert_eq!(
-            (by_term([0.0; 3]), by_term([f64::NAN, 1.0, 0.0]), by_term([-1.0, 3.0, 0.0])),
+            (by_term([0.0; 4]), by_term([f64::NAN, 1.0, 0.0, 0.0]), by_term([-1.0, 3.0, 0.0, 0.0])),
             (None, None, None)
         );
     }

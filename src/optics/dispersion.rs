@@ -12,6 +12,9 @@ pub const VISIBLE: [f32; 2] = [400.0, 720.0];
 /// See [`VISIBLE`].
 pub const PARTS: u32 = 16;
 
+/// Largest dispersion 1/V_d: twice that of the heaviest flint.
+pub const STRONGEST: f32 = 0.1;
+
 /// `1/λ²` in µm⁻².
 fn inverse_square(nm: f32) -> f32 {
     let micrometres = 1e-3 * nm;

@@ -142,8 +142,8 @@ impl Lobe {
                     return Vec3::new(l.x, l.y, -l.z);
                 }
                 let squared = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
-                // Above the surface, where this lobe has no density, if all light is reflected.
-                if squared <= 0.0 { Vec3::Z } else { (cosine / eta - squared.sqrt()) * h - v / eta }
+                // Without a density if the facet reflects all light.
+                if squared <= 0.0 { Vec3::ZERO } else { (cosine / eta - squared.sqrt()) * h - v / eta }
             }
         }
     }
@@ -154,7 +154,6 @@ impl Lobe {
             Self::Cosine => l.z.max(0.0) / PI,
             Self::Ggx { alpha_x, alpha_y } => facets(l + v, v, alpha_x, alpha_y) / 4.0,
             Self::CosineBelow => (-l.z).max(0.0) / PI,
-            Self::GgxBelow { .. } if l.z >= 0.0 => 0.0,
             Self::GgxBelow { alpha, eta } if eta == 1.0 => {
                 facets(Vec3::new(l.x, l.y, -l.z) + v, v, alpha, alpha) / 4.0
             }
@@ -340,7 +339,7 @@ mod tests {
             Lobes::new(&[(Lobe::CosineBelow, 1.0)]),
             Lobes::new(&[(Lobe::GgxBelow { alpha: 0.3, eta: 1.0 }, 1.0)]),
             Lobes::new(&[(Lobe::GgxBelow { alpha: 0.2, eta: 1.5 }, 1.0)]),
-            Lobes::new(&[(Lobe::GgxBelow { alpha: 0.5, eta: 0.7 }, 1.0)]),
+            Lobes::new(&[(Lobe::GgxBelow { alpha: 0.5, eta: 2.4 }, 1.0)]),
             Lobes::new(&[(Lobe::ggx(0.4), 1.0), (Lobe::GgxBelow { alpha: 0.4, eta: 2.4 }, 2.0)]),
         ]
     }
@@ -416,6 +415,10 @@ mod tests {
                     }
                     Lobe::Power { exponent } => {
                         Lobes::new(&[(Lobe::Power { exponent: exponent + 2.0 }, 1.0)])
+                    }
+                    Lobe::CosineBelow => Lobes::cosine(),
+                    Lobe::GgxBelow { alpha, eta } => {
+                        Lobes::new(&[(Lobe::GgxBelow { alpha: 0.8 * alpha, eta }, 1.0)])
                     }
                 };
                 let found = chi_squared(|u| lobes.sample(u, v), |l| wrong.pdf(l, v));

@@ -16,6 +16,7 @@ pub mod film;
 pub mod fresnel;
 pub mod geometry;
 pub mod interface;
+pub mod interior;
 pub mod lobe;
 pub mod lobes;
 pub mod masking;

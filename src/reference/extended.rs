@@ -169,14 +169,33 @@ impl Extended {
     }
 
     /// The radiance that arrives from a direction, from all its lights.
-    fn seen(&self, p: Vec3, l: Vec3) -> Vec3 {
+    pub(super) fn seen(&self, p: Vec3, l: Vec3) -> Vec3 {
+        // So dense that lights are not sampled in this direction.
+        self.weighted(p, l, f32::INFINITY)
+    }
+
+    /// The radiance that arrives from a direction that was chosen with this density, times its weight beside samples of
+    /// the lights.
+    pub(super) fn weighted(&self, p: Vec3, l: Vec3, pdf: f32) -> Vec3 {
         let mut directions =
             Directions { l: [Vec3::ZERO; BLOCK], pdf: [0.0; BLOCK], light: [Vec3::ZERO; BLOCK] };
         directions.l[0] = l;
-        // So dense that lights are not sampled in this direction.
-        directions.pdf[0] = f32::INFINITY;
+        directions.pdf[0] = pdf;
         self.groups.iter().for_each(|(group, _)| group.meet(p, &mut directions));
         directions.light[0]
+    }
+
+    /// One direction to each light, with the radiance over its density.
+    pub(super) fn towards(&self, p: Vec3, (seed, index): (u32, u32), mut take: impl FnMut(Vec3, Vec3, f32)) {
+        for (group, number) in &self.groups {
+            for light in 0..group.count() {
+                let point = Sequence::new(seed, number + light as u32 + 1).point(index);
+                let Sample { l, radiance, pdf } = group.send(light, p, &[point])[0];
+                if pdf > 0.0 && radiance != Vec3::ZERO {
+                    take(l, radiance / pdf, pdf);
+                }
+            }
+        }
     }
 
     /// The solid angle of its single light, and the standard error: the mean of the inverse densities.

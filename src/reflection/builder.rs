@@ -37,6 +37,7 @@ impl Declaration {
             matte: false,
             transmits: false,
             sharp: false,
+            solid: false,
             wgsl,
         }
     }
@@ -80,6 +81,9 @@ impl Declaration {
 
         /// Makes it a model that also reflects or transmits without spreading.
         sharp() { sharp: true }
+
+        /// Makes it a model of a solid body, with an [`interior`](super::ReflectionModel::interior).
+        solid() { solid: true }
     }
 
     /// Claims reciprocity: the path of light may be reversed.

@@ -38,6 +38,8 @@ pub struct Declaration {
     /// True for a model with directions in which light does not spread; see
     /// [`sharp`](super::ReflectionModel::sharp).
     pub sharp: bool,
+    /// True for a model of a solid body; see [`interior`](super::ReflectionModel::interior).
+    pub solid: bool,
     /// The twin in WGSL: `fn response` over a struct `Parameters`, and `fn ambient_response` for models
     /// that declare [`Ambient::Formula`].
     pub wgsl: Source,

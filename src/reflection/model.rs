@@ -7,6 +7,7 @@ use crate::{
     optics::{
         Frame, Terms,
         albedo::{LobeAlbedo, NamedCurve},
+        interior::Interior,
         lobes::Lobes,
         sharp::Sharps,
     },
@@ -56,6 +57,12 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// surface, for models that are [declared](Declaration::sharp) to have any. Only light with extent is seen in them.
     fn sharp(&self, _v: Vec3, _frame: &Frame) -> Sharps {
         Sharps::new()
+    }
+
+    /// The inside of a solid body, for models of such: the light that enters follows the object's own mesh, which must be
+    /// closed, and is the transmitted term. [`response`](Self::response) is then that of the outer boundary alone.
+    fn interior(&self) -> Option<Interior> {
+        None
     }
 
     /// The response to uniform light of 1 lx, for models that declare [`Ambient::Formula`](super::Ambient::Formula); not called for others.

@@ -10,6 +10,7 @@ use crate::{
     optics::{
         Frame, TermSelection, Terms,
         albedo::{self, AlbedoCurve, LobeAlbedo},
+        interior::Interior,
         lobes::Lobes,
         radiometry::Arriving,
         sharp::Sharps,
@@ -27,6 +28,10 @@ pub trait Surface: Send + Sync {
     /// See [`ReflectionModel::sharp`].
     fn sharp(&self, _v: Vec3, _frame: &Frame) -> Sharps {
         Sharps::new()
+    }
+    /// See [`ReflectionModel::interior`].
+    fn interior(&self) -> Option<Interior> {
+        None
     }
     /// The response to uniform light of 1 lx, from a formula or the albedo.
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
@@ -113,6 +118,7 @@ impl<M: ReflectionModel> Surface for M {
         |this| this => ReflectionModel:
         fn response(l: Vec3, v: Vec3, frame: &Frame) -> Terms;
         fn sharp(v: Vec3, frame: &Frame) -> Sharps;
+        fn interior() -> Option<Interior>;
         fn lobe() -> Option<LobeAlbedo>;
         fn curves() -> Vec<Vec4>;
         fn lobes() -> Lobes;
@@ -158,6 +164,7 @@ impl<M: ReflectionModel> Surface for Instance<M> {
         |this| &this.model => ReflectionModel:
         fn response(l: Vec3, v: Vec3, frame: &Frame) -> Terms;
         fn sharp(v: Vec3, frame: &Frame) -> Sharps;
+        fn interior() -> Option<Interior>;
         fn lobe() -> Option<LobeAlbedo>;
         fn curves() -> Vec<Vec4>;
         fn lobes() -> Lobes;

@@ -23,7 +23,8 @@ use crate::{
     parameters,
 };
 
-const SMOOTH: Parameter = Parameter { kind: Parameter::number("", 0.0..=1.0, 0.0).kind, ..ROUGHNESS }
+/// A roughness that may be 0.
+pub(super) const SMOOTH: Parameter = Parameter { kind: Parameter::number("", 0.0..=1.0, 0.0).kind, ..ROUGHNESS }
     .help("From 0, clear glass, to 1, fully frosted, in perceptually even steps. The width of the distribution of microfacet slopes is its square, α = r². Below 0.032 the pane is smooth: it shows what is behind it sharply, and no highlight of lights without extent.");
 
 /// The cosine at which light that meets several facets is reflected and transmitted: the mean over evenly arriving light,
