@@ -56,11 +56,13 @@ pub struct Solid<'a> {
 }
 
 impl Solid<'_> {
-    fn to_room(&self, p: Vec3) -> Vec3 {
+    /// A point of the mesh in the room.
+    fn room(&self, p: Vec3) -> Vec3 {
         self.rotation * (self.size * p) + self.position
     }
 
-    fn to_mesh(&self, p: Vec3) -> Vec3 {
+    /// A point of the room in the mesh.
+    fn local(&self, p: Vec3) -> Vec3 {
         self.rotation.transpose() * (p - self.position) / self.size
     }
 
@@ -163,7 +165,10 @@ pub fn follow(
     let eta = interior.eta();
     let Some((direction, share)) = entry.inwards(eta) else { return Vec3::ZERO };
     let mut part = Vec3::splat(share);
-    let mut ray = solid.ray(entry.position, direction);
+    let mut ray = Ray {
+        origin: solid.local(entry.position),
+        direction: (solid.rotation.transpose() * direction).normalize_or_zero(),
+    };
     for _ in 0..ORDERS {
         let Some(hit) = solid.hierarchy.nearest(&ray, -BEHIND..f32::MAX, Sides::Inside) else { break };
         part *= interior.left(solid.size * hit.distance);
@@ -171,7 +176,7 @@ pub fn follow(
         let origin = solid.hierarchy.point(hit.triangle, hit.weights);
         if let Some(out) = boundary.out {
             let through = part * (1.0 - boundary.reflectance);
-            leave(solid.to_room(origin), solid.rotation * out, through);
+            leave(solid.room(origin), solid.rotation * out, through);
         }
         part *= boundary.reflectance;
         if part.max_element() < LEAST {
@@ -203,10 +208,10 @@ mod tests {
     /// Where a ray from outside meets a solid.
     fn meet(solid: &Solid, origin: Vec3, direction: Vec3) -> Option<Entry> {
         let turned = solid.rotation.transpose() * direction;
-        let ray = Ray { origin: solid.to_mesh(origin), direction: turned };
+        let ray = Ray { origin: solid.local(origin), direction: turned };
         let hit = solid.hierarchy.nearest(&ray, 0.0..f32::MAX, Sides::Both).filter(|hit| !hit.leaves)?;
         let [normal, face_normal] = solid.normals(&hit).map(|n| solid.rotation * n);
-        let position = solid.to_room(solid.hierarchy.point(hit.triangle, hit.weights));
+        let position = solid.room(solid.hierarchy.point(hit.triangle, hit.weights));
         Some(Entry { position, view: -direction, normal, face_normal })
     }
 

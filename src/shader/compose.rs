@@ -39,6 +39,10 @@ pub const LIGHTS: Source = wgsl!("lights.wgsl");
 pub const SAMPLING: Source = wgsl!("sampling.wgsl");
 /// The part of the light loop for light with extent.
 pub const EXTENDED: Source = wgsl!("extended.wgsl");
+/// Where a ray meets a mesh.
+pub const HIERARCHY: Source = wgsl!("hierarchy.wgsl");
+/// The way of light within a solid, after [`HIERARCHY`].
+pub const INSIDE: Source = wgsl!("inside.wgsl");
 /// The light loop.
 pub const LOOP: Source = wgsl!("loop.wgsl");
 /// The inputs and outputs of a shading model.

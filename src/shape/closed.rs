@@ -4,8 +4,8 @@
 //! repeated vertices of files do no harm. A solid's edges each lie between as many triangles that run along them one way
 //! as the other: two, or more where parts of the surface touch. Along every line the way goes out as often as in, and never
 //! in twice: parts face outwards, lie beside each other, or bound a cavity within another part. That is tested along
-//! [some lines](LINES) alone, one of them through each of the first parts: a surface that passes through itself is
-//! found unless it does so in about a hundredth of the picture, or less deep than a [thousandth](SHALLOW) of the size.
+//! some lines alone, one of them through each of the first parts: a surface that passes through itself is found unless it
+//! does so in less than about a hundredth of the picture, or less deep than a thousandth of the size.
 
 use std::collections::HashMap;
 
@@ -291,7 +291,7 @@ fn parts(mesh: &PolygonMesh, triangles: &[[u32; 3]], edges: &[Edge]) -> Vec<Part
     parts
 }
 
-/// Checks that parts enclose a volume, and that a part that is alone faces outwards.
+/// Checks that each part encloses a volume, and that not all face inwards.
 fn outward(parts: &[Part]) -> Result<(), NotSolid> {
     let flat = parts.iter().filter(|part| part.is_flat()).count();
     if flat > 0 {
@@ -409,7 +409,7 @@ mod tests {
     fn every_built_in_shape_but_the_teapot_is_a_solid() {
         for shape in Registry::builtin().shapes().iter().filter(|shape| shape.declaration.id != "teapot") {
             let id = shape.declaration.id;
-            for case in meshes::cases(shape).filter(|case| case.mesh.polygons.len() < 10_000) {
+            for case in meshes::cases(shape).filter(|case| case.mesh.polygons.len() < 5000) {
                 let solid = of(&case.mesh);
                 let handles = usize::from(["torus", "mesh"].contains(&id));
                 let expected =
@@ -426,10 +426,10 @@ mod tests {
 
     #[test]
     fn superellipsoids_are_solids_whatever_their_exponents() {
-        let exponents = [0.1, 0.15, 0.2, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0];
+        let exponents = [0.1, 0.2, 0.5, 1.0, 2.0, 3.0];
         for vertical_exponent in exponents {
             for horizontal_exponent in exponents {
-                for n in [2, 5, 24] {
+                for n in [2, 5, 16] {
                     let shape = Superellipsoid { vertical_exponent, horizontal_exponent };
                     let solid = of(&shape.mesh(n));
                     assert!(solid.as_ref().is_ok_and(|s| s.handles == 0), "{shape:?} {n}: {solid:?}");

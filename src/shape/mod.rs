@@ -8,9 +8,9 @@ use bevy::{ecs::component::Component, reflect::Reflectable};
 
 use crate::{declared::take_each, parameter::ParameterSet};
 
+pub mod closed;
 mod entry;
 mod fields;
-pub mod closed;
 pub mod hierarchy;
 pub mod mesh;
 pub mod mesh_file;
