@@ -14,7 +14,6 @@ pub fn chi_squared(
 ) -> (f64, f64) {
     const ROWS: usize = 32;
     const COLUMNS: usize = 64;
-    const FINE: usize = 12;
     let count = 1 << 17;
     let mut found = vec![0.0f64; ROWS * COLUMNS];
     // Plain random numbers, since a sequence is too evenly distributed for the test.
@@ -28,17 +27,27 @@ pub fn chi_squared(
     }
     let (mut sum, mut boxes, mut rest) = (0.0, 0.0, [0.0; 2]);
     for (i, found) in found.iter().enumerate() {
-        let mut mean = 0.0;
-        for j in 0..FINE * FINE {
-            let at =
-                |k: usize, n: usize, whole: usize| (k as f64 + (n as f64 + 0.5) / FINE as f64) / whole as f64;
-            let z = 2.0 * at(i / COLUMNS, j / FINE, ROWS) - 1.0;
-            let phi = 2.0 * PI * at(i % COLUMNS, j % FINE, COLUMNS);
-            let sine = (1.0 - z * z).sqrt();
-            mean += f64::from(pdf(Vec3::new((sine * phi.cos()) as f32, (sine * phi.sin()) as f32, z as f32)));
-        }
+        // The mean and the largest density of a box, from `fine` times `fine` points.
+        let density = |fine: usize| {
+            let (mut sum, mut most) = (0.0, 0.0f64);
+            for j in 0..fine * fine {
+                let at = |k: usize, n: usize, whole: usize| {
+                    (k as f64 + (n as f64 + 0.5) / fine as f64) / whole as f64
+                };
+                let z = 2.0 * at(i / COLUMNS, j / fine, ROWS) - 1.0;
+                let phi = 2.0 * PI * at(i % COLUMNS, j % fine, COLUMNS);
+                let sine = (1.0 - z * z).sqrt();
+                let l = Vec3::new((sine * phi.cos()) as f32, (sine * phi.sin()) as f32, z as f32);
+                let pdf = f64::from(pdf(l));
+                (sum, most) = (sum + pdf, most.max(pdf));
+            }
+            (sum / (fine * fine) as f64, most)
+        };
+        let (coarse, most) = density(12);
+        // Where it is steep, from more.
+        let mean = if most > 3.0 * coarse { density(48).0 } else { coarse };
         let solid_angle = 4.0 * PI / (ROWS * COLUMNS) as f64;
-        let expected = mean / (FINE * FINE) as f64 * solid_angle * f64::from(count);
+        let expected = mean * solid_angle * f64::from(count);
         // Boxes with few samples are merged.
         if expected < 20.0 {
             rest[0] += found;

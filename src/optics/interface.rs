@@ -304,7 +304,7 @@ mod tests {
 
     /// `∫ f dω` over the sphere by the midpoint rule.
     fn integral(f: impl Fn(Vec3) -> f32) -> f64 {
-        let (rows, columns) = (160, 160);
+        let (rows, columns) = (400, 128);
         let mut sum = 0.0;
         for i in 0..rows {
             let (sin, cos) = (PI * (f64::from(i) + 0.5) / f64::from(rows)).sin_cos();
@@ -358,7 +358,7 @@ mod tests {
                 compared += usize::from(large > 1e-3 && l.z * v.z < 0.0);
             }
         }
-        assert!(compared > 1000, "{compared} pairs through the surface");
+        assert!(compared > 500, "{compared} pairs through the surface");
     }
 
     #[test]

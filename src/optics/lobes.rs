@@ -110,7 +110,9 @@ impl Lobe {
         let width = |alpha: f32| if alpha >= NARROWEST { alpha.min(1.0) } else { NARROWEST };
         match self {
             Self::Cosine | Self::CosineBelow => self,
-            Self::GgxBelow { alpha, eta } => Self::GgxBelow { alpha: width(alpha), eta: eta.clamp(0.1, 10.0) },
+            Self::GgxBelow { alpha, eta } => {
+                Self::GgxBelow { alpha: width(alpha), eta: eta.clamp(0.1, 10.0) }
+            }
             Self::Ggx { alpha_x, alpha_y } => Self::Ggx { alpha_x: width(alpha_x), alpha_y: width(alpha_y) },
             Self::Power { exponent } => {
                 Self::Power { exponent: if exponent >= 0.0 { exponent.min(STEEPEST) } else { 0.0 } }
@@ -324,7 +326,11 @@ fn above(v: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::{geometry::direction, sequence::Sequence};
+    use crate::optics::{
+        chi_squared::{chi_squared, passes},
+        geometry::direction,
+        sequence::Sequence,
+    };
 
     fn all() -> [Lobes; 13] {
         [
@@ -346,66 +352,14 @@ mod tests {
 
     const VIEWS: [(f64, f64); 4] = [(0.0, 0.0), (40.0, 70.0), (75.0, 200.0), (89.0, 10.0)];
 
-    /// The chi-squared statistic of samples against a density, over boxes of equal solid angle, and the
-    /// number of boxes that count. The density of a box is the mean over interior points.
-    fn chi_squared(sample: impl Fn(Vec2) -> Vec3, pdf: impl Fn(Vec3) -> f32) -> (f64, f64) {
-        const ROWS: usize = 32;
-        const COLUMNS: usize = 64;
-        const FINE: usize = 12;
-        let count = 1 << 17;
-        let mut found = vec![0.0f64; ROWS * COLUMNS];
-        for i in 0..count {
-            // Plain random numbers, since a sequence is too evenly distributed for the test.
-            let random = |k: u32| (crate::optics::sequence::hash(2 * i + k) >> 8) as f32 / (1 << 24) as f32;
-            let l = sample(Vec2::new(random(0), random(1)));
-            let row = ((0.5 + 0.5 * l.z) * ROWS as f32).clamp(0.0, ROWS as f32 - 1.0) as usize;
-            let turn = (l.y.atan2(l.x) / (2.0 * PI)).rem_euclid(1.0);
-            let column = ((turn * COLUMNS as f32) as usize).min(COLUMNS - 1);
-            found[row * COLUMNS + column] += 1.0;
-        }
-        let (mut sum, mut boxes, mut rest) = (0.0, 0.0, [0.0; 2]);
-        for (i, found) in found.iter().enumerate() {
-            let mut mean = 0.0;
-            for j in 0..FINE * FINE {
-                let at = |k: usize, n: usize, whole: usize| {
-                    (k as f64 + (n as f64 + 0.5) / FINE as f64) / whole as f64
-                };
-                let z = 2.0 * at(i / COLUMNS, j / FINE, ROWS) - 1.0;
-                let phi = 2.0 * std::f64::consts::PI * at(i % COLUMNS, j % FINE, COLUMNS);
-                let sine = (1.0 - z * z).sqrt();
-                let l = Vec3::new((sine * phi.cos()) as f32, (sine * phi.sin()) as f32, z as f32);
-                mean += f64::from(pdf(l));
-            }
-            let solid_angle = 4.0 * std::f64::consts::PI / (ROWS * COLUMNS) as f64;
-            let expected = mean / (FINE * FINE) as f64 * solid_angle * f64::from(count);
-            // Boxes with few samples are merged.
-            if expected < 20.0 {
-                rest[0] += found;
-                rest[1] += expected;
-            } else {
-                sum += (found - expected).powi(2) / expected;
-                boxes += 1.0;
-            }
-        }
-        if rest[1] > 20.0 {
-            sum += (rest[0] - rest[1]).powi(2) / rest[1];
-            boxes += 1.0;
-        }
-        (sum, boxes)
-    }
-
-    /// True if chi-squared is as expected by chance, or slightly higher, for narrow lobes whose boxes are not
-    /// captured by the mean over points.
-    fn passes((sum, boxes): (f64, f64)) -> bool {
-        sum < boxes + 6.0 * (2.0 * boxes).sqrt() + 10.0
-    }
-
     #[test]
     fn samples_of_all_lobes_have_their_density() {
         for (i, lobes) in all().into_iter().enumerate() {
             for (theta, phi) in VIEWS {
                 let v = direction(theta, phi);
-                let found = chi_squared(|u| lobes.sample(u, v), |l| lobes.pdf(l, v));
+                let sample =
+                    |random: &mut dyn FnMut() -> f32| Some(lobes.sample(Vec2::new(random(), random()), v));
+                let found = chi_squared(sample, |l| lobes.pdf(l, v));
                 assert!(passes(found), "{i} from {theta}°: {found:?}");
                 // Wrong twins: half the width, another share, a missing cosine.
                 let wrong = match lobes.0[0].0 {
@@ -421,7 +375,7 @@ mod tests {
                         Lobes::new(&[(Lobe::GgxBelow { alpha: 0.8 * alpha, eta }, 1.0)])
                     }
                 };
-                let found = chi_squared(|u| lobes.sample(u, v), |l| wrong.pdf(l, v));
+                let found = chi_squared(sample, |l| wrong.pdf(l, v));
                 assert!(!passes(found), "wrong twin of {i} from {theta}°: {found:?}");
             }
         }

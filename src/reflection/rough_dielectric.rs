@@ -54,7 +54,7 @@ parameters! {
     /// is (narrower than the reflected one), and how both share the light.
     ///
     /// **Laws**: all hold; reciprocity between the two sides in the form that radiance has there, f_t(l, v)/n_v² symmetric.
-    /// Light that facets reflect or refract into each other is lost: up to a third at α = 1.
+    /// Light that facets reflect or refract into each other is lost: at 60°, 1 % of it for α = 0.1 and a third for α = 1.
     pub struct RoughDielectric {
         /// `n`.
         refractive_index: number = REFRACTIVE_INDEX,

@@ -22,8 +22,8 @@ use crate::{
         Source,
         compose::{
             ALBEDO, CHANNELS, Composed, Composer, DISPLAY, EVALUATE, EXTENDED, HIERARCHY, INSIDE, LIGHT_ALONE,
-            LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources, THROUGH, WRAPPER,
-            parameter_struct,
+            LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources, THROUGH, TRANSMISSION,
+            WRAPPER, parameter_struct,
         },
     },
     shading::{self, ShadingEntry},
@@ -81,6 +81,9 @@ fn push_model(c: &mut Composer, model: &ModelEntry, more: &str) {
     }
     if !model.curves().is_empty() {
         c.push("(curves)", &named_curves(model));
+    }
+    if model.declaration.transmits {
+        TRANSMISSION.iter().for_each(|s| c.source(s));
     }
     if model.declaration.sharp {
         c.push("(sharp directions)", &part("sharp", &[]));
@@ -384,6 +387,7 @@ pub fn files(
 ) -> Vec<File> {
     let known = OPTICS
         .iter()
+        .chain(TRANSMISSION)
         .chain([&ALBEDO, &PANORAMA])
         .map(|s| (Part::Vocabulary, s))
         .chain(lights.iter().map(|l| (Part::LightType, &l.declaration.wgsl)))

@@ -23,6 +23,9 @@ pub const OPTICS: &[Source] = &[
     wgsl!("optics/diffuse.wgsl"),
     wgsl!("optics/lobe.wgsl"),
     wgsl!("optics/film.wgsl"),
+];
+/// More of it, for models that light passes through: other models may use these names for their own functions.
+pub const TRANSMISSION: &[Source] = &[
     wgsl!("optics/refraction.wgsl"),
     wgsl!("optics/interface.wgsl"),
     wgsl!("optics/slab.wgsl"),

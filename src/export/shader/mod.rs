@@ -28,7 +28,8 @@ use crate::{
         Source,
         check::reason,
         compose::{
-            ALBEDO, Composer, EXTENDED, LIGHTS, LOOP, OPTICS, SAMPLING, SHADING, Sources, parameter_struct,
+            ALBEDO, Composer, EXTENDED, LIGHTS, LOOP, OPTICS, SAMPLING, SHADING, Sources, TRANSMISSION,
+            parameter_struct,
         },
     },
     shading::{self, ShadingEntry, Stage},
@@ -148,7 +149,8 @@ pub fn compose(
     }
     sections.push(Section { heading, items: items(&response) });
     let mut vocabulary = Vec::new();
-    for source in OPTICS.iter().chain([&SHADING, &LIGHTS, &ALBEDO]) {
+    let transmission = if own.transmits { TRANSMISSION } else { &[] };
+    for source in OPTICS.iter().chain(transmission).chain([&SHADING, &LIGHTS, &ALBEDO]) {
         // The record of a light is generated for the scene.
         let all = items(&text(sources, source)?);
         vocabulary.extend(all.into_iter().filter(|item| !MADE.contains(&item.name.as_str())));
