@@ -9,7 +9,7 @@ use glam::Vec3;
 
 use super::{Channel, Kind, angles::GRAZING, draw::Axis, sheet::span};
 use crate::{
-    optics::{Frame, TermSelection, Terms, geometry::direction},
+    optics::{Frame, TermSelection, geometry::direction},
     progress::{Cancelled, Progress},
     reflection::{Surface, brdf_of},
 };
@@ -43,15 +43,7 @@ pub struct Lobe {
 /// The BRDF of the displayed terms, in sr⁻¹. The ambient term has none.
 #[must_use]
 pub fn value(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
-    let all = surface.response(l, v, frame);
-    let none = Vec3::ZERO;
-    let shown = match terms {
-        TermSelection::All => all,
-        TermSelection::Ambient => Terms { diffuse: none, specular: none, ..all },
-        TermSelection::Diffuse => Terms { specular: none, ..all },
-        TermSelection::Specular => Terms { diffuse: none, ..all },
-    };
-    brdf_of(shown, l, v, frame)
+    brdf_of(surface.response(l, v, frame).only(terms), l, v, frame)
 }
 
 impl Lobe {

@@ -11,7 +11,7 @@ use crate::{
     parameter::{Parameter, Value, Values},
     reference::{
         Shot,
-        probe::{LitBy, Loop, Point, Probe, light_loop},
+        probe::{Body, LitBy, Loop, Point, Probe, light_loop},
         visible::Shown,
     },
     reflection::{ModelEntry, Surface},
@@ -27,7 +27,7 @@ impl Shot<'_> {
         let shading = self.registry.shading_model(self.scene.shading_model_of(object))?;
         let type_name = self.registry.shape(&object.object_type).map(|entry| entry.declaration.name);
         let corners = found.corners;
-        let spot = |place: Place, point: &Point| self.spot(place, point, &*found.surface);
+        let spot = |place: Place, point: &Point| self.spot(place, point, (&*found.surface, found.body.as_ref()));
         let of_corner = |corner: usize| match found.stage {
             Stage::Polygon => Place::Polygon,
             _ => Place::Vertex { vertex: corners[corner].vertex, weight: corners[corner].weight },
@@ -62,8 +62,8 @@ impl Shot<'_> {
         Lamp { lights: lights.collect(), radiance: shown.radiance }
     }
 
-    fn spot(&self, place: Place, point: &Point, surface: &dyn Surface) -> Spot {
-        let run = light_loop(*self, surface, point);
+    fn spot(&self, place: Place, point: &Point, of: (&dyn Surface, Option<&Body>)) -> Spot {
+        let run = light_loop(*self, of, point);
         let lit = |by: &LitBy| Some(self.lit(self.scene.lights.get(by.index)?, by, point, &run));
         Spot {
             place,

@@ -167,8 +167,14 @@ fn cosines(geometry: &Geometry, of: impl Fn(f32) -> f32) -> Json {
     geometry.cosines.into_iter().map(|(name, c)| (name.to_owned(), number(of(c)))).collect()
 }
 
-fn terms(Terms { ambient, diffuse, specular }: &Terms) -> Json {
-    json!({ "ambient": triple(*ambient), "diffuse": triple(*diffuse), "specular": triple(*specular) })
+/// The terms; the transmitted one of models that light passes through alone.
+fn terms(Terms { ambient, diffuse, specular, transmitted }: &Terms, model: &Model) -> Json {
+    let mut all =
+        json!({ "ambient": triple(*ambient), "diffuse": triple(*diffuse), "specular": triple(*specular) });
+    if model.declaration.transmits {
+        all["transmitted"] = triple(*transmitted);
+    }
+    all
 }
 
 fn lines(lines: &[Line]) -> Json {
@@ -199,14 +205,14 @@ impl Integral {
                 "cosines": cosines(geometry, |c| c),
                 "angles": cosines(geometry, angle),
                 "luminance": triple(brightest.luminance),
-                "response": terms(&brightest.response),
+                "response": terms(&brightest.response, model),
                 "lines": lines(&brightest.lines(model, FULL)),
             })
         };
         let [solid_angle, solid_angle_error] = self.solid_angle.map(number);
         json!({
             "samples": { "light": self.samples, "lobes": self.samples },
-            "errors": terms(&self.errors),
+            "errors": terms(&self.errors, model),
             "error": triple(self.error),
             "solid_angle": solid_angle,
             "solid_angle_error": solid_angle_error,
@@ -244,7 +250,7 @@ impl Lit {
             "intensity": one.then(|| triple(self.intensity)),
             "colour": triple(self.colour),
             "arriving": one.then(|| triple(self.arriving)),
-            "response": terms(&self.response),
+            "response": terms(&self.response, model),
             "integral": self.integral.map(|integral| integral.json(model)),
             "lines": lines(&self.rounded_lines(model, FULL)),
             "contribution": triple(self.contribution),

@@ -18,7 +18,8 @@ pub fn of(model: &ModelEntry, shading: &ShadingEntry, lights: &[LightEntry]) -> 
         Twin::all(light.declaration.extent).iter().map(function).collect()
     };
     let lights = lights.iter().map(|light| (light.declaration.wgsl.path, dark(light)));
-    let model = (model.declaration.wgsl.path, custom::stand_in(model.declaration.ambient).to_owned());
+    let own = model.declaration;
+    let model = (own.wgsl.path, custom::stand_in(own.ambient, own.sharp));
     let shading = (shading.declaration.wgsl.path, crate::shading::STAND_IN.text.to_owned());
     lights.chain([model, shading]).collect()
 }

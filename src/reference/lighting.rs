@@ -1,16 +1,20 @@
 //! The light loop: the sum over all lights, common to all models.
 
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::{
+    f32::consts::PI,
+    sync::atomic::{AtomicBool, AtomicU32, Ordering},
+};
 
 use glam::Vec3;
 
 use super::{
     Shot,
     extended::{Extended, Integral, LightSamples},
+    through::{Body, From, Through},
 };
 use crate::{
     light::{AT_ONCE, Emitters, Factor, Incident, LightRecord},
-    optics::{Frame, TermSelection, Terms, lobes::Lobes, radiometry::Arriving, sequence::pixel_seed},
+    optics::{Frame, TermSelection, Terms, lobes::Lobes, radiometry::Arriving, sampling::power_heuristic, sequence::pixel_seed},
     reflection::Surface,
     registry::Registry,
     scene::{Light, Scene, emitter, record},
@@ -79,9 +83,58 @@ impl Lights {
         self.odd.load(Ordering::Relaxed)
     }
 
-    /// The lights shining on one surface.
-    pub(super) fn on<'a>(&'a self, surface: &'a dyn Surface, lobes: Lobes) -> LightsOn<'a> {
-        LightsOn { lights: self, surface, lobes, seed: AtomicU32::new(0) }
+    /// The lights shining on one surface, which may be that of a solid body.
+    pub(super) fn on<'a>(
+        &'a self,
+        surface: &'a dyn Surface,
+        lobes: Lobes,
+        body: Option<&'a Body>,
+    ) -> LightsOn<'a> {
+        LightsOn { lights: self, surface, lobes, body, seed: AtomicU32::new(0) }
+    }
+
+    /// The response to uniform light at a point.
+    fn uniform(&self, p: Vec3) -> Vec3 {
+        let mut arriving = [Arriving::default(); AT_ONCE];
+        let firsts = |group: &dyn Emitters| (0..group.count()).step_by(AT_ONCE);
+        let all = self.groups.iter().flat_map(|group| firsts(&**group).map(move |first| (group, first)));
+        all.map(|(group, first)| group.arrive(first, p, &mut arriving).1).sum()
+    }
+
+    /// The light of a ray that leaves a body without spreading.
+    pub(super) fn from_direction(&self, p: Vec3, l: Vec3) -> Vec3 {
+        PI * self.extended.seen(p, l) + self.uniform(p)
+    }
+
+    /// The light of a ray that leaves a body in a direction chosen with this density.
+    pub(super) fn from_lobe(&self, p: Vec3, l: Vec3, pdf: f32) -> Vec3 {
+        PI * self.extended.weighted(p, l, pdf) + self.uniform(p)
+    }
+
+    /// The light that a rough boundary with this response and density lets through, by lights without extent and by a
+    /// sample of each with extent.
+    pub(super) fn sampled_at(
+        &self,
+        p: Vec3,
+        at: (u32, u32),
+        response: &impl Fn(Vec3) -> f32,
+        pdf: &impl Fn(Vec3) -> f32,
+    ) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        let mut arriving = [Arriving::default(); AT_ONCE];
+        for group in &self.groups {
+            for first in (0..group.count()).step_by(AT_ONCE) {
+                let (count, _) = group.arrive(first, p, &mut arriving);
+                sum += arriving[..count].iter().map(|at| response(at.l) * at.light).sum::<Vec3>();
+            }
+        }
+        self.extended.towards(p, at, |l, light, density| {
+            let response = response(l);
+            if response > 0.0 {
+                sum += response * power_heuristic(density, pdf(l)) * light;
+            }
+        });
+        sum
     }
 }
 
@@ -90,6 +143,8 @@ pub(super) struct LightsOn<'a> {
     lights: &'a Lights,
     surface: &'a dyn Surface,
     lobes: Lobes,
+    /// The body behind the surface, if it is solid.
+    body: Option<&'a Body>,
     /// The seed of the pixel, or that of all vertices and polygons: with one seed neighbours get the same points, so that what
     /// is interpolated between them is smooth, and every corner of a polygon the same colour.
     seed: AtomicU32,
@@ -136,7 +191,18 @@ impl LightsOn<'_> {
             let seed = self.seed.load(Ordering::Relaxed);
             sum += self.lights.extended.sum((self.surface, self.lobes), position, v, frame, terms, seed);
         }
+        if matches!(terms, TermSelection::All | TermSelection::Transmitted) {
+            sum += self.through(position, v, frame).light;
+        }
         sum
+    }
+
+    /// What comes through the body.
+    pub(super) fn through(&self, position: Vec3, view: Vec3, frame: &Frame) -> Through {
+        self.body.map_or_else(Through::default, |body| {
+            let from = From { position, view, frame, seed: self.seed.load(Ordering::Relaxed) };
+            body.through(self.lights, self.lights.extended.samples, &from)
+        })
     }
 }
 
@@ -202,13 +268,13 @@ pub(crate) struct LitBy {
 /// alone, up to rounding.
 pub(crate) fn light_by_light(
     Shot { scene, registry, settings }: Shot,
-    surface: &dyn Surface,
+    (surface, body): (&dyn Surface, Option<&Body>),
     point: &Point,
 ) -> Loop {
     let terms = settings.terms;
     let all = Lights::new(scene, registry, terms);
     let lobes = surface.lobes();
-    let lights = all.on(surface, lobes).seeded(point.seed);
+    let lights = all.on(surface, lobes, body).seeded(point.seed);
     let [eye, v] = lights.view(point.position, point.normal);
     let frame = Frame::new(point.normal, point.tangent);
     let encoding = scene.display.encoding;
@@ -220,10 +286,13 @@ pub(crate) fn light_by_light(
         let incident = emitter.incident(&record, point.position);
         let group = (entry.group)(&[(&light.parameters, record)], encoding);
         let (response, contribution, integral) = if entry.declaration.extent {
-            let mut alone = Extended::default();
-            alone.add(group, number as u32);
-            let integral =
-                alone.integral((&*emitter, &record), surface, point.position, v, &frame, point.seed);
+            let mut extended = Extended::default();
+            extended.add(group, number as u32);
+            let mut integral =
+                extended.integral((&*emitter, &record), surface, point.position, v, &frame, point.seed);
+            let alone = Lights { extended, observer: all.observer, terms, ..Lights::default() };
+            let on = alone.on(surface, lobes, body).seeded(point.seed);
+            integral.terms.transmitted += on.through(point.position, v, &frame).light;
             (integral.terms, integral.terms.select(terms), Some(integral))
         } else {
             let alone = Lights { groups: vec![group], observer: all.observer, terms, ..Lights::default() };
@@ -233,7 +302,8 @@ pub(crate) fn light_by_light(
                     Terms { ambient: surface.ambient_response(v, &frame), ..Terms::default() }
                 }
             };
-            (response, alone.on(surface, lobes).sum(point.position, v, &frame), None)
+            let on = alone.on(surface, lobes, body).seeded(point.seed);
+            (response, on.sum(point.position, v, &frame), None)
         };
         let factors = emitter.factors(&record, point.position);
         Some(LitBy { index, record, incident, factors, response, contribution, integral })

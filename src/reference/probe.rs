@@ -23,6 +23,7 @@ use crate::{
     shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
 };
 
+pub(crate) use super::through::Body;
 pub(crate) use super::lighting::{LitBy, Loop, Point, light_by_light as light_loop};
 
 /// The object at a pixel, and the calculation of the pixel's light.
@@ -30,6 +31,8 @@ pub(crate) struct Probe {
     /// Index among the objects of the scene.
     pub(crate) object: usize,
     pub(crate) surface: Arc<dyn Surface>,
+    /// The body behind the surface, if it is solid.
+    pub(crate) body: Option<Body>,
     pub(crate) stage: Stage,
     /// Index of the polygon in the mesh.
     pub(crate) polygon: usize,
@@ -233,6 +236,7 @@ fn shaded(found: &Found, Shot { scene, registry, settings }: Shot, at: &At) -> P
             shading: Box::new(PhongShading::default()),
             surface: draw.surface.clone(),
             lobes: draw.lobes,
+            body: draw.body.clone(),
             anisotropic: draw.anisotropic,
         };
         let varyings =
@@ -262,6 +266,7 @@ fn shaded(found: &Found, Shot { scene, registry, settings }: Shot, at: &At) -> P
         phong: phong.flatten(),
         light,
         surface: draw.surface.clone(),
+        body: draw.body.clone(),
     }
 }
 

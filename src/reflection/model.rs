@@ -7,7 +7,9 @@ use crate::{
     optics::{
         Frame, Terms,
         albedo::{LobeAlbedo, NamedCurve},
+        interior::Interior,
         lobes::Lobes,
+        sharp::Sharps,
     },
     parameter::{ParameterSet, Value},
 };
@@ -46,8 +48,22 @@ pub trait ReflectionModel: ParameterSet + Copy {
     const ON_PAGES: Option<OnPages> = None;
 
     /// The response `π f_r(l, v) cos θ_i` to a light of unit intensity, by term; for the models of the CA, their
-    /// formula as published. Finite for all unit vectors and legal parameters.
+    /// formula as published. Finite for all unit vectors and legal parameters. Of a model that is
+    /// [declared](Declaration::transmits) to transmit, also for light on the other side of the surface than the viewer:
+    /// then `π f_t(l, v) |cos θ_i|` as [`Terms::through`]. Others give zero there.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
+
+    /// The directions from which light reaches the viewer without spreading, by reflection or transmission at a smooth
+    /// surface, for models that are [declared](Declaration::sharp) to have any. Only light with extent is seen in them.
+    fn sharp(&self, _v: Vec3, _frame: &Frame) -> Sharps {
+        Sharps::new()
+    }
+
+    /// The inside of a solid body, for models of such: the light that enters follows the object's own mesh, which must be
+    /// closed, and is the transmitted term. [`response`](Self::response) is then that of the outer boundary alone.
+    fn interior(&self) -> Option<Interior> {
+        None
+    }
 
     /// The response to uniform light of 1 lx, for models that declare [`Ambient::Formula`](super::Ambient::Formula); not called for others.
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
@@ -71,7 +87,11 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// The directions in which the model reflects most, for sampling light with extent. Any lobes give the
     /// same picture eventually, good ones sooner. A matte model has a cosine alone.
     fn lobes(&self) -> Lobes {
-        if Self::DECLARATION.matte { Lobes::cosine() } else { Lobes::default() }
+        match Self::DECLARATION {
+            Declaration { transmits: true, .. } => Lobes::of_both_sides(),
+            Declaration { matte: true, .. } => Lobes::cosine(),
+            _ => Lobes::default(),
+        }
     }
 
     /// Derived values that help interpret the parameters: the reflectance at normal incidence, the roughness

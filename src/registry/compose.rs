@@ -14,14 +14,16 @@ use crate::{
     optics::{
         albedo::{NODES, Spacing},
         lobes::MAX_LOBES,
+        sharp,
     },
     parameter::{Parameter, Values, lanes},
-    reflection::{Ambient, Family, ModelEntry},
+    reflection::{Ambient, Declaration, Family, ModelEntry},
     shader::{
         Source,
         compose::{
-            ALBEDO, CHANNELS, Composed, Composer, DISPLAY, EVALUATE, EXTENDED, LIGHT_ALONE, LIGHTS, LOOP,
-            OPTICS, PANORAMA, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources, WRAPPER, parameter_struct,
+            ALBEDO, CHANNELS, Composed, Composer, DISPLAY, EVALUATE, EXTENDED, HIERARCHY, INSIDE, LIGHT_ALONE,
+            LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources, THROUGH, TRANSMISSION,
+            WRAPPER, parameter_struct,
         },
     },
     shading::{self, ShadingEntry},
@@ -79,6 +81,12 @@ fn push_model(c: &mut Composer, model: &ModelEntry, more: &str) {
     }
     if !model.curves().is_empty() {
         c.push("(curves)", &named_curves(model));
+    }
+    if model.declaration.transmits {
+        TRANSMISSION.iter().for_each(|s| c.source(s));
+    }
+    if model.declaration.sharp {
+        c.push("(sharp directions)", &part("sharp", &[]));
     }
     c.source(&model.declaration.wgsl);
     if model.declaration.ambient == Ambient::Albedo {
@@ -182,8 +190,10 @@ pub fn light_dispatch(lights: &[LightEntry]) -> String {
 }
 
 /// The files that every source for drawing needs besides the vocabulary, and those for other uses.
-pub(crate) const SHARED: [Source; 12] =
-    [ALBEDO, PANORAMA, LIGHTS, SAMPLING, SHADING, LOOP, EXTENDED, CHANNELS, DISPLAY, WRAPPER, SEEN, EVALUATE];
+pub(crate) const SHARED: [Source; 15] = [
+    ALBEDO, PANORAMA, LIGHTS, SAMPLING, SHADING, HIERARCHY, INSIDE, THROUGH, LOOP, EXTENDED, CHANNELS, DISPLAY, WRAPPER,
+    SEEN, EVALUATE,
+];
 
 /// The table from which a single light type reads the numbers of its files: one row, see [`compose_light`].
 pub const FILE_TABLE: &str = "file_table";
@@ -231,6 +241,32 @@ pub fn compose_shading(sources: &Sources, shading: &ShadingEntry) -> Composed {
     c.composed
 }
 
+/// Adds the way of light through a solid body, or that there is none.
+fn push_body(c: &mut Composer, solid: bool, extent: bool) {
+    if !solid {
+        c.push("(no body)", &part("opaque", &[]));
+        return;
+    }
+    if !extent {
+        c.push("(no light with extent)", &part("no_extent", &[]));
+    }
+    c.push("(the body)", &part("solid", &[]));
+    [HIERARCHY, INSIDE, THROUGH].iter().for_each(|source| c.source(source));
+}
+
+/// The parts of the light loop that depend on whether light passes through a model's surface, and on whether it does so
+/// without spreading.
+#[must_use]
+pub(crate) fn sides(model: &Declaration, extent: bool) -> String {
+    let side = if model.transmits { "transmits" } else { "reflects" };
+    let names = match (extent || model.solid, model.sharp) {
+        (false, _) => side.to_owned(),
+        (true, false) => format!("{side} spread"),
+        (true, true) => format!("{side} unspread radiance"),
+    };
+    part(&names, &[("most", &sharp::MOST)])
+}
+
 /// The complete source for drawing with a model and a shading model under the given light types, those of the
 /// scene: an error in another type does not affect the picture.
 #[must_use]
@@ -243,19 +279,25 @@ pub fn compose(
     let mut c = Composer::new(sources);
     OPTICS.iter().chain([&LIGHTS, &SHADING]).for_each(|s| c.source(s));
     let extent = any_extent(lights);
-    if extent {
+    let solid = model.declaration.solid;
+    if extent || solid {
         c.source(&SAMPLING);
     }
-    let words = format!(
+    let mut words = format!(
         "    shading: array<vec4<u32>, {}>,\n    lobes: array<vec4<f32>, {MAX_LOBES}>,\n",
         shading::PARAMETER_WORDS / 4
     );
+    if solid {
+        words.push_str("    interior: array<vec4<f32>, 2>,\n");
+    }
     push_model(&mut c, model, &words);
-    if extent {
+    if extent || solid {
         c.push("(lobes)", &part("lobes", &[]));
     }
     lights.iter().for_each(|light| push_light(&mut c, light));
     c.push("(light types)", &light_dispatch(lights));
+    c.push("(sides of the surface)", &sides(model.declaration, extent));
+    push_body(&mut c, solid, extent);
     c.source(&LOOP);
     if extent {
         c.source(&EXTENDED);
@@ -345,6 +387,7 @@ pub fn files(
 ) -> Vec<File> {
     let known = OPTICS
         .iter()
+        .chain(TRANSMISSION)
         .chain([&ALBEDO, &PANORAMA])
         .map(|s| (Part::Vocabulary, s))
         .chain(lights.iter().map(|l| (Part::LightType, &l.declaration.wgsl)))
@@ -355,6 +398,9 @@ pub fn files(
             (Part::Vocabulary, &SAMPLING),
             (Part::Loop, &LOOP),
             (Part::Loop, &EXTENDED),
+            (Part::Loop, &HIERARCHY),
+            (Part::Loop, &INSIDE),
+            (Part::Loop, &THROUGH),
             (Part::ShadingModel, &shading.declaration.wgsl),
             (Part::Channels, &CHANNELS),
             (Part::Wrapper, &DISPLAY),

@@ -16,6 +16,7 @@ use super::{
     nearest,
     overrides::Overrides,
     shown::{Shown, ShownObject},
+    solids::Solids,
     stage::{Stage, ViewCopy, copies},
     tables::{ParameterTables, Row, row},
 };
@@ -300,7 +301,15 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         |stage| stage.illumination.clone(),
     );
     let gamma_naive = now.encoding == Encoding::Off;
-    let inputs = MaterialInputs { parameters, illumination, shader, faces, gamma_naive };
+    let solid = if model.declaration.solid {
+        world.resource_scope(|world, mut solids: Mut<Solids>| {
+            solids.get(shape, &shown, &mut world.resource_mut::<Assets<ShaderBuffer>>())
+        })
+    } else {
+        // Not read.
+        illumination.words.clone()
+    };
+    let inputs = MaterialInputs { parameters, solid, illumination, shader, faces, gamma_naive };
     let attachments = world.resource::<Attachments>();
     let old = world
         .get::<Drawn>(drawable)

@@ -15,15 +15,15 @@ use bevy::{
 };
 
 use crate::{
-    optics::{colour::Encoding, lobes::MAX_LOBES},
+    optics::{colour::Encoding, interior::Interior, lobes::MAX_LOBES},
     parameter::Values,
     reflection::ModelEntry,
     scene::MAX_OBJECTS,
-    shading::ShadingEntry,
+    shading::{ShadingEntry, Stage},
 };
 
 /// The parameters of an object as bytes of its row: those of its model, those of its shading model, and the
-/// lobes of its model, which are zero unless there is light with `extent`.
+/// lobes of its model, which are zero unless there is light with `extent`; of a solid body also its inside.
 pub(super) fn row(
     model: &ModelEntry,
     shading: &ShadingEntry,
@@ -40,6 +40,13 @@ pub(super) fn row(
         row.extend(model.instantiate(values, encoding).lobes().bytes());
     }
     row.resize(end, 0);
+    if model.declaration.solid {
+        let inside = model.instantiate(values, encoding).interior().unwrap_or(Interior::AIR);
+        let by_polygon = if shading.declaration.stage == Stage::Polygon { 1.0 } else { 0.0 };
+        let numbers = [inside.ior, inside.cauchy_b, inside.alpha, by_polygon].into_iter();
+        let numbers = numbers.chain(inside.absorption.extend(0.0).to_array());
+        row.extend(numbers.flat_map(f32::to_le_bytes));
+    }
     row
 }
 

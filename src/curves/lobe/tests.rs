@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
     curves::{Detail, Setup, Subject, curve},
-    optics::{colour::Encoding, geometry::mirror},
+    optics::{Terms, colour::Encoding, geometry::mirror},
     parameter::{Value, Values},
     registry::Registry,
 };

@@ -19,16 +19,17 @@ use super::{
 use crate::{
     light::Twin,
     optics::{colour::Encoding, lobes::MAX_LOBES, tone::ToneMapping},
-    reflection::{Ambient, ModelEntry},
+    reflection::{Ambient, Declaration, ModelEntry},
     registry::{
         Registry,
-        compose::{named_curves, part},
+        compose::{named_curves, part, sides},
     },
     shader::{
         Source,
         check::reason,
         compose::{
-            ALBEDO, Composer, EXTENDED, LIGHTS, LOOP, OPTICS, SAMPLING, SHADING, Sources, parameter_struct,
+            ALBEDO, Composer, EXTENDED, LIGHTS, LOOP, OPTICS, SAMPLING, SHADING, Sources, TRANSMISSION,
+            parameter_struct,
         },
     },
     shading::{self, ShadingEntry, Stage},
@@ -108,6 +109,13 @@ pub fn compose(
     let sources = registry.sources();
     let faces = shading.declaration.stage == Stage::Polygon;
     let (own, standing) = (model.declaration, shading.declaration);
+    if own.solid {
+        let why = format!(
+            "{} follows the mesh of the object, which exported shaders do not hold; choose thin_glass, or render the picture",
+            own.id
+        );
+        return Err(ExportError::refused(why));
+    }
     let mut sections = vec![
         Section { heading: String::new(), items: items(&wrapper::text(host, faces, lights.has_extent())) },
         Section { heading: String::new(), items: items(&inputs(lights, model, shading, host)) },
@@ -117,7 +125,7 @@ pub fn compose(
         },
         Section {
             heading: "The light that leaves a point: the sum over the lights.".to_owned(),
-            items: items(&(light_loop(sources, lights)? + &dispatch(lights))),
+            items: items(&(light_loop(sources, lights, own)? + &dispatch(lights))),
         },
     ];
     for entry in &lights.types {
@@ -134,13 +142,15 @@ pub fn compose(
     for part in own.equation {
         let _ = write!(heading, "\n    {}", part.text);
     }
-    let mut response = text(sources, &own.wgsl)?;
+    let mut response = if own.sharp { part("sharp", &[]) } else { String::new() };
+    response.push_str(&text(sources, &own.wgsl)?);
     if own.ambient == Ambient::Albedo {
         response.push_str(&part("ambient", &[]));
     }
     sections.push(Section { heading, items: items(&response) });
     let mut vocabulary = Vec::new();
-    for source in OPTICS.iter().chain([&SHADING, &LIGHTS, &ALBEDO]) {
+    let transmission = if own.transmits { TRANSMISSION } else { &[] };
+    for source in OPTICS.iter().chain(transmission).chain([&SHADING, &LIGHTS, &ALBEDO]) {
         // The record of a light is generated for the scene.
         let all = items(&text(sources, source)?);
         vocabulary.extend(all.into_iter().filter(|item| !MADE.contains(&item.name.as_str())));
@@ -209,7 +219,7 @@ fn text(sources: &Sources, source: &Source) -> Result<String, ExportError> {
 }
 
 /// The light loop, with a known number of lights and all terms. Of the built-in one, what the scene does not need goes.
-fn light_loop(sources: &Sources, lights: &Lights) -> Result<String, ExportError> {
+fn light_loop(sources: &Sources, lights: &Lights, model: &Declaration) -> Result<String, ExportError> {
     let extent = lights.has_extent();
     let (mut joined, mut simpler) = (String::new(), SIMPLER);
     for source in [LOOP, EXTENDED].iter().take(if extent { 2 } else { 1 }) {
@@ -221,12 +231,20 @@ fn light_loop(sources: &Sources, lights: &Lights) -> Result<String, ExportError>
     if !extent {
         joined = joined.replace(" + extended(position, v, frame)", "");
     }
+    joined = joined.replace(" + through(position, v, frame, selection)", "");
     for (general, special) in simpler.iter().chain(KNOWN) {
         joined = joined.replace(general, special);
     }
     if !lights.uniform {
         joined = joined.replace(EITHER, DIRECTED);
     }
+    if !model.transmits {
+        joined = joined.replace("counts(local.z)", "local.z > 0.0");
+    }
+    if !model.sharp {
+        joined = joined.replace(UNSPREAD, "");
+    }
+    joined.push_str(&sides(model, extent));
     Ok(joined)
 }
 
@@ -241,7 +259,15 @@ const SIMPLER: &[(&str, &str)] = &[
         "    for (var i = 0u; i < LIGHT_COUNT; i++) {\n",
     ),
     ("    let selection = illumination.terms;\n", ""),
-    ("select_terms(terms, selection)", "(terms.ambient + terms.diffuse + terms.specular)"),
+    (
+        "select_terms(terms, on_side(selection, dot(frame.n, arriving.l)))",
+        "(terms.ambient + terms.diffuse + terms.specular)",
+    ),
+    (
+        "select_terms(terms, on_side(selection, dot(frame.n, chosen.l)))",
+        "(terms.ambient + terms.diffuse + terms.specular)",
+    ),
+    (", frame, selection)", ", frame, TERM_ALL)"),
 ];
 /// Expressions known for the scene, in any light loop.
 const KNOWN: &[(&str, &str)] = &[
@@ -263,6 +289,9 @@ const EITHER: &str = "        var terms: Terms;
 ";
 /// The replacement of that part without uniform light.
 const DIRECTED: &str = "        let terms = response(arriving.l, v, frame, parameters);\n";
+
+/// The part of the light loop for light that does not spread.
+const UNSPREAD: &str = " + unspread(position, view_direction, frame, TERM_ALL)";
 
 /// The functions that dispatch a light to its type.
 fn dispatch(lights: &Lights) -> String {

@@ -10,6 +10,7 @@ mod laws;
 mod mistakes;
 mod precision;
 mod swallowed;
+mod transmission;
 #[cfg(unix)]
 mod trial;
 mod usage;

@@ -1,0 +1,199 @@
+//! Light that comes through a solid body: the ray of view goes in, follows the mesh, and leaves into the lights with
+//! extent and the surroundings. Other objects are not seen, and a ray that has left does not come back.
+//!
+//! A smooth body is one [chain](super::inside) of boundaries without chance; with dispersion, one for each of several
+//! wavelengths. In a rough one a ray takes one way by chance at each boundary, and light is sampled there too, as at any
+//! surface. Lights without extent reach through rough boundaries only.
+
+use std::{f32::consts::PI, sync::Arc};
+
+use glam::{Mat3, Vec2, Vec3};
+
+use super::{
+    extended::LightSamples,
+    inside::{BEHIND, Entry, Normals, ORDERS, Solid, follow},
+    lighting::Lights,
+    meshes::Prepared,
+};
+use crate::{
+    optics::{
+        Frame,
+        dispersion::{self, spectrum},
+        distribution::MINIMUM_ALPHA,
+        interface::{Facets, Interface},
+        interior::Interior,
+        sequence::{Sequence, hash},
+    },
+    shape::hierarchy::{Ray, Sides},
+};
+
+/// Largest number of wavelengths for one point.
+const WAVELENGTHS: u32 = 4 * dispersion::PARTS;
+/// Number of the sequence that chooses wavelengths; those of rough boundaries follow.
+const FIRST_SEQUENCE: u32 = 1 << 16;
+
+/// A body in its place.
+#[derive(Clone)]
+pub(crate) struct Body {
+    pub(super) interior: Interior,
+    pub(super) shape: Arc<Prepared>,
+    pub(super) normals: Normals,
+    pub(super) rotation: Mat3,
+    pub(super) size: f32,
+    pub(super) position: Vec3,
+}
+
+/// The point at which a ray of view meets a body.
+pub(super) struct From<'a> {
+    pub(super) position: Vec3,
+    pub(super) view: Vec3,
+    pub(super) frame: &'a Frame,
+    pub(super) seed: u32,
+}
+
+/// What comes through.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Through {
+    /// The light that reaches the viewer.
+    pub(crate) light: Vec3,
+    /// The part of the light inside that was not followed any further.
+    pub(crate) remaining: Vec3,
+}
+
+impl Body {
+    /// The body as a solid; `None` if its mesh is not closed.
+    fn solid(&self) -> Option<Solid<'_>> {
+        let hierarchy = self.shape.body()?;
+        let Self { normals, rotation, size, position, .. } = *self;
+        Some(Solid { hierarchy, normals, rotation, size, position })
+    }
+
+    /// The light that comes through at a point.
+    pub(super) fn through(&self, lights: &Lights, samples: LightSamples, from: &From) -> Through {
+        let Some(solid) = self.solid() else {
+            let light = self.interior.pane(from.view, from.frame).into_iter().map(|way| {
+                way.share * lights.from_direction(from.position, way.l)
+            });
+            return Through { light: light.sum(), ..Through::default() };
+        };
+        if self.interior.alpha >= MINIMUM_ALPHA {
+            return self.rough(&solid, lights, samples, from);
+        }
+        if self.interior.cauchy_b == 0.0 {
+            return smooth(&solid, &self.interior, lights, from);
+        }
+        let count = (samples.count / dispersion::PARTS).clamp(1, WAVELENGTHS / dispersion::PARTS) * dispersion::PARTS;
+        let offset = Sequence::new(from.seed, FIRST_SEQUENCE).point(samples.first).x;
+        let mut sum = Through::default();
+        for i in 0..count {
+            let wave = spectrum((i as f32 + offset) / count as f32);
+            let one = smooth(&solid, &self.interior.at(wave.nm), lights, from);
+            sum.light += wave.weight * one.light / count as f32;
+            sum.remaining += wave.weight * one.remaining / count as f32;
+        }
+        sum
+    }
+
+    /// The mean over rays through a rough body.
+    fn rough(&self, solid: &Solid, lights: &Lights, samples: LightSamples, from: &From) -> Through {
+        let mut sum = Through::default();
+        for i in 0..samples.count {
+            let index = samples.first.wrapping_add(i);
+            let offset = || Sequence::new(from.seed, FIRST_SEQUENCE).point(index).x;
+            let (interior, weight) = if self.interior.cauchy_b == 0.0 {
+                (self.interior, Vec3::ONE)
+            } else {
+                let wave = spectrum(offset());
+                (self.interior.at(wave.nm), wave.weight)
+            };
+            let one = Walk { solid, interior: &interior, lights, seed: from.seed, index }.walk(from);
+            sum.light += weight * one.light;
+            sum.remaining += weight * one.remaining;
+        }
+        let count = samples.count.max(1) as f32;
+        Through { light: sum.light / count, remaining: sum.remaining / count }
+    }
+}
+
+fn smooth(solid: &Solid, interior: &Interior, lights: &Lights, from: &From) -> Through {
+    let entry =
+        Entry { position: from.position, view: from.view, normal: from.frame.n, face_normal: from.frame.n };
+    let mut light = Vec3::ZERO;
+    let remaining = follow(solid, interior, &entry, |position, direction, part| {
+        light += part * lights.from_direction(position, direction);
+    });
+    Through { light, remaining }
+}
+
+/// One ray through a rough body.
+struct Walk<'a> {
+    solid: &'a Solid<'a>,
+    interior: &'a Interior,
+    lights: &'a Lights,
+    seed: u32,
+    index: u32,
+}
+
+impl Walk<'_> {
+    /// Random numbers for a boundary: two directions on the facets, and a choice.
+    fn random(&self, order: usize) -> Vec3 {
+        let number = |k: usize| hash(FIRST_SEQUENCE + 1 + (2 * order + k) as u32);
+        let point = |k| Sequence::new(self.seed, number(k)).point(self.index);
+        let (a, b): (Vec2, Vec2) = (point(0), point(1));
+        a.extend(b.x)
+    }
+
+    fn walk(&self, from: &From) -> Through {
+        let interface =
+            Interface::new(Facets::Ggx, Vec2::splat(self.interior.alpha), self.interior.eta());
+        let v = from.frame.to_local(from.view);
+        let Some((l, weight)) = step(&interface, self.random(0), v).filter(|(l, _)| l.z < 0.0) else {
+            return Through::default();
+        };
+        let room = |d: Vec3| d.x * from.frame.t + d.y * from.frame.b + d.z * from.frame.n;
+        let mut part = Vec3::splat(weight);
+        let mut ray = self.solid.ray(from.position, room(l));
+        let mut light = Vec3::ZERO;
+        for order in 1..=ORDERS {
+            let Some(hit) = self.solid.hierarchy.nearest(&ray, -BEHIND..f32::MAX, Sides::Inside) else { break };
+            part *= self.interior.left(self.solid.size * hit.distance);
+            let (position, normals) = self.solid.boundary(&hit);
+            let back = -(self.solid.rotation * ray.direction);
+            let normal = normals.into_iter().find(|n| n.dot(back) < 0.0).unwrap_or(-back);
+            let frame = Frame::from_normal(normal);
+            let v = frame.to_local(back);
+            let response = |l: Vec3| {
+                let l = frame.to_local(l);
+                if l.z > 0.0 { PI * l.z * interface.transmitted(l, v) } else { 0.0 }
+            };
+            let pdf = |l: Vec3| interface.pdf(frame.to_local(l), v);
+            let seed = hash(self.seed ^ hash(order as u32));
+            light += part * self.lights.sampled_at(position, (seed, self.index), &response, &pdf);
+            let Some((l, weight)) = step(&interface, self.random(order), v) else { break };
+            part *= weight;
+            let direction = l.x * frame.t + l.y * frame.b + l.z * frame.n;
+            if l.z > 0.0 {
+                light += part * self.lights.from_lobe(position, direction, interface.pdf(l, v));
+                return Through { light, remaining: Vec3::ZERO };
+            }
+            let inwards = self.solid.ray(position, direction);
+            // A reflected ray that points outwards between the normals of shading and triangle is lost.
+            if normals[1].dot(direction) >= 0.0 {
+                break;
+            }
+            ray = Ray { origin: self.solid.hierarchy.point(hit.triangle, hit.weights), ..inwards };
+        }
+        Through { light, remaining: part }
+    }
+}
+
+/// A direction at a rough boundary, and the part of the light from there.
+fn step(interface: &Interface, u: Vec3, v: Vec3) -> Option<(Vec3, f32)> {
+    if interface.is_invisible() {
+        return Some((-v, 1.0));
+    }
+    let l = interface.sample(u, v)?;
+    let pdf = interface.pdf(l, v);
+    let weight = interface.bsdf(l, v) * l.z.abs() / pdf;
+    (pdf > 0.0 && weight.is_finite()).then_some((l, weight))
+}
