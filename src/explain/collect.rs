@@ -1,6 +1,6 @@
 //! Explanations collected from the renderer's own calculation.
 
-use std::sync::Arc;
+use std::{f32::consts::PI, sync::Arc};
 
 use super::{Asked, Brightest, Geometry, Integral, Lamp, Lit, Model, Part, Place, Seen, Setting, Spot};
 use glam::Vec3;
@@ -59,7 +59,7 @@ impl Shot<'_> {
     /// The lights that are visible at a pixel.
     pub(super) fn lamp(&self, shown: &Shown) -> Lamp {
         let lights = shown.lights.iter().filter_map(|i| Some(self.light(*i, self.scene.lights.get(*i)?)));
-        Lamp { lights: lights.collect(), radiance: shown.radiance }
+        Lamp { lights: lights.collect(), radiance: shown.light / PI, light: shown.light }
     }
 
     fn spot(&self, place: Place, point: &Point, of: (&dyn Surface, Option<&Body>)) -> Spot {

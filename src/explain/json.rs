@@ -54,6 +54,7 @@ impl Explanation {
             "light_seen": self.lamp.as_ref().map(|lamp| json!({
                 "lights": lamp.lights.iter().map(part).collect::<Json>(),
                 "radiance": triple(lamp.radiance),
+                "light": triple(lamp.light),
             })),
             "seen": self.seen.as_ref().map(Seen::to_json),
             "display": {

@@ -150,6 +150,8 @@ pub struct Lamp {
     pub lights: Vec<Part>,
     /// The radiance of the light or lights, cd/m².
     pub radiance: Vec3,
+    /// The light that the picture shows: π times the radiance, as a white surface shows that receives it from everywhere.
+    pub light: Vec3,
 }
 
 /// A part of the scene.
@@ -447,7 +449,7 @@ impl Explainer {
 fn explanation(shot: Shot, pixel: [u32; 2], found: Option<Probe>, lamp: Option<Lamp>) -> Explanation {
     let Shot { scene, settings, .. } = shot;
     let of_object = || found.as_ref().map_or(Vec4::ZERO, |found| found.light);
-    let light = lamp.as_ref().map_or_else(of_object, |lamp| lamp.radiance.extend(1.0));
+    let light = lamp.as_ref().map_or_else(of_object, |lamp| lamp.light.extend(1.0));
     Explanation {
         pixel,
         size: [settings.width, settings.height],

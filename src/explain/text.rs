@@ -126,6 +126,7 @@ impl Explanation {
                     say!(out, 0, "{}, {}, is seen here.", named("lights", light), light.type_name);
                 }
                 say!(out, 1, "L = {} cd/m²", triple(lamp.radiance));
+                say!(out, 1, "light = π L = {}", triple(lamp.light));
             }
             (None, None) => out.line(0, self.about_background()),
         }

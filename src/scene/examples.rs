@@ -47,6 +47,7 @@ const TEXTS: [(&str, &str); 27] = texts![
     "softbox_and_lamps.json",
     "studio.json",
     "under_the_sky.json",
+    "glass_thin_and_solid.json",
     "model_matrix.json",
     "many_lights.json",
     "compare_gouraud_phong.json",

@@ -351,6 +351,7 @@ fn seen_light(ui: &mut Ui, lamp: &Lamp, name: &dyn Fn(usize) -> String) {
     let text = "No object is at the centre of this pixel: the light itself is seen there.";
     ui.add(Label::new(text).wrap());
     rows::step(ui, "L, cd/m²", lamp.radiance, None);
+    rows::step(ui, "light = π L", lamp.light, None);
 }
 
 fn background(ui: &mut Ui, explanation: &Explanation) {
