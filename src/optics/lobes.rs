@@ -16,6 +16,9 @@ pub const MAX_LOBES: usize = 3;
 const NARROWEST: f32 = 1e-3;
 const STEEPEST: f32 = 1e6;
 
+/// The kind of the lobes of refraction in the shaders' rows, to which their index is added.
+const BELOW: f32 = 4.0;
+
 /// The cosine between light and facet at which reflectances are compared for the shares of lobes: lobes are
 /// the same for all views, so it lies between normal incidence and grazing angles, at which surfaces become
 /// mirrors.
@@ -45,8 +48,10 @@ pub enum Lobe {
     /// Refraction in the visible facets of a GGX surface: B. Walter, S. Marschner, H. Li, K. Torrance (2007),
     /// *Microfacet Models for Refraction through Rough Surfaces*.
     GgxBelow {
-        /// Width of the distribution of facets.
-        alpha: f32,
+        /// Width of the distribution of facets along the tangent.
+        alpha_x: f32,
+        /// Width along the bitangent.
+        alpha_y: f32,
         /// Refractive index below the surface divided by that above it. 1 stands for a thin sheet, which transmits the
         /// lobe that it reflects, mirrored in the surface.
         eta: f32,
@@ -77,6 +82,12 @@ impl Lobe {
         Self::Ggx { alpha_x: alpha.x, alpha_y: alpha.y }
     }
 
+    /// Refraction in facets with these widths along tangent and bitangent.
+    #[must_use]
+    pub fn refracted(alpha: Vec2, eta: f32) -> Self {
+        Self::GgxBelow { alpha_x: alpha.x, alpha_y: alpha.y, eta }
+    }
+
     /// A GGX lobe about as wide as the brightest part of the generalised distribution (GTR): wider for γ
     /// below 2, where the tails are longer, and narrower above.
     #[must_use]
@@ -101,7 +112,8 @@ impl Lobe {
             Self::Ggx { alpha_x, alpha_y } => [1.0, alpha_x, alpha_y],
             Self::Power { exponent } => [2.0, exponent, 0.0],
             Self::CosineBelow => [3.0, 0.0, 0.0],
-            Self::GgxBelow { alpha, eta } => [4.0, alpha, eta],
+            // The index is part of the kind: a row has no other number left.
+            Self::GgxBelow { alpha_x, alpha_y, eta } => [BELOW + eta, alpha_x, alpha_y],
         }
     }
 
@@ -110,8 +122,8 @@ impl Lobe {
         let width = |alpha: f32| if alpha >= NARROWEST { alpha.min(1.0) } else { NARROWEST };
         match self {
             Self::Cosine | Self::CosineBelow => self,
-            Self::GgxBelow { alpha, eta } => {
-                Self::GgxBelow { alpha: width(alpha), eta: eta.clamp(0.1, 10.0) }
+            Self::GgxBelow { alpha_x, alpha_y, eta } => {
+                Self::GgxBelow { alpha_x: width(alpha_x), alpha_y: width(alpha_y), eta: eta.clamp(0.1, 10.0) }
             }
             Self::Ggx { alpha_x, alpha_y } => Self::Ggx { alpha_x: width(alpha_x), alpha_y: width(alpha_y) },
             Self::Power { exponent } => {
@@ -136,8 +148,8 @@ impl Lobe {
                 sampling::about(Vec3::new(-v.x, -v.y, v.z), local)
             }
             Self::CosineBelow => -sampling::cosine(u),
-            Self::GgxBelow { alpha, eta } => {
-                let h = visible_normal(u, v, alpha, alpha);
+            Self::GgxBelow { alpha_x, alpha_y, eta } => {
+                let h = visible_normal(u, v, alpha_x, alpha_y);
                 let cosine = v.dot(h);
                 if eta == 1.0 {
                     let l = 2.0 * cosine * h - v;
@@ -156,10 +168,10 @@ impl Lobe {
             Self::Cosine => l.z.max(0.0) / PI,
             Self::Ggx { alpha_x, alpha_y } => facets(l + v, v, alpha_x, alpha_y) / 4.0,
             Self::CosineBelow => (-l.z).max(0.0) / PI,
-            Self::GgxBelow { alpha, eta } if eta == 1.0 => {
-                facets(Vec3::new(l.x, l.y, -l.z) + v, v, alpha, alpha) / 4.0
+            Self::GgxBelow { alpha_x, alpha_y, eta } if eta == 1.0 => {
+                facets(Vec3::new(l.x, l.y, -l.z) + v, v, alpha_x, alpha_y) / 4.0
             }
-            Self::GgxBelow { alpha, eta } => {
+            Self::GgxBelow { alpha_x, alpha_y, eta } => {
                 let sum = v + eta * l;
                 let h = sum.normalize_or_zero() * if sum.z < 0.0 { -1.0 } else { 1.0 };
                 let (towards_v, towards_l) = (v.dot(h), l.dot(h));
@@ -168,7 +180,8 @@ impl Lobe {
                 }
                 // The facets' density times the Jacobian of refraction.
                 let across = towards_v + eta * towards_l;
-                facets(h, v, alpha, alpha) * towards_v * eta * eta * -towards_l / (across * across).max(1e-12)
+                facets(h, v, alpha_x, alpha_y) * towards_v * eta * eta * -towards_l
+                    / (across * across).max(1e-12)
             }
             Self::Power { exponent } => {
                 let cosine = (v.z * l.z - v.x * l.x - v.y * l.y).min(1.0);
@@ -272,11 +285,14 @@ impl Lobes {
     /// a renderer may omit.
     #[must_use]
     pub fn are_isotropic(&self) -> bool {
-        self.0.iter().all(|(lobe, _)| !matches!(lobe, Lobe::Ggx { alpha_x, alpha_y } if alpha_x != alpha_y))
+        self.0.iter().all(|(lobe, _)| match lobe {
+            Lobe::Ggx { alpha_x, alpha_y } | Lobe::GgxBelow { alpha_x, alpha_y, .. } => alpha_x == alpha_y,
+            _ => true,
+        })
     }
 
-    /// The lobes in the shaders' layout: for each its kind (0 cosine, 1 GGX, 2 power, 3 and 4 cosine and GGX below), its numbers, its
-    /// share.
+    /// The lobes in the shaders' layout: for each its kind (0 cosine, 1 GGX, 2 power; 3 cosine below, 4 plus the
+    /// refractive index GGX below), its numbers, its share.
     #[must_use]
     pub fn rows(&self) -> [Vec4; MAX_LOBES] {
         self.0.map(|(lobe, share)| {
@@ -343,10 +359,10 @@ mod tests {
             Lobes::new(&[(Lobe::Power { exponent: 0.0 }, 1.0)]),
             Lobes::new(&[(Lobe::Cosine, 1.0), (Lobe::ggx(0.3), 2.0), (Lobe::Power { exponent: 50.0 }, 1.0)]),
             Lobes::new(&[(Lobe::CosineBelow, 1.0)]),
-            Lobes::new(&[(Lobe::GgxBelow { alpha: 0.3, eta: 1.0 }, 1.0)]),
-            Lobes::new(&[(Lobe::GgxBelow { alpha: 0.2, eta: 1.5 }, 1.0)]),
-            Lobes::new(&[(Lobe::GgxBelow { alpha: 0.5, eta: 2.4 }, 1.0)]),
-            Lobes::new(&[(Lobe::ggx(0.4), 1.0), (Lobe::GgxBelow { alpha: 0.4, eta: 2.4 }, 2.0)]),
+            Lobes::new(&[(Lobe::refracted(Vec2::splat(0.3), 1.0), 1.0)]),
+            Lobes::new(&[(Lobe::refracted(Vec2::new(0.7, 0.3), 1.5), 1.0)]),
+            Lobes::new(&[(Lobe::refracted(Vec2::splat(0.5), 2.4), 1.0)]),
+            Lobes::new(&[(Lobe::ggx(0.4), 1.0), (Lobe::refracted(Vec2::splat(0.4), 2.4), 2.0)]),
         ]
     }
 
@@ -371,8 +387,8 @@ mod tests {
                         Lobes::new(&[(Lobe::Power { exponent: exponent + 2.0 }, 1.0)])
                     }
                     Lobe::CosineBelow => Lobes::cosine(),
-                    Lobe::GgxBelow { alpha, eta } => {
-                        Lobes::new(&[(Lobe::GgxBelow { alpha: 0.8 * alpha, eta }, 1.0)])
+                    Lobe::GgxBelow { alpha_x, alpha_y, eta } => {
+                        Lobes::new(&[(Lobe::refracted(0.8 * Vec2::new(alpha_x, alpha_y), eta), 1.0)])
                     }
                 };
                 let found = chi_squared(sample, |l| wrong.pdf(l, v));

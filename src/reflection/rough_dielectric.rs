@@ -104,7 +104,7 @@ impl ReflectionModel for RoughDielectric {
         let n = self.refractive_index;
         let alpha = Vec2::new(self.alpha_x, self.alpha_y);
         let reflected = dielectric(n, lobes::OBLIQUE);
-        let below = Lobe::GgxBelow { alpha: alpha.max_element(), eta: n };
+        let below = Lobe::refracted(alpha, n);
         // The reflected lobe gets at least a quarter of the samples, since it grows at grazing angles.
         Lobes::new(&[(Lobe::wide(alpha), reflected.max(0.25)), (below, 1.0 - reflected), (Lobe::Cosine, 0.1)])
     }

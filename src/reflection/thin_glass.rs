@@ -108,8 +108,8 @@ impl ThinGlass {
 
     /// The light of several bounces between facets, `π f_ms cos θ_l`, before it is divided between the sides.
     fn bounced(&self, l: Vec3, v: Vec3) -> f32 {
-        let missing = |mu| 1.0 - self.lobe.at(mu);
-        missing(l.z) * missing(v.z) / (1.0 - self.lobe.average()).max(LEAST) * l.z
+        let lost = self.lobe.loss(l.z) * self.lobe.loss(v.z);
+        lost / (1.0 - self.lobe.average()).max(LEAST) * l.z
     }
 }
 
@@ -155,7 +155,7 @@ impl ReflectionModel for ThinGlass {
             [pane.reflectance, pane.transmittance].map(|share| (share.element_sum() / 3.0).max(0.25));
         // Light of several bounces leaves in all directions.
         let bounced = (1.0 - self.lobe.average()).clamp(0.05, 1.0);
-        let below = Lobe::GgxBelow { alpha, eta: 1.0 };
+        let below = Lobe::refracted(Vec2::splat(alpha), 1.0);
         Lobes::new(&[(Lobe::ggx(alpha), reflected), (below, transmitted), (Lobe::Cosine, bounced)])
     }
 

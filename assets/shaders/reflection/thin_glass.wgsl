@@ -23,8 +23,8 @@ fn response(l_room: vec3<f32>, v_room: vec3<f32>, frame: Frame, m: Parameters) -
     let h = half_vector(near, v);
     let masked = height_correlated(near.z, v.z, smith_ggx(near, alpha), smith_ggx(v, alpha));
     let single = PI * near.z * ggx(h, alpha) * masked;
-    let missing = (1.0 - lobe_albedo(near.z)) * (1.0 - lobe_albedo(v.z));
-    let bounced = missing / max(1.0 - average_lobe_albedo(), 2e-3) * near.z;
+    let lost = lobe_loss(near.z) * lobe_loss(v.z);
+    let bounced = lost / max(1.0 - average_lobe_albedo(), 2e-3) * near.z;
     let once = thin_glass_pane(dot(h, v), m);
     let often = thin_glass_pane(2.0 / 3.0, m);
     if l.z < 0.0 {

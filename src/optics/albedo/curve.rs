@@ -172,6 +172,14 @@ impl LobeAlbedo {
         sum.clamp(0.0, 1.0)
     }
 
+    /// `1 − E(μ)`, with all digits where E is nearly 1.
+    #[must_use]
+    pub fn loss(&self, mu: f32) -> f32 {
+        let (i, weights) = spline(mu);
+        let sum: f32 = weights.iter().zip(&self.nodes[i..]).map(|(weight, node)| weight * (1.0 - node)).sum();
+        sum.clamp(0.0, 1.0)
+    }
+
     /// `2 ∫ E μ dμ`.
     #[must_use]
     pub fn average(&self) -> f32 {
