@@ -29,7 +29,7 @@ macro_rules! texts {
 }
 
 /// The scenes, from the simplest to those that measure something.
-const TEXTS: [(&str, &str); 27] = texts![
+const TEXTS: [(&str, &str); 28] = texts![
     "default.json",
     "shapes_and_lights.json",
     "superellipsoids.json",
