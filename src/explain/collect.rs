@@ -27,7 +27,8 @@ impl Shot<'_> {
         let shading = self.registry.shading_model(self.scene.shading_model_of(object))?;
         let type_name = self.registry.shape(&object.object_type).map(|entry| entry.declaration.name);
         let corners = found.corners;
-        let spot = |place: Place, point: &Point| self.spot(place, point, (&*found.surface, found.body.as_ref()));
+        let spot =
+            |place: Place, point: &Point| self.spot(place, point, (&*found.surface, found.body.as_ref()));
         let of_corner = |corner: usize| match found.stage {
             Stage::Polygon => Place::Polygon,
             _ => Place::Vertex { vertex: corners[corner].vertex, weight: corners[corner].weight },

@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use arrayvec::ArrayVec;
 use glam::Vec3;
 
-use super::{Terms, TermSelection};
+use super::{TermSelection, Terms};
 
 /// Maximum number of directions: one reflected, one transmitted.
 pub const MOST: usize = 2;

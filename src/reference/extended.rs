@@ -157,7 +157,8 @@ impl Extended {
             let at = At::new((surface, surface.lobes()), p, v, frame, seed ^ (part as u32 + 1) << 26);
             answer(&at, 0, (count / PARTS).max(1), &mut |_, _| ())
         });
-        let errors = std::array::from_fn::<_, TERMS, _>(|i| standard_error(parts.iter().map(|terms| terms[i])));
+        let errors =
+            std::array::from_fn::<_, TERMS, _>(|i| standard_error(parts.iter().map(|terms| terms[i])));
         Integral {
             terms: terms.into(),
             errors: errors.into(),
@@ -259,7 +260,9 @@ impl Extended {
             }
         }
         for (group, number) in &self.groups {
-            for light in (0..group.count()).filter(|light| at.transmits || group.rises(*light, at.p, at.frame.n)) {
+            for light in
+                (0..group.count()).filter(|light| at.transmits || group.rises(*light, at.p, at.frame.n))
+            {
                 let sent = group.send(light, at.p, &points(number + light as u32 + 1)[..count]);
                 for Sample { l, radiance, pdf } in &sent[..count] {
                     let local = at.frame.to_local(*l);

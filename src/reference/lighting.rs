@@ -10,11 +10,14 @@ use glam::Vec3;
 use super::{
     Shot,
     extended::{Extended, Integral, LightSamples},
-    through::{Body, From, Through},
+    through::{Body, Through, Viewed},
 };
 use crate::{
     light::{AT_ONCE, Emitters, Factor, Incident, LightRecord},
-    optics::{Frame, TermSelection, Terms, lobes::Lobes, radiometry::Arriving, sampling::power_heuristic, sequence::pixel_seed},
+    optics::{
+        Frame, TermSelection, Terms, lobes::Lobes, radiometry::Arriving, sampling::power_heuristic,
+        sequence::pixel_seed,
+    },
     reflection::Surface,
     registry::Registry,
     scene::{Light, Scene, emitter, record},
@@ -200,7 +203,7 @@ impl LightsOn<'_> {
     /// What comes through the body.
     pub(super) fn through(&self, position: Vec3, view: Vec3, frame: &Frame) -> Through {
         self.body.map_or_else(Through::default, |body| {
-            let from = From { position, view, frame, seed: self.seed.load(Ordering::Relaxed) };
+            let from = Viewed { position, view, frame, seed: self.seed.load(Ordering::Relaxed) };
             body.through(self.lights, self.lights.extended.samples, &from)
         })
     }

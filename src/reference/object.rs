@@ -81,7 +81,11 @@ impl<'a> Draw<'a> {
             body: surface.interior().map(|interior| Body {
                 interior,
                 shape: shape.clone(),
-                normals: if shading.declaration.stage == Stage::Polygon { Normals::Polygons } else { Normals::Vertices },
+                normals: if shading.declaration.stage == Stage::Polygon {
+                    Normals::Polygons
+                } else {
+                    Normals::Vertices
+                },
                 rotation: rotation(object.rotation),
                 size: object.size,
                 position: object.position,

@@ -23,8 +23,8 @@ use crate::{
     shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
 };
 
-pub(crate) use super::through::Body;
 pub(crate) use super::lighting::{LitBy, Loop, Point, light_by_light as light_loop};
+pub(crate) use super::through::Body;
 
 /// The object at a pixel, and the calculation of the pixel's light.
 pub(crate) struct Probe {

@@ -44,7 +44,7 @@ pub(crate) struct Body {
 }
 
 /// The point at which a ray of view meets a body.
-pub(super) struct From<'a> {
+pub(super) struct Viewed<'a> {
     pub(super) position: Vec3,
     pub(super) view: Vec3,
     pub(super) frame: &'a Frame,
@@ -69,11 +69,13 @@ impl Body {
     }
 
     /// The light that comes through at a point.
-    pub(super) fn through(&self, lights: &Lights, samples: LightSamples, from: &From) -> Through {
+    pub(super) fn through(&self, lights: &Lights, samples: LightSamples, from: &Viewed) -> Through {
         let Some(solid) = self.solid() else {
-            let light = self.interior.pane(from.view, from.frame).into_iter().map(|way| {
-                way.share * lights.from_direction(from.position, way.l)
-            });
+            let light = self
+                .interior
+                .pane(from.view, from.frame)
+                .into_iter()
+                .map(|way| way.share * lights.from_direction(from.position, way.l));
             return Through { light: light.sum(), ..Through::default() };
         };
         if self.interior.alpha >= MINIMUM_ALPHA {
@@ -82,7 +84,8 @@ impl Body {
         if self.interior.cauchy_b == 0.0 {
             return smooth(&solid, &self.interior, lights, from);
         }
-        let count = (samples.count / dispersion::PARTS).clamp(1, WAVELENGTHS / dispersion::PARTS) * dispersion::PARTS;
+        let count =
+            (samples.count / dispersion::PARTS).clamp(1, WAVELENGTHS / dispersion::PARTS) * dispersion::PARTS;
         let offset = Sequence::new(from.seed, FIRST_SEQUENCE).point(samples.first).x;
         let mut sum = Through::default();
         for i in 0..count {
@@ -95,7 +98,7 @@ impl Body {
     }
 
     /// The mean over rays through a rough body.
-    fn rough(&self, solid: &Solid, lights: &Lights, samples: LightSamples, from: &From) -> Through {
+    fn rough(&self, solid: &Solid, lights: &Lights, samples: LightSamples, from: &Viewed) -> Through {
         let mut sum = Through::default();
         for i in 0..samples.count {
             let index = samples.first.wrapping_add(i);
@@ -115,7 +118,7 @@ impl Body {
     }
 }
 
-fn smooth(solid: &Solid, interior: &Interior, lights: &Lights, from: &From) -> Through {
+fn smooth(solid: &Solid, interior: &Interior, lights: &Lights, from: &Viewed) -> Through {
     let entry =
         Entry { position: from.position, view: from.view, normal: from.frame.n, face_normal: from.frame.n };
     let mut light = Vec3::ZERO;
@@ -143,9 +146,8 @@ impl Walk<'_> {
         a.extend(b.x)
     }
 
-    fn walk(&self, from: &From) -> Through {
-        let interface =
-            Interface::new(Facets::Ggx, Vec2::splat(self.interior.alpha), self.interior.eta());
+    fn walk(&self, from: &Viewed) -> Through {
+        let interface = Interface::new(Facets::Ggx, Vec2::splat(self.interior.alpha), self.interior.eta());
         let v = from.frame.to_local(from.view);
         let Some((l, weight)) = step(&interface, self.random(0), v).filter(|(l, _)| l.z < 0.0) else {
             return Through::default();
@@ -155,7 +157,9 @@ impl Walk<'_> {
         let mut ray = self.solid.ray(from.position, room(l));
         let mut light = Vec3::ZERO;
         for order in 1..=ORDERS {
-            let Some(hit) = self.solid.hierarchy.nearest(&ray, -BEHIND..f32::MAX, Sides::Inside) else { break };
+            let Some(hit) = self.solid.hierarchy.nearest(&ray, -BEHIND..f32::MAX, Sides::Inside) else {
+                break;
+            };
             part *= self.interior.left(self.solid.size * hit.distance);
             let (position, normals) = self.solid.boundary(&hit);
             let back = -(self.solid.rotation * ray.direction);
@@ -196,4 +200,88 @@ fn step(interface: &Interface, u: Vec3, v: Vec3) -> Option<(Vec3, f32)> {
     let pdf = interface.pdf(l, v);
     let weight = interface.bsdf(l, v) * l.z.abs() / pdf;
     (pdf > 0.0 && weight.is_finite()).then_some((l, weight))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+
+    use super::*;
+    use crate::{
+        parameter::Value,
+        reference::{Picture, Settings, render_samples},
+        registry::Registry,
+        scene::{Light, Object, Observer, Scene},
+    };
+
+    const SIZE: u32 = 48;
+
+    /// An object of a model in uniform light of 0.25 π, which is seen around it.
+    fn scene(object_type: &str, material: &[(&'static str, Value)]) -> Scene {
+        let mut light = Light {
+            light_type: "environment".to_owned(),
+            intensity: 0.25,
+            colour: [255; 3],
+            ..Light::default()
+        };
+        light.parameters.set("source", Value::Choice("uniform".into()));
+        let mut object = Object {
+            object_type: object_type.to_owned(),
+            position: Vec3::new(5.0, 5.0, 5.0),
+            rotation: Vec3::new(20.0, 30.0, 0.0),
+            size: 2.0,
+            ..Object::default()
+        };
+        material.iter().for_each(|(name, value)| object.material.set(*name, value.clone()));
+        Scene {
+            reflection_model: "glass".to_owned(),
+            shading_model: "phong".to_owned(),
+            lights: vec![light],
+            objects: vec![object],
+            observer: Observer {
+                field_of_view: 30.0,
+                ..Observer::at(Vec3::new(5.0, 5.0, 10.0), Vec3::NEG_Z)
+            },
+            ..Scene::default()
+        }
+    }
+
+    fn picture(scene: &Scene, samples: u32) -> Picture {
+        let settings = Settings { width: SIZE, height: SIZE, samples: 1, ..Settings::default() };
+        let samples = LightSamples::of(samples);
+        render_samples(scene, &Registry::builtin(), &settings, samples, &AtomicBool::default())
+    }
+
+    /// The largest and the mean deviation from the surroundings, relative.
+    fn visible(picture: &Picture) -> [f32; 2] {
+        let around = picture.pixel(0, 0).x;
+        assert!((around - 0.25 * PI).abs() < 1e-5, "{around}");
+        let off: Vec<_> =
+            picture.pixels.iter().map(|p| (p.truncate() / around - 1.0).abs().max_element()).collect();
+        [off.iter().copied().fold(0.0, f32::max), off.iter().sum::<f32>() / off.len() as f32]
+    }
+
+    #[test]
+    fn a_body_that_absorbs_nothing_is_invisible_in_uniform_light() {
+        for object_type in ["sphere", "cube"] {
+            let [most, mean] = visible(&picture(&scene(object_type, &[]), 1));
+            assert!(most < 2e-2 && mean < 1e-3, "{object_type}: {most} {mean}");
+        }
+        let disperses = [("dispersion", Value::Number(0.03))];
+        let [most, mean] = visible(&picture(&scene("sphere", &disperses), 16));
+        assert!(most < 2e-2 && mean < 1e-3, "with dispersion: {most} {mean}");
+        // The wrong twin: green glass is seen.
+        let green = [("transmittance_colour", Value::Colour([200, 255, 200]))];
+        assert!(visible(&picture(&scene("sphere", &green), 1))[1] > 0.02);
+    }
+
+    #[test]
+    fn a_rough_body_loses_little_and_an_open_one_is_a_pane() {
+        let rough = [("roughness", Value::Number(0.4))];
+        let [_, mean] = visible(&picture(&scene("sphere", &rough), 64));
+        assert!(mean < 0.05, "{mean}");
+        // The teapot is open: a pane loses nothing either.
+        let [most, _] = visible(&picture(&scene("teapot", &[]), 1));
+        assert!(most < 1e-4, "{most}");
+    }
 }

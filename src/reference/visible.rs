@@ -240,8 +240,7 @@ fn even(centres: &[Option<Sight>], i: usize, side: usize) -> Option<Sight> {
     let is_near = |i: usize| {
         let there = centres[i]?;
         let difference = (there.light - here.light).abs().max_element();
-        (there.nearness == here.nearness && difference <= EVEN * here.light.abs().max_element())
-            .then_some(())
+        (there.nearness == here.nearness && difference <= EVEN * here.light.abs().max_element()).then_some(())
     };
     [i - side, i - 1, i + 1, i + side].into_iter().try_for_each(is_near)?;
     // Something near has a different nearness at each sample.
@@ -407,8 +406,7 @@ mod tests {
                             let all =
                                 VisibleLights { lights: all.lights.into_iter().map(cone).collect(), ..all };
                             let known = all.at(place);
-                            let known =
-                                known.map(|Shown { light, nearness, .. }| Sight { light, nearness });
+                            let known = known.map(|Shown { light, nearness, .. }| Sight { light, nearness });
                             differ += usize::from(shown.and_then(|[one]| one) != known);
                         }
                     }

@@ -163,10 +163,14 @@ mod tests {
         let flint = Glass { dispersion: 1.0 / 36.0, refractive_index: 1.62, ..Glass::default() };
         let inside = flint.interior().expect("solid");
         assert!((abbe_of_cauchy(inside.ior, inside.cauchy_b) - 36.0).abs() < 1e-3, "{inside:?}");
-        let green = Glass { transmittance_colour: Vec3::new(0.25, 1.0, 0.5), distance: 0.5, ..Glass::default() };
+        let green =
+            Glass { transmittance_colour: Vec3::new(0.25, 1.0, 0.5), distance: 0.5, ..Glass::default() };
         let left = green.interior().expect("solid").left(1.0);
         assert!((left - Vec3::new(0.0625, 1.0, 0.25)).length() < 1e-6, "{left}");
-        assert_eq!(Glass::default().interior().map(|inside| (inside.cauchy_b, inside.alpha)), Some((0.0, 0.0)));
+        assert_eq!(
+            Glass::default().interior().map(|inside| (inside.cauchy_b, inside.alpha)),
+            Some((0.0, 0.0))
+        );
     }
 
     #[test]

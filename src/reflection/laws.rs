@@ -191,10 +191,10 @@ pub fn albedo_directions(v: Vec3, frame: &Frame, rows: usize) -> Vec<(Vec3, f32)
 /// The largest directional albedo of any channel, from the responses in [`albedo_directions`].
 #[must_use]
 pub fn albedo(directions: &[(Vec3, f32)], responses: impl IntoIterator<Item = Terms>) -> f32 {
-    let weighted =
-        directions.iter().zip(responses).map(|((_, weight), t)| {
-            (t.diffuse + t.specular + t.transmitted) * *weight
-        });
+    let weighted = directions
+        .iter()
+        .zip(responses)
+        .map(|((_, weight), t)| (t.diffuse + t.specular + t.transmitted) * *weight);
     weighted.sum::<Vec3>().max_element()
 }
 

@@ -21,9 +21,9 @@ use crate::{
     shader::{
         Source,
         compose::{
-            ALBEDO, CHANNELS, Composed, Composer, DISPLAY, EVALUATE, EXTENDED, HIERARCHY, INSIDE, LIGHT_ALONE,
-            LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources, THROUGH, TRANSMISSION,
-            WRAPPER, parameter_struct,
+            ALBEDO, CHANNELS, Composed, Composer, DISPLAY, EVALUATE, EXTENDED, HIERARCHY, INSIDE,
+            LIGHT_ALONE, LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources,
+            THROUGH, TRANSMISSION, WRAPPER, parameter_struct,
         },
     },
     shading::{self, ShadingEntry},
@@ -191,8 +191,8 @@ pub fn light_dispatch(lights: &[LightEntry]) -> String {
 
 /// The files that every source for drawing needs besides the vocabulary, and those for other uses.
 pub(crate) const SHARED: [Source; 15] = [
-    ALBEDO, PANORAMA, LIGHTS, SAMPLING, SHADING, HIERARCHY, INSIDE, THROUGH, LOOP, EXTENDED, CHANNELS, DISPLAY, WRAPPER,
-    SEEN, EVALUATE,
+    ALBEDO, PANORAMA, LIGHTS, SAMPLING, SHADING, HIERARCHY, INSIDE, THROUGH, LOOP, EXTENDED, CHANNELS,
+    DISPLAY, WRAPPER, SEEN, EVALUATE,
 ];
 
 /// The table from which a single light type reads the numbers of its files: one row, see [`compose_light`].

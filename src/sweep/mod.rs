@@ -298,8 +298,8 @@ mod tests {
             );
             assert!(said.starts_with(&start) && said.contains("eon"), "{said}");
         }
-        let made = sweep(&scene, &registry, &[roughness, "reflection_model=lambert,eon,phong"])
-            .expect("EON has it");
+        let made =
+            sweep(&scene, &registry, &[roughness, "reflection_model=lambert,eon,phong"]).expect("EON has it");
         let words = |axis: usize| made.axes[axis].labels.iter().map(Words::words).collect::<Vec<_>>();
         assert_eq!(words(0), ["r 0.1", "r 0.5", "r 0.9"]);
         assert_eq!(words(1), ["Lambert (no roughness)", "EON", "Phong (no roughness)"]);

@@ -67,7 +67,13 @@ pub fn directional(response: impl Fn(Vec3) -> Terms, v: Vec3, frame: &Frame) -> 
 /// The fraction of uniform light from below the surface that reaches the viewer: the mean of a transmitted response over
 /// `count` samples of the lobes below the surface.
 #[must_use]
-pub fn through(transmitted: impl Fn(Vec3) -> Vec3, lobes: &Lobes, v: Vec3, frame: &Frame, count: u32) -> Vec3 {
+pub fn through(
+    transmitted: impl Fn(Vec3) -> Vec3,
+    lobes: &Lobes,
+    v: Vec3,
+    frame: &Frame,
+    count: u32,
+) -> Vec3 {
     let (sequence, local, lobes) = (Sequence::new(0, 0), frame.to_local(v), lobes.below());
     let response = |i| {
         let l = lobes.sample(sequence.point(i), local);

@@ -16,11 +16,7 @@ use crate::{
     },
     parameter::Value,
     reflection::ModelEntry,
-    scene::{
-        Field, Key, Object, Variant, limits,
-        part::Fields as _,
-        rows::Row,
-    },
+    scene::{Field, Key, Object, Variant, limits, part::Fields as _, rows::Row},
     shading::ShadingEntry,
 };
 

@@ -82,8 +82,7 @@ impl KnownTerms {
             present.iter_mut().zip(values).for_each(|(present, value)| *present |= value != Vec3::ZERO);
         }
         present[3] |= surface.interior().is_some();
-        present[0] |=
-            everywhere && surface.ambient_response(view, &Frame::LOCAL) != Vec3::ZERO;
+        present[0] |= everywhere && surface.ambient_response(view, &Frame::LOCAL) != Vec3::ZERO;
         if known.len() >= KEPT {
             known.clear();
         }
