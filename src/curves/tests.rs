@@ -88,7 +88,17 @@ fn factors_are_those_of_the_response() {
     let microfacets = all(Kind::Distribution);
     assert_eq!(
         microfacets,
-        ["microfacet", "torrance_sparrow", "cook_torrance", "metallic_roughness", "disney", "openpbr"]
+        [
+            "microfacet",
+            "torrance_sparrow",
+            "cook_torrance",
+            "metallic_roughness",
+            "disney",
+            "openpbr",
+            "thin_glass",
+            "rough_dielectric",
+            "glass"
+        ]
     );
     assert_eq!(all(Kind::Masking), microfacets);
     assert!(all(Kind::Fresnel).contains(&"ashikhmin_shirley") && !all(Kind::Fresnel).contains(&"phong"));

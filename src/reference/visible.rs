@@ -371,9 +371,9 @@ mod tests {
     fn the_nearest_light_is_seen_and_lights_without_end_add_up() {
         let mut both = scene("sphere", 5.0);
         both.lights.push(Light { intensity: 7.0, ..scene("disc", 3.0).lights.remove(0) });
-        assert!((ahead(&both).x - 3.0).abs() < 1e-5);
+        assert!((ahead(&both).x - 3.0 * PI).abs() < 1e-5);
         both.lights.reverse();
-        assert!((ahead(&both).x - 3.0).abs() < 1e-5);
+        assert!((ahead(&both).x - 3.0 * PI).abs() < 1e-5);
         let mut sum = scene("environment", 0.0);
         let [sky, sun] = [ahead(&sum), ahead(&scene("sun", 0.0))];
         sum.lights.extend(scene("sun", 0.0).lights);
