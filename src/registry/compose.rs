@@ -21,9 +21,9 @@ use crate::{
     shader::{
         Source,
         compose::{
-            ALBEDO, CHANNELS, Composed, Composer, DISPLAY, EVALUATE, EXTENDED, HIERARCHY, INSIDE, LIGHT_ALONE,
-            LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources, THROUGH, TRANSMISSION,
-            WRAPPER, parameter_struct,
+            ABSORPTION, ALBEDO, CHANNELS, Composed, Composer, DISPERSION, DISPLAY, EVALUATE, EXTENDED,
+            HIERARCHY, INSIDE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING,
+            SHADING_ALONE, Sources, THROUGH, TRANSMISSION, WRAPPER, parameter_struct,
         },
     },
     shading::{self, ShadingEntry},
@@ -190,9 +190,9 @@ pub fn light_dispatch(lights: &[LightEntry]) -> String {
 }
 
 /// The files that every source for drawing needs besides the vocabulary, and those for other uses.
-pub(crate) const SHARED: [Source; 15] = [
-    ALBEDO, PANORAMA, LIGHTS, SAMPLING, SHADING, HIERARCHY, INSIDE, THROUGH, LOOP, EXTENDED, CHANNELS, DISPLAY, WRAPPER,
-    SEEN, EVALUATE,
+pub(crate) const SHARED: [Source; 17] = [
+    ALBEDO, PANORAMA, DISPERSION, ABSORPTION, LIGHTS, SAMPLING, SHADING, HIERARCHY, INSIDE, THROUGH, LOOP,
+    EXTENDED, CHANNELS, DISPLAY, WRAPPER, SEEN, EVALUATE,
 ];
 
 /// The table from which a single light type reads the numbers of its files: one row, see [`compose_light`].
@@ -251,7 +251,7 @@ fn push_body(c: &mut Composer, solid: bool, extent: bool) {
         c.push("(no light with extent)", &part("no_extent", &[]));
     }
     c.push("(the body)", &part("solid", &[]));
-    [HIERARCHY, INSIDE, THROUGH].iter().for_each(|source| c.source(source));
+    [DISPERSION, ABSORPTION, HIERARCHY, INSIDE, THROUGH].iter().for_each(|source| c.source(source));
 }
 
 /// The parts of the light loop that depend on whether light passes through a model's surface, and on whether it does so
@@ -388,7 +388,7 @@ pub fn files(
     let known = OPTICS
         .iter()
         .chain(TRANSMISSION)
-        .chain([&ALBEDO, &PANORAMA])
+        .chain([&ALBEDO, &PANORAMA, &DISPERSION, &ABSORPTION])
         .map(|s| (Part::Vocabulary, s))
         .chain(lights.iter().map(|l| (Part::LightType, &l.declaration.wgsl)))
         .chain([

@@ -29,9 +29,11 @@ pub const TRANSMISSION: &[Source] = &[
     wgsl!("optics/refraction.wgsl"),
     wgsl!("optics/interface.wgsl"),
     wgsl!("optics/slab.wgsl"),
-    wgsl!("optics/dispersion.wgsl"),
-    wgsl!("optics/absorption.wgsl"),
 ];
+/// The refractive index by wavelength, for solid bodies.
+pub const DISPERSION: Source = wgsl!("optics/dispersion.wgsl");
+/// Absorption along a way, for solid bodies.
+pub const ABSORPTION: Source = wgsl!("optics/absorption.wgsl");
 /// The directional albedo from the curve in a row, for models that have one.
 pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");
 /// Pictures of the surroundings, for light types that import it.

@@ -11,7 +11,7 @@ use lights_camera_models::{
     },
     shader::{
         check::validate,
-        compose::{Composed, OPTICS, TRANSMISSION},
+        compose::{ABSORPTION, Composed, DISPERSION, OPTICS, TRANSMISSION},
         interpret::Program,
     },
 };
@@ -60,7 +60,7 @@ struct Twins(naga::Module);
 
 impl Twins {
     fn new() -> Self {
-        let optics: String = OPTICS.iter().chain(TRANSMISSION).map(|source| source.text).collect();
+        let optics: String = OPTICS.iter().chain(TRANSMISSION).chain([&DISPERSION, &ABSORPTION]).map(|source| source.text).collect();
         let text = optics + WRAPPERS;
         Self(validate(&Composed { text, ..Composed::default() }).expect("valid WGSL"))
     }
