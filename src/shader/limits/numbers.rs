@@ -17,7 +17,7 @@ limits! {
     /// The longest composed text, bytes. The preprocessor has 21 bits for a place in it.
     bytes: usize = 1 << 20,
     /// The most tokens of a composed text.
-    tokens: usize = 100_000,
+    tokens: usize = 150_000,
     /// The most statements of a composed text.
     statements: usize = 8_192,
     /// The most declarations of a composed text: functions, constants, types, variables.
