@@ -41,7 +41,7 @@ use crate::{
     channel::Setting,
     optics::TermSelection,
     registry::Registry,
-    scene::{Display, Scene, observer::clip_from_room},
+    scene::{Display, Object, Scene, observer::clip_from_room},
 };
 
 mod channel;
@@ -75,7 +75,7 @@ pub(crate) use instead::Leaving;
 pub use layers::{render_layers, render_numbers};
 use lighting::Lights;
 pub(crate) use lighting::within_bounds;
-use meshes::Meshes;
+use meshes::{Meshes, Prepared};
 use object::{Draw, hidden};
 pub use outlines::outlines;
 pub(crate) use raster::sample_positions;
@@ -335,23 +335,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
         let mut tiles: Vec<Option<Tile<S>>> = band.clone().map(|_| None).collect();
         let mut rest = &shown[..];
         loop {
-            let (mut batch, mut polygons) = (Vec::new(), 0);
-            while let [object, later @ ..] = rest
-                && !late()
-            {
-                if let Some(shape) = meshes.first(rest)
-                    && !hidden(object, &shape, &frustum)
-                {
-                    polygons += shape.mesh.polygons.len();
-                    if polygons > POLYGONS_PER_BATCH && !batch.is_empty() {
-                        break;
-                    }
-                    batch.push((*object, shape));
-                }
-                rest = later;
-            }
-
-            let draws: Vec<Draw> = batch
+            let draws: Vec<Draw> = batch(&mut rest, &mut meshes, &frustum, &late)
                 .into_par_iter()
                 .filter_map(|(object, shape)| (!late()).then(|| Draw::new(scene, registry, object, shape))?)
                 .map(|draw| match sight {
@@ -359,63 +343,34 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
                     None => draw,
                 })
                 .collect();
-            let triangles: Vec<Vec<Triangle>> = draws
-                .par_iter()
-                .map(
-                    |draw| {
-                        if late() { Vec::new() } else { draw.triangles(&lights, &clip_from_room, &screen) }
-                    },
-                )
-                .collect();
+            let of = |draw: &Draw| draw.triangles(&lights, &clip_from_room, &screen);
+            let triangles: Vec<Vec<Triangle>> =
+                draws.par_iter().map(|draw| if late() { Vec::new() } else { of(draw) }).collect();
             let bins = bin(&triangles, &screen, &band);
 
             // A tile is finished as soon as the last batch has been drawn into it, which keeps few of them in
             // memory; the picture is assembled when all are finished.
-            let finished: Vec<(usize, Finished<T>)> = tiles
-                .par_iter_mut()
-                .zip(&bins)
-                .zip(band.clone())
-                .filter_map(|((tile, bin), i)| {
-                    for &(object, triangle) in bin {
-                        if late() {
-                            break;
-                        }
-                        let draw = &draws[object as usize];
-                        let triangle = &triangles[object as usize][triangle as usize];
-                        let lighting = draw.under(&lights);
-                        let tile = tile.get_or_insert_with(Tile::new);
-                        tile.draw(triangle, &*draw.shading, &lighting, origin(i, &screen), &screen);
-                    }
-                    if !rest.is_empty() {
-                        return None;
-                    }
-                    let origin = origin(i, &screen);
-                    let mut tile = tile.take();
-                    let visible = visible.as_ref().filter(|_| !late());
-                    if let Some(lights) = visible.and_then(|visible| visible.within(origin, TILE, S)) {
-                        if let (None, Some(light)) = (&tile, lights.throughout) {
-                            return Some((i, Finished::Even(finish(even::<S>(light), origin[1]))));
-                        }
-                        tile.get_or_insert_with(Tile::new).show(&lights);
-                    }
-                    let tile = tile?;
-                    let pixels = tile.resolve().enumerate();
-                    let pixels = pixels.map(|(at, pixel)| finish(pixel, origin[1] + at / TILE)).collect();
-                    Some((i, Finished::Pixels(pixels)))
-                })
-                .collect();
-            for (i, pixels) in finished {
-                let [left, top] = origin(i, &screen);
-                let columns = TILE.min(width - left);
-                for (row, out) in out.chunks_exact_mut(width).skip(top).take(TILE).enumerate() {
-                    let out = &mut out[left..left + columns];
-                    match &pixels {
-                        Finished::Even(pixel) => out.fill(*pixel),
-                        Finished::Pixels(pixels) => out.copy_from_slice(&pixels[row * TILE..][..columns]),
-                    }
+            let is_last = rest.is_empty();
+            let draw = |tile: &mut Option<Tile<S>>, bin: &[(u32, u32)], origin: [usize; 2]| {
+                for &(object, triangle) in bin.iter().take_while(|_| !late()) {
+                    let draw = &draws[object as usize];
+                    let triangle = &triangles[object as usize][triangle as usize];
+                    let lighting = draw.under(&lights);
+                    let tile = tile.get_or_insert_with(Tile::new);
+                    tile.draw(triangle, &*draw.shading, &lighting, origin, &screen);
                 }
+                let visible = visible.as_ref().filter(|_| is_last && !late());
+                is_last.then(|| finished(tile.take(), visible, origin, &finish))?
+            };
+            let drawn = tiles.par_iter_mut().zip(&bins).zip(band.clone());
+            let drawn = drawn.filter_map(|((tile, bin), i)| {
+                let origin = origin(i, &screen);
+                Some((origin, draw(tile, bin, origin)?))
+            });
+            for (origin, tile) in drawn.collect::<Vec<_>>() {
+                tile.put(&mut out, width, origin);
             }
-            if rest.is_empty() || late() {
+            if is_last || late() {
                 break;
             }
         }
@@ -426,12 +381,69 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     out
 }
 
+/// The next objects, as many as are held at a time, with their meshes; those after them remain.
+fn batch<'a>(
+    rest: &mut &[&'a Object],
+    meshes: &mut Meshes,
+    frustum: &[Vec4],
+    late: &impl Fn() -> bool,
+) -> Vec<(&'a Object, Arc<Prepared>)> {
+    let (mut batch, mut polygons) = (Vec::new(), 0);
+    while let [object, later @ ..] = *rest
+        && !late()
+    {
+        if let Some(shape) = meshes.first(rest)
+            && !hidden(object, &shape, frustum)
+        {
+            polygons += shape.mesh.polygons.len();
+            if polygons > POLYGONS_PER_BATCH && !batch.is_empty() {
+                break;
+            }
+            batch.push((*object, shape));
+        }
+        *rest = later;
+    }
+    batch
+}
+
+/// A tile after its last object, with the lights that are visible in it; `None` if it is empty.
+fn finished<const S: usize, T: Copy>(
+    mut tile: Option<Tile<S>>,
+    visible: Option<&VisibleLights>,
+    origin: [usize; 2],
+    finish: &impl Fn(Vec4, usize) -> T,
+) -> Option<Finished<T>> {
+    if let Some(lights) = visible.and_then(|visible| visible.within(origin, TILE, S)) {
+        if let (None, Some(light)) = (&tile, lights.throughout) {
+            return Some(Finished::Even(finish(even::<S>(light), origin[1])));
+        }
+        tile.get_or_insert_with(Tile::new).show(&lights);
+    }
+    let tile = tile?;
+    let pixels = tile.resolve().enumerate().map(|(at, pixel)| finish(pixel, origin[1] + at / TILE));
+    Some(Finished::Pixels(pixels.collect()))
+}
+
 /// A finished tile.
 enum Finished<T> {
     /// All pixels are the same.
     Even(T),
     /// Row by row.
     Pixels(Vec<T>),
+}
+
+impl<T: Copy> Finished<T> {
+    /// Puts the tile with this first pixel into a picture.
+    fn put(&self, picture: &mut [T], width: usize, [left, top]: [usize; 2]) {
+        let columns = TILE.min(width - left);
+        for (row, line) in picture.chunks_exact_mut(width).skip(top).take(TILE).enumerate() {
+            let line = &mut line[left..left + columns];
+            match self {
+                Self::Even(pixel) => line.fill(*pixel),
+                Self::Pixels(pixels) => line.copy_from_slice(&pixels[row * TILE..][..columns]),
+            }
+        }
+    }
 }
 
 /// The first pixel of a tile.
@@ -467,7 +479,6 @@ fn bin(triangles: &[Vec<Triangle>], screen: &Screen, band: &Range<usize>) -> Vec
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Object;
 
     #[test]
     fn large_pictures_are_drawn_in_bands_without_seams() {

@@ -67,6 +67,8 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     let description = request.scene.description.as_deref().unwrap_or_default();
     let (scene, meshes) = (packed(data.scene.to_string().as_bytes())?, packed(&data.meshes)?);
     let explained = explained::parts(&data.points)?;
+    let [own, curves] = [&SCRIPT.concat(), &data.script].map(|script| uncommented(script));
+    let script = [&*own, explained.script, &curves, START].concat();
     let page = filled(
         PAGE,
         &[
@@ -74,7 +76,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
             ("description", &escaped(description)),
             ("style", &[STYLE, explained.style].concat()),
             ("section", &explained.section),
-            ("script", &[SCRIPT.concat().as_str(), explained.script, &data.script, START].concat()),
+            ("script", &script),
             ("scene", &scene),
             ("meshes", &meshes),
             ("explained", &explained.data),
@@ -87,6 +89,11 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         return Err(ExportError::refused(too_large(page.len(), [values, meshes.len(), words], several)));
     }
     Ok(Export { notes: data.notes, ..Export::file(page) })
+}
+
+/// A script without the lines that are comments, which would take a tenth of the scripts' room.
+fn uncommented(script: &str) -> String {
+    script.split_inclusive('\n').filter(|line| !line.trim_start().starts_with("//")).collect()
 }
 
 /// The sizes of the page, of its shaders and values, of its meshes, and of the scene's name and description.
@@ -124,6 +131,17 @@ mod tests {
             assert!(PAGE.contains(&format!("{{{{{place}}}}}")), "{place}");
         }
         assert!(!SCRIPT.concat().contains("</") && !STYLE.contains("</"));
+    }
+
+    #[test]
+    fn scripts_lose_their_lines_of_comments_alone() {
+        let script = "// A.\nconst a = 1; // one\n  // B\nconst b = 'http://b';\n";
+        assert_eq!(uncommented(script), "const a = 1; // one\nconst b = 'http://b';\n");
+        // A line of a text that begins so would be lost.
+        let texts = SCRIPT.iter().filter(|script| script.matches('`').count() % 2 == 1);
+        assert_eq!(texts.count(), 0);
+        let within = |script: &str| script.split('`').skip(1).step_by(2).any(|text| text.contains('\n'));
+        assert!(!SCRIPT.iter().any(|script| within(script)));
     }
 
     #[test]

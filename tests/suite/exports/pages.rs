@@ -88,7 +88,7 @@ fn every_model_can_be_drawn_with_every_shading_model_under_every_light() {
     }
     scene.lights = all;
     // All models under all lights at once exceed a page.
-    for some in scene.objects.clone().chunks(8) {
+    for some in scene.objects.clone().chunks(12) {
         scene.objects = some.to_vec();
         page(&scene).expect("all lights at once");
     }
