@@ -14,7 +14,7 @@ use crate::{
     failure::Failure,
     optics::{Frame, Terms, colour::Encoding, geometry::direction},
     parameter::{Value, Values},
-    reflection::{ModelEntry, Surface, brdf, brdf_of},
+    reflection::{ModelEntry, Surface, brdf_of, bsdf},
     registry::Registry,
     render::capture::{evaluate::Evaluator, gpu::GpuError},
     scene::field::Ids,
@@ -135,7 +135,8 @@ impl<const N: usize, I> Quantity<N, I> {
     }
 }
 
-/// The BRDF for pairs of directions. Angles beyond 90° are below the surface, where it is 0.
+/// The BSDF for pairs of directions. Beyond 90° is below the surface: some models transmit light from there, and what they
+/// transmit to observers there is known on the CPU.
 pub(super) const BRDF: Quantity<4, (Vec3, Vec3)> = Quantity {
     columns: [
         Column { name: "theta_i", range: Some((0.0, 180.0)) },
@@ -145,7 +146,7 @@ pub(super) const BRDF: Quantity<4, (Vec3, Vec3)> = Quantity {
     ],
     header: "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b",
     input: |[theta_i, phi_i, theta_o, phi_o]| (direction(theta_i, phi_i), direction(theta_o, phi_o)),
-    on_cpu: |surface, pairs| pairs.iter().map(|(l, v)| brdf(surface, *l, *v, &Frame::LOCAL)).collect(),
+    on_cpu: |surface, pairs| pairs.iter().map(|(l, v)| bsdf(surface, *l, *v, &Frame::LOCAL)).collect(),
     on_gpu: |gpu, pairs| {
         let of = |(terms, (l, v)): (Terms, &(Vec3, Vec3))| brdf_of(terms, *l, *v, &Frame::LOCAL);
         Ok(gpu.evaluate(pairs)?.into_iter().zip(pairs).map(of).collect())

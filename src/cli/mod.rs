@@ -280,8 +280,9 @@ enum Command {
     ///
     /// Reads CSV from standard input, with the columns theta_i, phi_i, theta_o, phi_o: the directions to the light (i)
     /// and to the observer (o) in degrees, theta from the normal and phi around it from the tangent. Adds the columns
-    /// f_r, f_g, f_b: the red, green and blue BRDF in 1/sr, diffuse and specular without the cosine; 0 below the
-    /// surface (theta beyond 90°).
+    /// f_r, f_g, f_b: the red, green and blue BRDF in 1/sr, diffuse and specular without the cosine. A light or an
+    /// observer below the surface (theta beyond 90°) gives what the model transmits, 0 for most; with --on gpu,
+    /// observers there see 0.
     Evaluate(evaluate::Arguments),
     /// Compare Blinn–Phong with physically based models and take OpenPBR apart: a report with numbers
     Study(study::Arguments),

@@ -13,6 +13,7 @@ use clap::{Args, ValueEnum};
 use super::{
     FINE, Options, Outcome,
     changes::Changes,
+    check::drawn_thin,
     collected, finite, gauged,
     light_samples::{self, Sampling},
     linear::{self, Kinds},
@@ -264,6 +265,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
     for part in plans.iter().flat_map(|plan| &plan.parts) {
         drawable(registry, &part.scene)?;
+    }
+    for (scene, source) in scenes.iter().zip(&sources) {
+        drawn_thin(scene, &source.name(), registry).into_iter().for_each(|line| options.tell(line));
     }
     // All files are in a single folder.
     files.first().into_iter().for_each(|file| outputs::tidy_beside(file));

@@ -354,14 +354,16 @@ pub(super) fn shader_problems(registry: &Registry, scene: &Scene) -> Vec<(usize,
     let lights = registry.lights_in(scene.light_types(registry));
     let mut pairs = BTreeMap::new();
     for (i, object) in scene.objects.iter().enumerate() {
-        pairs.entry((scene.model_of(object), scene.shading_model_of(object))).or_insert(i);
+        let id = scene.model_of(object);
+        let passage = registry.model(id).map(|model| model.passage(&object.material));
+        pairs.entry((id, passage.unwrap_or_default(), scene.shading_model_of(object))).or_insert(i);
     }
     let mut problems: Vec<(usize, ShaderProblem)> = Vec::new();
-    for ((model, shading), i) in pairs {
+    for ((model, passage, shading), i) in pairs {
         let (Some(model), Some(shading)) = (registry.model(model), registry.shading_model(shading)) else {
             continue;
         };
-        let composed = compose(registry.sources(), model, shading, &lights);
+        let composed = compose(registry.sources(), (model, passage), shading, &lights);
         let faces = shading.declaration.stage == Stage::Polygon;
         if let Err(problem) = validate_drawing(&composed, faces) {
             let problem = wgsl::blamed(problem, registry, model, shading, &lights);

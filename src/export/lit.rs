@@ -16,16 +16,17 @@ use super::{
 use crate::{
     optics::{
         colour::{BACKGROUND, Encoding},
+        interior::Interior,
         tone::exposure_factor,
     },
     parameter::{Parameter, Values, pack},
-    reflection::ModelEntry,
+    reflection::{ModelEntry, Passage},
     render::{
         entities::object_transform,
         material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
         meshes::{face_mesh, shared_mesh},
     },
-    scene::{Background, Object},
+    scene::{Background, Object, Scene},
     shader::compose::WRAPPER,
     shading::{ShadingEntry, Stage},
     shape::MeshKey,
@@ -53,14 +54,16 @@ struct Known {
     meshes: HashMap<(MeshKey, bool), usize>,
     /// Names of the meshes.
     names: Names,
-    /// By program and values.
-    materials: HashMap<(usize, String), usize>,
+    /// By program and values, and the mesh of a solid body.
+    materials: HashMap<(usize, String, Option<MeshKey>), usize>,
 }
 
 /// A shader, and the models that it consists of.
 pub struct Program<'a> {
     /// The reflection model.
     pub model: &'a ModelEntry,
+    /// How light passes through the objects with the shader.
+    pub passage: Passage,
     /// The shading model.
     pub shading: &'a ShadingEntry,
     /// The shader.
@@ -74,10 +77,11 @@ impl Program<'_> {
         self.shading.declaration.stage == Stage::Polygon
     }
 
-    /// A name for files: `microfacet_phong`.
+    /// A name for files: `microfacet_phong`, `openpbr_phong_body`.
     #[must_use]
     pub fn name(&self) -> String {
-        format!("{}_{}", self.model.declaration.id, self.shading.declaration.id)
+        let body = if self.passage.solid && self.model.passage_varies() { "_body" } else { "" };
+        format!("{}_{}{body}", self.model.declaration.id, self.shading.declaration.id)
     }
 }
 
@@ -94,6 +98,8 @@ pub struct Material {
     pub curve: Vec<u8>,
     /// The bytes of `material_lobes`; empty for shaders that do not read it.
     pub lobes: Vec<u8>,
+    /// The bytes of `interior`; empty for shaders that do not read it.
+    pub interior: Vec<u8>,
     /// The bytes of `ShadingParameters`; empty for shaders that do not read it.
     pub shading: Vec<u8>,
 }
@@ -196,29 +202,32 @@ impl<'a> Lit<'a> {
         let shading = registry.shading_model(shading).ok_or_else(|| unknown("shading model", shading))?;
         let shape =
             registry.shape(&object.object_type).ok_or_else(|| unknown("object type", &object.object_type))?;
+        let solid = model.passage(&object.material).solid;
         let same = |p: &Program| {
             p.model.declaration.id == model.declaration.id
                 && p.shading.declaration.id == shading.declaration.id
+                && p.passage.solid == solid
         };
         let program = match self.programs.iter().position(same) {
             Some(program) => program,
             None => {
-                let shader = compose(&self.lights, registry, model, shading, host)?;
-                self.programs.push(Program { model, shading, shader });
+                let passage = passage_of(scene, model, solid);
+                let shader = compose(&self.lights, registry, (model, passage), shading, host)?;
+                self.programs.push(Program { model, passage, shading, shader });
                 self.programs.len() - 1
             }
         };
         let values = self.values(program, object);
+        let key = shape.key(&object.shape, object.tessellation);
         // Debug distinguishes all numbers.
-        let look = (program, format!("{values:?}"));
+        let look = (program, format!("{values:?}"), solid.then(|| key.clone()));
         let material = *known.materials.entry(look).or_insert_with(|| {
             let material = self.material(program, values);
             self.materials.push(material);
             self.materials.len() - 1
         });
         let faces = self.programs[program].faces();
-        let key = (shape.key(&object.shape, object.tessellation), faces);
-        let mesh = *known.meshes.entry(key).or_insert_with(|| {
+        let mesh = *known.meshes.entry((key, faces)).or_insert_with(|| {
             let tessellation = shape.tessellation(object.tessellation);
             let polygons = shape.mesh(&object.shape, tessellation);
             let mesh = if faces { face_mesh(&polygons) } else { shared_mesh(&polygons) };
@@ -239,7 +248,7 @@ impl<'a> Lit<'a> {
     }
 
     fn material(&self, program: usize, values: Values) -> Material {
-        let Program { model, shading, shader } = &self.programs[program];
+        let Program { model, shading, shader, .. } = &self.programs[program];
         let encoding = self.request.scene.display.encoding;
         let parameters = pack(model.parameters, &values, encoding);
         let curve = if shader.reads_curve {
@@ -253,8 +262,15 @@ impl<'a> Lit<'a> {
         } else {
             Vec::new()
         };
+        let interior = if shader.reads_body {
+            let inside = model.instantiate(&values, encoding).interior().unwrap_or(Interior::AIR);
+            let rows = inside.rows(self.programs[program].shading.declaration.faceted);
+            rows.into_iter().flat_map(|row| row.to_array()).flat_map(f32::to_le_bytes).collect()
+        } else {
+            Vec::new()
+        };
         let own = if shader.reads_shading { pack(shading.parameters, &values, encoding) } else { Vec::new() };
-        Material { program, values, parameters, curve, lobes, shading: own }
+        Material { program, values, parameters, curve, lobes, interior, shading: own }
     }
 
     /// Sentences about differences from the picture in the lab.
@@ -293,6 +309,14 @@ impl<'a> Lit<'a> {
         let display = &self.request.scene.display;
         display.backdrop().filter(|_| display.background == Background::Gradient)
     }
+}
+
+/// How light passes through the objects that share a shader: all solid bodies of a model, or all others.
+#[must_use]
+pub fn passage_of(scene: &Scene, model: &ModelEntry, solid: bool) -> Passage {
+    let own = scene.objects.iter().filter(|object| scene.model_of(object) == model.declaration.id);
+    let passages = own.map(|object| model.passage(&object.material)).filter(|passage| passage.solid == solid);
+    passages.fold(Passage { solid, ..Passage::NONE }, |all, one| all | one)
 }
 
 fn data(name: String, mesh: &Mesh, faces: bool) -> MeshData {

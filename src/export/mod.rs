@@ -11,6 +11,7 @@ pub use crate::progress::Progress;
 use crate::{progress::Cancelled, registry::Registry, scene::Scene};
 
 mod bevy;
+pub mod bodies;
 mod executable;
 pub mod html;
 pub mod lights;

@@ -16,6 +16,7 @@ use super::{
     declaration::{Ambient, Declaration},
     group::Group,
     model::OnPages,
+    passage::Passage,
     preset::{self, Measured},
     surface::{Instance, Surface},
 };
@@ -43,8 +44,11 @@ pub struct ModelEntry {
     pub preset: fn(&Measured) -> Vec<(&'static str, Value)>,
     lobe: Lobe,
     curves: &'static [NamedCurve],
+    /// See [`ReflectionModel::PASSAGE`].
+    passage: Option<fn(&Values) -> Passage>,
     pub(super) instantiate: Instantiate,
     on_pages: Option<OnPages>,
+    interior_on_pages: Option<&'static str>,
     on_cpu: Option<Arc<dyn Interpreted>>,
     identity: Identity,
     /// Surfaces with curves, by their packed parameters: objects of one material share one.
@@ -111,7 +115,9 @@ impl ModelEntry {
         Self {
             groups: M::GROUPS,
             preset: M::preset,
+            passage: M::PASSAGE,
             on_pages: M::ON_PAGES,
+            interior_on_pages: M::INTERIOR_ON_PAGES,
             ..Self::custom(const { &M::DECLARATION }, M::PARAMETERS, lobe, M::CURVES, instantiate, None)
         }
     }
@@ -132,8 +138,10 @@ impl ModelEntry {
             preset: preset::by_names(parameters),
             lobe,
             curves,
+            passage: None,
             instantiate,
             on_pages: None,
+            interior_on_pages: None,
             on_cpu,
             identity: Identity::new(declaration, parameters),
             kept: Arc::default(),
@@ -175,6 +183,27 @@ impl ModelEntry {
     pub(crate) fn run_again(&self) {
         if let Some(on_cpu) = &self.on_cpu {
             on_cpu.run_again();
+        }
+    }
+
+    /// How light passes through surfaces with these parameters.
+    #[must_use]
+    pub fn passage(&self, values: &Values) -> Passage {
+        self.passage.map_or_else(|| self.declaration.passage(), |of| of(values))
+    }
+
+    /// True if the parameters decide how light passes.
+    #[must_use]
+    pub fn passage_varies(&self) -> bool {
+        self.passage.is_some()
+    }
+
+    /// All ways in which light passes through surfaces of the model.
+    #[must_use]
+    pub fn passages(&self) -> Vec<Passage> {
+        match self.passage {
+            Some(_) => vec![Passage::NONE, Passage::SHEET, Passage::BODY],
+            None => vec![self.declaration.passage()],
         }
     }
 
@@ -241,6 +270,12 @@ impl ModelEntry {
     #[must_use]
     pub fn on_pages(&self) -> Option<OnPages> {
         self.on_pages
+    }
+
+    /// See [`ReflectionModel::INTERIOR_ON_PAGES`].
+    #[must_use]
+    pub fn interior_on_pages(&self) -> Option<&'static str> {
+        self.interior_on_pages
     }
 
     /// The number of quadruples in the curves of a row: the harmonics of the albedo, then the additional

@@ -15,6 +15,7 @@ use bevy::{
 use super::converge::Part;
 use crate::{
     channel::Setting,
+    debug,
     light::{LightRecord, MAX_LIGHTS},
     optics::{TermSelection, colour::Encoding, tone::exposure_factor},
     parameter::Table,
@@ -210,6 +211,9 @@ pub fn illumination_bytes(
             put(SAMPLES_AT + 8, LOOK_NUMBERS.to_le_bytes());
         }
         put(16, channel.code().to_le_bytes());
+        if channel.is_of_remaining() {
+            put(4, debug::REMAINING.to_le_bytes());
+        }
         put(20, light.map_or(u32::MAX, |light| light as u32).to_le_bytes());
         let directed = channel.has_light() && !channel.is_picture();
         let low = if directed { f32::from(u8::from(*from_position)) } else { *low };

@@ -53,6 +53,8 @@ pub(super) enum Vertices {
 pub struct MaterialInputs {
     /// The parameters of all objects with the model.
     pub parameters: Handle<ShaderBuffer>,
+    /// The hierarchy of the object's mesh, for models of solid bodies; for others any buffer.
+    pub solid: Handle<ShaderBuffer>,
     /// The lights of the scene, shared by all materials.
     pub illumination: LightBuffers,
     /// The composed shader of model and shading model.
@@ -100,14 +102,15 @@ impl<M: Clone + 'static> AsBindGroup for ModelMaterial<M> {
         _: bool,
     ) -> Result<UnpreparedBindGroup, AsBindGroupError> {
         let LightBuffers { lights, words } = &self.inputs.illumination;
-        bound(buffers, [(0, &self.inputs.parameters), (1, lights), (2, words)])
+        let MaterialInputs { parameters, solid, .. } = &self.inputs;
+        bound(buffers, [(0, parameters), (1, lights), (2, words), (3, solid)])
     }
 
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
         let storage = || storage_buffer_read_only_sized(false, None);
         BindGroupLayoutEntries::sequential(
             ShaderStages::VERTEX_FRAGMENT,
-            (storage(), uniform_buffer_sized(false, None), storage()),
+            (storage(), uniform_buffer_sized(false, None), storage(), storage()),
         )
         .to_vec()
     }
@@ -241,16 +244,20 @@ fn attachment<M: Clone + 'static>(app: &mut App) -> Attachment {
     Attachment { attach: attach::<M>, detach: detach::<M>, forget: forget::<M> }
 }
 
-/// The materials of one model by shader and light buffer: one for each shading model in use, shared by the
-/// views without overrides, and separate for each view with overrides.
+/// The materials of one model by shader, light buffer and, for solid bodies, hierarchy: one for each shading model in use,
+/// shared by the views without overrides, and separate for each view with overrides.
 #[derive(Resource)]
 struct SharedMaterials<M: Clone + 'static>(
-    HashMap<(AssetId<Shader>, AssetId<ShaderBuffer>), Handle<ModelMaterial<M>>>,
+    HashMap<[bevy::asset::UntypedAssetId; 3], Handle<ModelMaterial<M>>>,
 );
 
 fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, inputs: MaterialInputs) {
     let handle = entity.world_scope(|world: &mut World| {
-        let key = (inputs.shader.id(), inputs.illumination.lights.id());
+        let key = [
+            inputs.shader.id().untyped(),
+            inputs.illumination.lights.id().untyped(),
+            inputs.solid.id().untyped(),
+        ];
         world.get_resource_or_insert_with(|| SharedMaterials::<M>(HashMap::new()));
         world.resource_scope(|world, mut shared: Mut<SharedMaterials<M>>| {
             let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
@@ -279,6 +286,6 @@ fn detach<M: Clone + 'static>(entity: &mut EntityWorldMut) {
 
 fn forget<M: Clone + 'static>(world: &mut World, illumination: AssetId<ShaderBuffer>) {
     if let Some(mut shared) = world.get_resource_mut::<SharedMaterials<M>>() {
-        shared.0.retain(|(_, lit_by), _| *lit_by != illumination);
+        shared.0.retain(|[_, lit_by, _], _| *lit_by != illumination.untyped());
     }
 }

@@ -20,6 +20,7 @@ use super::{
     schedule::{LabFrame, LabSystems, detect},
     seen,
     shown::{Shown, show_lights},
+    solids::Solids,
     stage::{Stage, set_stages},
     straight::StraightPlugin,
     swap::swap,
@@ -59,6 +60,7 @@ impl Plugin for ScenePlugin {
             .register_type::<parts::SceneObserver>()
             .register_type::<parts::Animated>()
             .init_resource::<ShapeMeshes>()
+            .init_resource::<Solids>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
             .init_schedule(LabFrame)

@@ -16,6 +16,7 @@ use super::{
     nearest,
     overrides::Overrides,
     shown::{Shown, ShownObject},
+    solids::Solids,
     stage::{Stage, ViewCopy, copies},
     tables::{ParameterTables, Row, row},
 };
@@ -23,7 +24,7 @@ use crate::{
     light::MAX_LIGHTS,
     optics::colour::Encoding,
     parameter::{Value, file_changes},
-    reflection::ModelEntry,
+    reflection::{ModelEntry, Passage},
     registry::Registry,
     scene::{MAX_OBJECTS, Object, Scene, shines_from_everywhere},
     shading,
@@ -121,7 +122,7 @@ pub fn swap(
         .map(|Pending { shown, now, .. }| {
             let (model, shading) = (registry.model(&now.model)?, registry.shading_model(&now.shading)?);
             let extent = registry.has_extent(now.lights);
-            Some(row(model, shading, &shown.material, now.encoding, now.everywhere, extent))
+            Some(row((model, now.passage), shading, &shown.material, now.encoding, now.everywhere, extent))
         })
         .collect();
     let eyes = nearest::eyes(world);
@@ -190,6 +191,7 @@ fn common(scene: &Scene, shown: &Shown, registry: &Registry) -> Drawn {
     Drawn {
         model: scene.reflection_model.clone(),
         shading: scene.shading_model.clone(),
+        passage: Passage::NONE,
         encoding: scene.display.encoding,
         everywhere: shines_from_everywhere(shown.shining(), scene.display.encoding, registry),
         lights: shown.types,
@@ -235,21 +237,25 @@ fn find(
             || (scene.model_of(&object.0), scene.shading_model_of(&object.0)),
             |o| (o.model_of(scene, &object.0), o.shading_model_of(scene, &object.0)),
         );
+        let mut shown = None;
+        if let Some(overrides) = overrides {
+            overrides.dress(shown.get_or_insert_with(|| object.0.clone()), registry);
+        }
+        let entry = registry.model(model);
+        let material = &shown.as_ref().unwrap_or(&object.0).material;
         let now = Drawn {
             model: model.to_owned(),
             shading: shading.to_owned(),
+            passage: entry.map(|entry| entry.passage(material)).unwrap_or_default(),
             encoding,
             everywhere: common.everywhere,
             lights: common.lights,
-            version: registry.model(model).map_or(0, ModelEntry::version),
+            version: entry.map_or(0, ModelEntry::version),
         };
         if only_different && !waits && !object.is_changed() && drawn == Some(&now) {
             continue;
         }
-        let mut shown = object.0.clone();
-        if let Some(overrides) = overrides {
-            overrides.dress(&mut shown, registry);
-        }
+        let shown = shown.unwrap_or_else(|| object.0.clone());
         pending.push(Pending { view, object: entity, drawable: drawable.id(), shown, now });
     }
     world.resource_mut::<SceneEntities>().bypass_change_detection().visits += visits;
@@ -284,7 +290,7 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         return;
     };
     let shader = world.resource_scope(|world, mut shaders: Mut<LiveShaders>| {
-        shaders.get(world, (model, shading, now.lights), registry)
+        shaders.get(world, (model, now.passage, shading, now.lights), registry)
     });
     let Some(shader) = shader else {
         world.entity_mut(drawable).insert(AwaitsShader);
@@ -293,14 +299,22 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     let Some(row) = row_of(world, object) else { return };
     let faces = vertices == Vertices::Apart;
     let parameters = world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
-        tables.set(view, model, row, bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
+        tables.set(view, (model, now.passage), row, bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
     });
     let illumination = view.and_then(|view| world.get::<Stage>(view)).map_or_else(
         || world.resource::<IlluminationBuffer>().buffers.clone(),
         |stage| stage.illumination.clone(),
     );
     let gamma_naive = now.encoding == Encoding::Off;
-    let inputs = MaterialInputs { parameters, illumination, shader, faces, gamma_naive };
+    let solid = if now.passage.solid {
+        world.resource_scope(|world, mut solids: Mut<Solids>| {
+            solids.get(shape, &shown, &mut world.resource_mut::<Assets<ShaderBuffer>>())
+        })
+    } else {
+        // Not read.
+        illumination.words.clone()
+    };
+    let inputs = MaterialInputs { parameters, solid, illumination, shader, faces, gamma_naive };
     let attachments = world.resource::<Attachments>();
     let old = world
         .get::<Drawn>(drawable)

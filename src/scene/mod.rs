@@ -7,7 +7,8 @@
 use std::collections::BTreeSet;
 
 use crate::{
-    parameter::{NamedFile, Value},
+    parameter::{NamedFile, Value, Values},
+    reflection::{ModelEntry, Passage},
     registry::{LightSet, Registry},
 };
 
@@ -116,6 +117,14 @@ impl Scene {
     #[must_use]
     pub fn light_types(&self, registry: &Registry) -> LightSet {
         registry.light_set(self.lights.iter().map(|light| light.light_type.as_str()))
+    }
+
+    /// How light passes through the surfaces of the scene's objects with a model, all together.
+    #[must_use]
+    pub fn passage_of(&self, model: &ModelEntry) -> Passage {
+        let own = self.objects.iter().filter(|object| self.model_of(object) == model.declaration.id);
+        let passages = own.map(|object| model.passage(&object.material));
+        passages.reduce(|all, one| all | one).unwrap_or_else(|| model.passage(&Values::default()))
     }
 
     /// The files named by lights and objects, with repetitions.

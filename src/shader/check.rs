@@ -129,7 +129,8 @@ mod tests {
     fn the_shader_reads_as_many_words_as_a_light_has() {
         let registry = Registry::builtin();
         let (model, shading) = (&registry.models()[0], &registry.shading_models()[0]);
-        let composed = compose(&Sources::default(), model, shading, registry.lights());
+        let composed =
+            compose(&Sources::default(), (model, model.declaration.passage()), shading, registry.lights());
         for light in registry.lights() {
             for twin in Twin::all(light.declaration.extent) {
                 let call = format!("{{ return {}(", twin.of(light));

@@ -8,8 +8,10 @@ use bevy::{ecs::component::Component, reflect::Reflectable};
 
 use crate::{declared::take_each, parameter::ParameterSet};
 
+pub mod closed;
 mod entry;
 mod fields;
+pub mod hierarchy;
 pub mod mesh;
 pub mod mesh_file;
 
@@ -23,6 +25,7 @@ mod torus;
 pub use cube::Cube;
 pub use entry::{Bounds, MeshKey, ShapeEntry};
 pub(crate) use fields::fields;
+pub use hierarchy::Hierarchy;
 pub use mesh::PolygonMesh;
 pub use mesh_file::MeshFile;
 pub use sphere::Sphere;
@@ -53,6 +56,8 @@ pub struct Declaration {
     pub summary: &'static str,
     /// A glyph for lists.
     pub glyph: &'static str,
+    /// The reason why the mesh is not closed, for solid models; empty if it is.
+    pub open: &'static str,
     /// The meaning of the tessellation number.
     pub tessellation_help: &'static str,
     /// The legal tessellations.

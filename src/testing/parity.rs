@@ -51,6 +51,7 @@ fn parameter_words(model: &ModelEntry, values: &Values) -> Vec<u32> {
 /// A model's response calculated by its WGSL, with one set of parameters.
 struct Twin<'a> {
     program: &'a Program,
+    transmits: bool,
     row: Vec<u32>,
     parameters: Vec<u32>,
 }
@@ -58,7 +59,12 @@ struct Twin<'a> {
 impl<'a> Twin<'a> {
     fn new(program: &'a Program, model: &ModelEntry, values: &Values) -> Self {
         let row = words(&model.row(values, Encoding::Srgb, false));
-        Self { program, row, parameters: parameter_words(model, values) }
+        Self {
+            program,
+            transmits: model.declaration.transmits,
+            row,
+            parameters: parameter_words(model, values),
+        }
     }
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Result<Terms, String> {
@@ -71,7 +77,8 @@ impl<'a> Twin<'a> {
                 "response takes {takes} numbers and gives {gives}, but must take {all} and give 9"
             ));
         }
-        Ok(vectors::<3>(&run::<9>(self.program, &self.row, &arguments)?).into())
+        let through = self.transmits && frame.n.dot(l) * frame.n.dot(v) < 0.0;
+        Ok(Terms::of_shader(vectors::<3>(&run::<9>(self.program, &self.row, &arguments)?), through))
     }
 }
 
@@ -109,6 +116,13 @@ impl Comparison {
     }
 }
 
+/// Directions to light and viewer; for models that light passes through, half of them on different sides.
+fn pair(model: &ModelEntry, seed: &mut u64) -> (Vec3, Vec3) {
+    let (l, v) = (direction(seed), direction(seed));
+    let through = model.declaration.transmits && random(seed) < 0.5;
+    (if through { Vec3::new(l.x, l.y, -l.z) } else { l }, v)
+}
+
 /// Checks that WGSL interpreted on the CPU agrees with the Rust function in the local frame.
 ///
 /// # Errors
@@ -122,7 +136,7 @@ pub fn interpreted(model: &ModelEntry, sources: &Sources) -> Outcome {
         let twin = Twin::new(&program, model, &values);
         let surface = model.instantiate(&values, Encoding::Srgb);
         for _ in 0..200 {
-            let (l, v) = (direction(&mut seed), direction(&mut seed));
+            let (l, v) = pair(model, &mut seed);
             let rust = surface.response(l, v, &Frame::LOCAL);
             comparison
                 .compare(twin.response(l, v, &Frame::LOCAL)?, rust, || format!("{values:?} l {l} v {v}"))?;
@@ -144,7 +158,8 @@ pub fn in_any_frame(model: &ModelEntry, sources: &Sources) -> Outcome {
     for _ in 0..100 {
         let frame = Frame::new(direction(&mut seed), direction(&mut seed) - direction(&mut seed));
         let room = |d: Vec3| d.x * frame.t + d.y * frame.b + d.z * frame.n;
-        let (l, v) = (room(direction(&mut seed)), room(direction(&mut seed)));
+        let (l, v) = pair(model, &mut seed);
+        let (l, v) = (room(l), room(v));
         let error = difference(twin.response(l, v, &frame)?, surface.response(l, v, &frame));
         // Directions rotated back and forth are rounded differently.
         if error > 2.0 * WIDE {
@@ -196,7 +211,7 @@ pub fn on_gpu(model: &ModelEntry, sources: &Sources) -> Outcome {
     let mut comparison = Comparison::default();
     for _ in 0..8 * (1 + choices) {
         let values = random_values(model, &mut seed);
-        let pairs: Vec<_> = (0..2000).map(|_| (direction(&mut seed), direction(&mut seed))).collect();
+        let pairs: Vec<_> = (0..2000).map(|_| pair(model, &mut seed)).collect();
         let answers = evaluate(sources, model, &values, Encoding::Srgb, &pairs).map_err(|e| e.to_string())?;
         let surface = model.instantiate(&values, Encoding::Srgb);
         for ((l, v), gpu) in pairs.iter().zip(answers) {

@@ -133,7 +133,7 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
 /// Shows one light: the result of the model first, since the user asked for it, then the arriving light, and the
 /// directions that both depend on.
 fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
-    if let Some(remark) = lit.remark() {
+    if let Some(remark) = lit.remark_on(&seen.model) {
         theme::note(ui, remark);
     }
     if !lit.is_dark() {

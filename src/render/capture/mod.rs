@@ -7,4 +7,6 @@ pub mod light;
 pub mod linear;
 pub mod png;
 pub mod settle;
+#[cfg(test)]
+mod tests;
 pub mod trial;

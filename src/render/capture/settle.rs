@@ -13,7 +13,7 @@ use bevy::{
         erased_render_asset::ErasedRenderAssets,
         mesh::RenderMesh,
         render_asset::RenderAssets,
-        render_resource::{CachedPipelineState, PipelineCache},
+        render_resource::{CachedPipelineState, PipelineCache, PipelineDescriptor},
         texture::GpuImage,
     },
     shader::ShaderCacheError,
@@ -124,10 +124,26 @@ impl GpuRenderer {
                 std::thread::sleep(Duration::from_millis(2));
             }
             if start.elapsed() > PATIENCE {
+                self.tell_of_waiting();
                 return Err(GpuError::TimedOut(PATIENCE));
             }
         }
         Ok(())
+    }
+
+    /// Logs what is waited for.
+    fn tell_of_waiting(&self) {
+        if self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying) {
+            warn!("a shader is still being tried out");
+        }
+        let Some(render_app) = self.app.get_sub_app(RenderApp) else { return };
+        let cache = render_app.world().resource::<PipelineCache>();
+        for pipeline in cache.waiting_pipelines().filter_map(|id| cache.pipelines().nth(id)) {
+            let (name, state) = (&pipeline.descriptor, &pipeline.state);
+            if let PipelineDescriptor::RenderPipelineDescriptor(name) = name {
+                warn!("the pipeline {:?} is {state:?}", name.label);
+            }
+        }
     }
 
     /// The numbers of meshes, materials and images on the GPU; `None` before the target is there.

@@ -272,6 +272,7 @@ impl Actor {
         let illumination = world.resource::<IlluminationBuffer>().buffers.clone();
         let inputs = MaterialInputs {
             parameters: parameters.clone(),
+            solid: parameters.clone(),
             illumination,
             shader: shader.clone(),
             faces,

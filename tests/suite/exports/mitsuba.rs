@@ -345,6 +345,67 @@ fn light_with_extent_is_the_same_in_mitsuba() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// A lone ball and a lone cube of glass; differences in codes of a picture whose mean light is half of white.
+#[test]
+fn glass_is_the_same_in_mitsuba() {
+    if skipped() {
+        return;
+    }
+    let body = |kind: &str, source: &'static str, values: &[(&'static str, Value)]| {
+        let mut scene = scene(kind, "glass", values);
+        if kind == "cube" {
+            scene.shading_model = "derivative".to_owned();
+        }
+        scene.lights = vec![light("environment", |light| {
+            light.parameters.set("source", choice(source));
+            light.parameters.set("visible", choice("false"));
+        })];
+        scene
+    };
+    let frosted = |r: f32| [("roughness", Value::Number(r))];
+    let all = [
+        ("ball in the studio", body("sphere", "studio", &[])),
+        ("ball under the sky", body("sphere", "sky", &[])),
+        ("cube under the sky", body("cube", "sky", &[])),
+        ("rough ball under the sky", body("sphere", "sky", &frosted(0.5))),
+        ("rough cube in the studio", body("cube", "studio", &frosted(0.4))),
+        ("torus in uniform light", body("torus", "uniform", &[])),
+    ];
+    let pictures = theirs(&all.iter().map(|(_, scene)| scene).collect::<Vec<_>>());
+    let mut wrong = Vec::new();
+    for ((name, scene), theirs) in all.iter().zip(&pictures) {
+        let codes = |scene: &Scene| codes(&ours(scene), theirs);
+        let difference = codes(scene);
+        let mut denser = scene.clone();
+        denser.objects[0].material.set("refractive_index", Value::Number(1.4));
+        println!("{name}: {difference:.3} of 255 on average, {:.3} with another index", codes(&denser));
+        if !(difference < 0.5) || (*name != "torus in uniform light" && codes(&denser) < 0.5) {
+            wrong.push(format!("{name}: {difference}, {}", codes(&denser)));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Mean difference within the object where white is twice the mean light, averaged over blocks of pixels so that noise
+/// does not count as a difference.
+fn codes(ours: &Picture, theirs: &[Vec3]) -> f32 {
+    const BLOCK: usize = 8;
+    let (width, height) = (ours.width as usize, ours.height as usize);
+    let covered = |x: usize, y: usize| ours.pixels[y * width + x].w == 1.0;
+    let mut blocks = Vec::new();
+    for (x, y) in (0..height / BLOCK).flat_map(|y| (0..width / BLOCK).map(move |x| (x * BLOCK, y * BLOCK))) {
+        let all = || (y..y + BLOCK).flat_map(|y| (x..x + BLOCK).map(move |x| (x, y)));
+        if all().all(|(x, y)| covered(x, y)) {
+            let sum = |of: &dyn Fn(usize) -> Vec3| all().map(|(x, y)| of(y * width + x)).sum::<Vec3>();
+            blocks.push([sum(&|i| ours.pixels[i].truncate()), sum(&|i| theirs[i])]);
+        }
+    }
+    assert!(blocks.len() > 20, "the scene shows little");
+    let mean = blocks.iter().map(|[a, _]| a.element_sum()).sum::<f32>();
+    let apart = blocks.iter().map(|[a, b]| (*a - *b).abs().element_sum()).sum::<f32>();
+    255.0 / 2.0 * apart / mean
+}
+
 /// The wrong twins: light without the factor π, another masking, a brushed surface turned.
 #[test]
 fn what_is_different_shows() {

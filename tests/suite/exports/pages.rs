@@ -141,7 +141,7 @@ fn scenes_that_no_page_can_hold_are_refused_with_the_reason() {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Difference {
     pub(super) mean: f64,
-    beyond: f64,
+    pub(super) beyond: f64,
 }
 
 pub(super) fn difference(a: &[u8], b: &[u8]) -> Difference {
@@ -156,8 +156,8 @@ pub(super) fn difference(a: &[u8], b: &[u8]) -> Difference {
 
 /// One sample per pixel, so that no edge is smoothed: the page smooths display colours, and the program
 /// light. The page snaps corners to a grid, which moves a few pixels of silhouettes; no others may differ.
-const MEAN: f64 = 0.15;
-const BEYOND: f64 = 0.004;
+pub(super) const MEAN: f64 = 0.15;
+pub(super) const BEYOND: f64 = 0.004;
 
 /// The size of pictures. Software draws frames of 64 samples in seconds; larger ones would outlast the patience of the
 /// browser on a busy machine.

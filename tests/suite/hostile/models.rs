@@ -402,7 +402,8 @@ fn what_is_within_the_limits_needs_a_quarter_of_the_stack() {
         let mut sources = Sources::default();
         sources.edit(read.entry.declaration.wgsl.path, text.clone());
         let composed = compose_evaluation(&sources, &read.entry);
-        let drawn = compose(&sources, &read.entry, &registry.shading_models()[0], registry.lights());
+        let of = (&read.entry, read.entry.declaration.passage());
+        let drawn = compose(&sources, of, &registry.shading_models()[0], registry.lights());
         assert!(limits::check_text(&drawn).is_ok(), "{id}");
         thread::scope(|scope| {
             let small = thread::Builder::new().stack_size(STACK / 4);
