@@ -4,6 +4,7 @@ use std::{io, path::PathBuf};
 
 use super::{
     Options, Outcome, complain,
+    engine::engine,
     evaluate::find,
     print_json, print_paths, print_text,
     workshop::{Places, Workshop, valid},
@@ -19,7 +20,6 @@ use crate::{
         laws::{self, Effort},
     },
     registry::Registry,
-    render::capture::evaluate::Evaluator,
     text::{listed, quoted},
 };
 
@@ -90,7 +90,8 @@ pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Wo
     }
     let model = find(registry, id)?;
     valid(registry, model)?;
-    let mut evaluator = Evaluator::new(registry.sources(), model)?;
+    let engine = engine("laws are checked on the GPU; `lcm plot` and `lcm albedo` show a model on the CPU")?;
+    let mut evaluator = (engine.evaluator)(registry.sources(), model)?;
     let mut last = None;
     let effort = Effort::default();
     let bar = super::progress(effort.sets as u64, options);

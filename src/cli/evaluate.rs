@@ -8,6 +8,7 @@ use glam::Vec3;
 use super::{
     Outcome,
     angles::{self, Column},
+    engine::{Evaluator, engine},
     workshop::{Workshop, not_on_cpu, valid},
 };
 use crate::{
@@ -16,10 +17,12 @@ use crate::{
     parameter::{Value, Values},
     reflection::{ModelEntry, Surface, brdf_of, bsdf},
     registry::Registry,
-    render::capture::{evaluate::Evaluator, gpu::GpuError},
     scene::field::Ids,
     text::{listed, nearest, quoted},
 };
+
+/// What to do without a GPU.
+const WITH_CPU: &str = "no model can be evaluated on the GPU; use --on cpu";
 
 /// A model with its parameters, and the machine that evaluates it.
 #[derive(Args, Debug)]
@@ -98,7 +101,7 @@ pub(super) struct Quantity<const N: usize, I> {
     pub header: &'static str,
     pub input: fn([f64; N]) -> I,
     pub on_cpu: fn(&dyn Surface, &[I]) -> Vec<Vec3>,
-    pub on_gpu: fn(&Evaluator, &[I]) -> Result<Vec<Vec3>, GpuError>,
+    pub on_gpu: fn(&dyn Evaluator, &[I]) -> Result<Vec<Vec3>, Failure>,
 }
 
 impl<const N: usize, I> Quantity<N, I> {
@@ -107,7 +110,7 @@ impl<const N: usize, I> Quantity<N, I> {
         let (registry, model, values) = arguments.open(workshop)?;
         let surface = model.instantiate(&values, Encoding::Srgb);
         // The GPU starts at the first row.
-        let mut gpu: Option<Evaluator> = None;
+        let mut gpu: Option<Box<dyn Evaluator>> = None;
         let mut header = Some(self.header);
         let mut out = BufWriter::new(io::stdout().lock());
         angles::stream(io::stdin().lock(), &self.columns, |rows| {
@@ -115,11 +118,11 @@ impl<const N: usize, I> Quantity<N, I> {
             let results = match (arguments.on, &mut gpu) {
                 (Machine::Cpu, _) => (self.on_cpu)(surface.as_ref(), &inputs),
                 (Machine::Gpu, _) if rows.is_empty() => Vec::new(),
-                (Machine::Gpu, Some(gpu)) => (self.on_gpu)(gpu, &inputs)?,
+                (Machine::Gpu, Some(gpu)) => (self.on_gpu)(gpu.as_ref(), &inputs)?,
                 (Machine::Gpu, none) => {
-                    let gpu = none.insert(Evaluator::new(registry.sources(), model)?);
+                    let gpu = none.insert((engine(WITH_CPU)?.evaluator)(registry.sources(), model)?);
                     gpu.set(&values, Encoding::Srgb);
-                    (self.on_gpu)(gpu, &inputs)?
+                    (self.on_gpu)(gpu.as_ref(), &inputs)?
                 }
             };
             arguments.on.can_run(model)?;

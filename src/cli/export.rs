@@ -8,9 +8,8 @@ use super::{
     Options, Outcome,
     explain::place,
     outputs, progress,
-    render::sides,
     scenes::Source,
-    views,
+    sides, views,
     workshop::{Workshop, drawable},
 };
 use crate::files::Shown as _;

@@ -3,9 +3,9 @@
 use clap::Args;
 
 use crate::{
+    picture::png::About,
     reference::{Reached, Until},
     registry::Registry,
-    render::capture::png::About,
     scene::{Scene, has_extent},
 };
 

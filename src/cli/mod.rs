@@ -11,6 +11,7 @@ use crate::{
     parameter::Outside,
     program::{self, in_own_words},
     progress::Progress,
+    reference::MAX_SIDE,
     registry::Registry,
     scene::load::Defaults,
     signals::Interrupt,
@@ -27,10 +28,11 @@ use std::{
     time::Duration,
 };
 
-use bevy::app::App;
 use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, error::ErrorKind};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+pub use engine::App;
+use engine::{Additions, ENGINE, engine};
 use serde::Serialize;
 use workshop::Places;
 
@@ -41,6 +43,7 @@ mod changes;
 mod check;
 mod compare;
 mod custom;
+mod engine;
 mod evaluate;
 mod explain;
 mod export;
@@ -60,7 +63,6 @@ mod runtime_folder;
 mod scenes;
 mod study;
 mod sweep;
-mod trial;
 mod view;
 mod views;
 mod workshop;
@@ -300,7 +302,7 @@ enum Command {
     /// Print the JSON Schema of scene files
     Schema,
     /// Try shaders for a window
-    #[command(hide = true, name = crate::render::trial::process::COMMAND)]
+    #[command(hide = true, name = program::TRY_SHADERS)]
     TryShaders,
 }
 
@@ -315,6 +317,13 @@ fn one_of(what: &str, word: &str, known: &[&str]) -> String {
 fn above_zero(text: &str) -> Result<u32, String> {
     let parsed = text.trim().parse::<u32>().ok().filter(|number| *number > 0);
     parsed.ok_or_else(|| format!("it must be a whole number from 1 to {}", u32::MAX))
+}
+
+/// Parser of sizes: width and height.
+fn sides(text: &str) -> Result<[u32; 2], String> {
+    let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=MAX_SIDE).contains(n));
+    let both = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    both.ok_or_else(|| format!("it must be WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE}, e.g. 800x600"))
 }
 
 /// The result of a command.
@@ -463,7 +472,7 @@ fn run_as(
         Err(error) => return ended(Err(Failure::Invalid(error.to_string()))),
     }
     #[cfg(target_os = "linux")]
-    if cli.loads_driver() {
+    if ENGINE.is_some() && cli.loads_driver() {
         runtime_folder::provide();
     }
     match cli.scene_options() {
@@ -477,7 +486,7 @@ fn run_as(
     }
     let mut registry = Registry::builtin();
     types(&mut registry);
-    ended(run(cli, registry, window))
+    ended(run(cli, registry, Box::new(window)))
 }
 
 /// Prints a failure, and returns the exit status.
@@ -505,7 +514,7 @@ fn misunderstood(error: &clap::Error, arguments: &[OsString]) {
 }
 
 /// Runs a command with all known types except custom models.
-fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
+fn run(cli: Cli, known: Registry, window: Additions) -> Outcome {
     use Command::*;
     let options = cli.options;
     if let Some(stray) = cli.view.given().filter(|_| cli.command.is_some()) {
@@ -513,8 +522,8 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
     }
     let places = &cli.places;
     match cli.command {
-        None => view::run(cli.view, options, places, known, window),
-        Some(View(given)) => view::run(given.own, options, places, known, window),
+        None => view(cli.view, options, places, known, window),
+        Some(View(given)) => view(given.own, options, places, known, window),
         Some(Render(given)) => render::run(&given.own, options, &mut places.open(options, known)?),
         Some(Sweep(given)) => sweep::run(&given.own, options, &mut places.open(options, known)?),
         Some(Compare(given)) => compare::run(&given.own, options, &mut places.open(options, known)?),
@@ -530,9 +539,25 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
         Some(Study(given)) => study::run(&given, options, &known),
         Some(Albedo(given)) => albedo::ALBEDO.print(&given, &mut places.open(options, known)?),
         Some(Plot(given)) => plot::run(&given, options, &mut places.open(options, known)?),
-        Some(TryShaders) => trial::run(),
+        Some(TryShaders) => (engine("there are no shaders to try")?.try_shaders)(),
         Some(Schema) => print(&crate::scene::schema::text(places.open(options, known)?.list())),
     }
+}
+
+/// Opens the window.
+fn view(
+    arguments: view::Arguments,
+    options: Options,
+    places: &Places,
+    known: Registry,
+    window: Additions,
+) -> Outcome {
+    let engine = engine("there is none to open; `lcm render` draws scenes, and `lcm --help` lists the rest");
+    // A misspelt command is no scene.
+    let meant = |scene| view::meant_command(scene);
+    let engine =
+        engine.or_else(|missing| arguments.scene.as_deref().map_or(Ok(()), meant).and(Err(missing)))?;
+    (engine.view)(arguments, options, places, known, window)
 }
 
 /// Prints a result for people to standard output, with control characters escaped.
@@ -712,5 +737,13 @@ mod tests {
         assert!(outside.reach.allow_outside);
         let both = said(&["--use-defaults", "check", "x", "--no-defaults"]).expect_err("both");
         assert_eq!(both, "--use-defaults cannot be used with --no-defaults");
+    }
+
+    #[test]
+    fn sizes_have_two_sides() {
+        assert_eq!(sides("800x600"), Ok([800, 600]));
+        for wrong in ["800", "0x5", "5x-1", "x", "axb", "99999x1", ""] {
+            assert!(sides(wrong).is_err(), "{wrong}");
+        }
     }
 }

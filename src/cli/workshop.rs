@@ -17,7 +17,6 @@ use crate::{
     library::assets::{self, Folders},
     reflection::ModelEntry,
     registry::{Registry, check::wgsl, compose::compose},
-    render::capture::gpu::GpuError,
     scene::{
         Scene,
         error::LoadError,
@@ -295,16 +294,6 @@ pub(super) fn all_annotated(problems: &[(PathBuf, ShaderProblem)]) -> String {
         .collect();
     each.dedup();
     each.join("\n")
-}
-
-impl From<GpuError> for Failure {
-    fn from(error: GpuError) -> Self {
-        match error {
-            GpuError::Invalid(problem) => Self::Invalid(annotated(&problem, &problem.file)),
-            GpuError::Endless(_) => Self::Invalid(error.to_string()),
-            other => Self::NoRenderer(other.to_string()),
-        }
-    }
 }
 
 /// The failure for a model that the CPU cannot run, with an alternative.

@@ -9,7 +9,7 @@ use super::{
     slice::LOG_RANGE,
 };
 use crate::{
-    render::capture::png::{About, encode},
+    picture::png::{About, encode},
     text::capitalised,
 };
 

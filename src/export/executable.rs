@@ -9,6 +9,7 @@ use crate::files::Shown as _;
 use crate::{
     files,
     parameter::{Parameter, Value, Values},
+    program::{HAS_WINDOW, without_window},
     registry::MODELS,
     scene::{Scene, save},
 };
@@ -28,6 +29,10 @@ pub const FORM: Form = Form {
 const USUAL: (u32, u32) = (1280, 720);
 
 fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
+    if !HAS_WINDOW {
+        let remedy = "a copy of it could not show the scene; a web page can, with --as html";
+        return Err(ExportError::refused(without_window(remedy)));
+    }
     progress.step(0.0, "gathering the files of the scene")?;
     let mut files = Vec::new();
     let scene = with_files(request, &mut files)?;

@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 
-use bevy::mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
 use glam::{Mat4, Vec3};
 
 use super::{
@@ -21,15 +20,10 @@ use crate::{
     },
     parameter::{Parameter, Values, pack},
     reflection::{ModelEntry, Passage},
-    render::{
-        entities::object_transform,
-        material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
-        meshes::{face_mesh, shared_mesh},
-    },
     scene::{Background, Object, Scene},
     shader::compose::WRAPPER,
     shading::{ShadingEntry, Stage},
-    shape::MeshKey,
+    shape::{MeshKey, Says, Vertices},
 };
 
 /// A scene taken apart.
@@ -154,7 +148,7 @@ impl Drawn {
     /// Transformation from the object's own coordinates to the room.
     #[must_use]
     pub fn room_from_object(&self, request: &Request) -> Mat4 {
-        object_transform(&request.scene.objects[self.index]).to_matrix()
+        request.scene.objects[self.index].room_from_object()
     }
 }
 
@@ -230,10 +224,10 @@ impl<'a> Lit<'a> {
         let mesh = *known.meshes.entry((key, faces)).or_insert_with(|| {
             let tessellation = shape.tessellation(object.tessellation);
             let polygons = shape.mesh(&object.shape, tessellation);
-            let mesh = if faces { face_mesh(&polygons) } else { shared_mesh(&polygons) };
+            let mesh = if faces { Vertices::apart(&polygons) } else { Vertices::shared(&polygons) };
             let suffix = if faces { "_polygons" } else { "" };
             let base = format!("{}_{tessellation}{suffix}", shape.declaration.id);
-            self.meshes.push(data(known.names.unique(base), &mesh, faces));
+            self.meshes.push(data(known.names.unique(base), mesh));
             self.meshes.len() - 1
         });
         self.objects.push(Drawn { index, material, mesh });
@@ -319,26 +313,7 @@ pub fn passage_of(scene: &Scene, model: &ModelEntry, solid: bool) -> Passage {
     passages.fold(Passage { solid, ..Passage::NONE }, |all, one| all | one)
 }
 
-fn data(name: String, mesh: &Mesh, faces: bool) -> MeshData {
-    let all: &[(&'static str, MeshVertexAttribute)] = &[
-        ("position", Mesh::ATTRIBUTE_POSITION),
-        ("normal", Mesh::ATTRIBUTE_NORMAL),
-        ("tangent", TANGENT),
-        ("face_normal", FACE_NORMAL),
-        ("face_tangent", FACE_TANGENT),
-        ("face_centre", FACE_CENTRE),
-    ];
-    let count = if faces { 6 } else { 3 };
-    let attributes = all[..count]
-        .iter()
-        .map(|(name, attribute)| Attribute {
-            name,
-            values: match mesh.attribute(attribute.id) {
-                Some(VertexAttributeValues::Float32x3(values)) => values.clone(),
-                _ => Vec::new(),
-            },
-        })
-        .collect();
-    let indices = mesh.indices().map(|i| i.iter().map(|i| i as u32).collect()).unwrap_or_default();
-    MeshData { name, attributes, indices }
+fn data(name: String, mesh: Vertices) -> MeshData {
+    let attribute = |(says, values): (Says, _)| Attribute { name: says.name(), values };
+    MeshData { name, attributes: mesh.attributes.into_iter().map(attribute).collect(), indices: mesh.indices }
 }

@@ -271,7 +271,13 @@ pub(crate) mod layout {
 
 #[cfg(test)]
 mod tests {
+    use naga::front::wgsl;
+
     use super::*;
+    use crate::shader::{
+        check::struct_layout,
+        compose::{LIGHTS, OPTICS},
+    };
 
     #[test]
     fn more_lights_than_fit_are_left_out() {
@@ -290,5 +296,20 @@ mod tests {
         let (bytes, _) =
             illumination_bytes(&[], TermSelection::All, &Display::default(), None, LightSamples::DEFAULT);
         assert!(smallest.is_some_and(|most| bytes.len() as u64 <= most), "{} of {smallest:?}", bytes.len());
+    }
+
+    #[test]
+    fn lights_lie_where_rust_puts_them() {
+        let module = wgsl::parse_str(&format!("{}{}", OPTICS[0].text, LIGHTS.text)).expect("valid WGSL");
+        let members = |module, name| struct_layout(module, name).map(|(members, _)| members);
+        let owned = |layout: &[(&str, usize)]| {
+            layout.iter().map(|(n, at)| ((*n).to_owned(), *at)).collect::<Vec<_>>()
+        };
+        assert_eq!(members(&module, "Light"), Some(owned(&layout::LIGHT)));
+        assert_eq!(members(&module, "Illumination"), Some(owned(&layout::ILLUMINATION)));
+        // The wrong twin: without the padding required by vec3, the layouts differ.
+        let packed = wgsl::parse_str("struct Light { position: vec3<f32>, light_type: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, first_word: u32 }")
+            .expect("valid WGSL");
+        assert_ne!(members(&packed, "Light"), Some(owned(&layout::LIGHT)));
     }
 }

@@ -4,7 +4,8 @@
 
 use std::ops::RangeInclusive;
 
-use bevy::{ecs::component::Component, reflect::Reflectable};
+use bevy_ecs::component::Component;
+use bevy_reflect::Reflectable;
 
 use crate::{declared::take_each, parameter::ParameterSet};
 
@@ -21,6 +22,7 @@ mod sphere;
 mod superellipsoid;
 mod teapot;
 mod torus;
+mod vertices;
 
 pub use cube::Cube;
 pub use entry::{Bounds, MeshKey, ShapeEntry};
@@ -32,6 +34,7 @@ pub use sphere::Sphere;
 pub use superellipsoid::Superellipsoid;
 pub use teapot::Teapot;
 pub use torus::Torus;
+pub use vertices::{Says, Vertices};
 
 /// Receives object types one after the other.
 pub trait Take {

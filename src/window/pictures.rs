@@ -29,16 +29,14 @@ use crate::{
     linear::{Format, MAX_PIXELS},
     optics::TermSelection,
     panel::state::{Effect, PictureEnd, PictureOptions, Question, Session, Severity},
+    picture::{
+        linear,
+        png::{self, About},
+    },
     progress::Progress,
     reference::{Settings, Until, not_on_cpu, render_layers},
     registry::Registry,
-    render::{
-        capture::{
-            linear,
-            png::{self, About},
-        },
-        view::{Drawing, ViewSystems},
-    },
+    render::view::{Drawing, ViewSystems},
     scene::{
         Background, Comparison, Scene,
         comparison::{Compared, Layout},

@@ -21,9 +21,9 @@ use crate::{
         albedo::NODES,
         colour::{BACKGROUND, Encoding},
         lobes::MAX_LOBES,
+        tone::ToneMapping,
     },
     parameter::{Parameter, lanes},
-    render::camera::tonemapping,
     scene::{
         Background,
         observer::{NEAR, orientation},
@@ -87,7 +87,7 @@ pub(super) fn text(lit: &Lit, bodies: &Bodies, package: &str) -> String {
             ("package", &package),
             ("window", &string(title)),
             ("plugins", &all(&plugin)),
-            ("tone_mapping", &format!("{:?}", tonemapping(scene.display.tone_mapping))),
+            ("tone_mapping", &tonemapping(scene.display.tone_mapping)),
             ("up", &up(observer.direction)),
             ("meshes", &handles(&meshes, "Mesh")),
             ("shaders", &shaders(lit)),
@@ -99,6 +99,15 @@ pub(super) fn text(lit: &Lit, bodies: &Bodies, package: &str) -> String {
             ("all_attributes", &attributes(polygons)),
         ],
     )
+}
+
+/// Bevy's name of a tone mapping.
+fn tonemapping(tone: ToneMapping) -> String {
+    match tone {
+        ToneMapping::Aces => "AcesFitted".to_owned(),
+        // The rest are called as here.
+        other => format!("{other:?}"),
+    }
 }
 
 /// The name of the attributes of vertices.

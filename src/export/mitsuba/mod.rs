@@ -22,7 +22,6 @@ use crate::{
     light::Incident,
     optics::{colour::Encoding, tone::ToneMapping},
     registry::compose,
-    render::entities::object_transform,
     scene::{
         Object, emitter, has_extent,
         observer::{NEAR, orientation},
@@ -93,8 +92,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         notes.extend(bsdf.note.map(str::to_owned));
         let shape = Xml::plugin("shape", "ply").set("string", "filename", path);
         let shape = if smooth { shape } else { shape.set("boolean", "face_normals", "true") };
-        file =
-            file.says(&name).with(shape.with(to_world(object_transform(object).to_matrix())).with(bsdf.xml));
+        file = file.says(&name).with(shape.with(to_world(object.room_from_object())).with(bsdf.xml));
     }
     notes.extend(differences(request));
     let title = scene.name.as_deref().unwrap_or(request.stem);

@@ -4,3 +4,4 @@ mod cycles;
 mod features;
 mod lengths;
 pub(crate) mod modules;
+mod window;

@@ -9,3 +9,4 @@ mod sampling;
 mod signals;
 mod study;
 mod sweep;
+mod without_window;

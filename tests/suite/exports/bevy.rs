@@ -7,6 +7,7 @@ use std::{
     process::Command,
 };
 
+use lights_camera_models::{optics::tone::ToneMapping, render::camera::tonemapping};
 use serde_json::json;
 
 use crate::helpers::support::{lcm_in, root};
@@ -300,6 +301,12 @@ fn exported_projects_have_the_background_of_the_scene() {
         "{gradient}"
     );
     assert!(said.contains("Bevy maps the background as well: with the tone mapping aces"), "{said}");
+    // They are called as Bevy calls them.
+    for tone in ToneMapping::ALL {
+        let (text, _) = exported(json!({ "tone_mapping": tone.id() }));
+        let expected = format!("Tonemapping::{:?},", tonemapping(tone));
+        assert!(text.contains(&expected), "{expected}");
+    }
 }
 
 #[test]

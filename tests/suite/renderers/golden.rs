@@ -6,12 +6,10 @@ use std::{error::Error, fs, io::BufReader, path::Path};
 use glam::Vec3;
 use lights_camera_models::{
     optics::{TermSelection, tone::ToneMapping},
+    picture::png,
     reference,
     registry::Registry,
-    render::capture::{
-        gpu::{GpuRenderer, Output},
-        png,
-    },
+    render::capture::gpu::{GpuRenderer, Output},
     scene::{
         Background, Display, Scene, check,
         load::{self, Defaults},

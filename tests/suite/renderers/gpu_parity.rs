@@ -411,19 +411,19 @@ fn lights_in_lumen_and_kelvin_give_the_same_picture() {
 #[test]
 fn the_wgsl_of_every_model_agrees_with_its_rust_function() {
     for model in Registry::builtin().models() {
-        assert_eq!(testing::parity::on_gpu(model, &Sources::default()), Ok(()), "{}", model.declaration.id);
+        assert_eq!(testing::gpu::on_gpu(model, &Sources::default()), Ok(()), "{}", model.declaration.id);
     }
 }
 
 #[test]
 fn at_the_ends_of_all_ranges_both_languages_are_finite_and_agree() {
-    let mut seed = testing::parity::SEED_OF_ENDS;
+    let mut seed = testing::gpu::SEED_OF_ENDS;
     // As many numbers as six directions need.
     for _ in 0..6 {
         testing::direction(&mut seed);
     }
     for model in Registry::builtin().models() {
-        let outcome = testing::parity::at_the_ends_on_gpu(model, &Sources::default(), &mut seed);
+        let outcome = testing::gpu::at_the_ends(model, &Sources::default(), &mut seed);
         assert_eq!(outcome, Ok(()), "{}", model.declaration.id);
     }
 }
