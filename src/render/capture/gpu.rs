@@ -172,9 +172,8 @@ impl Output {
     }
 }
 
-/// Maximum duration of a first picture. Software Vulkan compiles the shaders of a scene of twenty models for half a minute,
-/// and for a multiple of that where other programs use the processors.
-pub(super) const PATIENCE: Duration = Duration::from_secs(180);
+/// Maximum duration of a first picture; software Vulkan compiles shaders for a few seconds at most.
+pub(super) const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A renderer that draws scenes into an image, frame by frame.
 pub struct GpuRenderer {
