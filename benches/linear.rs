@@ -8,10 +8,10 @@ use lights_camera_models::{
     channel::{LayerKind, layers},
     linear::Format,
     optics::TermSelection,
+    picture::{linear, png::About},
     progress::Progress,
     reference::{Settings, Until, render_layers},
     registry::Registry,
-    render::capture::{linear, png::About},
     scene::{
         Light, Scene,
         load::{self, Defaults},

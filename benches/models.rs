@@ -104,7 +104,8 @@ fn limited(c: &mut Criterion) {
     let composed = compose_evaluation(&Sources::default(), model);
     let module = validate(&composed).expect("valid WGSL");
     let shading = &registry.shading_models()[0];
-    let drawn = compose(&Sources::default(), model, shading, registry.lights());
+    let of = (model, model.declaration.passage());
+    let drawn = compose(&Sources::default(), of, shading, registry.lights());
     let mut group = c.benchmark_group("limits");
     group.bench_function("text of a shader that draws", |b| b.iter(|| check_text(black_box(&drawn))));
     group.bench_function("text of a model", |b| b.iter(|| check_text(black_box(&composed))));

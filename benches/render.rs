@@ -6,9 +6,9 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 use lights_camera_models::{
+    picture::png,
     reference::{Settings, render_rgb8},
     registry::Registry,
-    render::capture::png,
     scene::{Light, Object, Scene},
 };
 

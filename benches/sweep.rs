@@ -3,10 +3,10 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lights_camera_models::{
+    picture::png::{self, About},
     progress::Progress,
     reference::{Settings as Bare, render_rgb8},
     registry::Registry,
-    render::capture::png::{self, About},
     scene::Scene,
     sweep::{Axis, Settings, Sweep, files, gif, pictures},
 };

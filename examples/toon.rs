@@ -13,10 +13,10 @@ use lights_camera_models::{
     optics::{Frame, Terms},
     parameter::{BASE_COLOUR, Parameter, Value},
     parameters,
+    picture::png,
     reference::{self, Settings},
     reflection::{Declaration, EquationPart, ReflectionModel, Term},
     registry::{Register, Registry},
-    render::capture::png,
     scene::{Object, Scene},
     shader::Source,
 };

@@ -2,12 +2,9 @@
 
 use std::sync::{Arc, LazyLock, Mutex};
 
-use bevy_egui::egui::{
-    Color32, FontData, FontDefinitions, FontFamily, FontId,
-    epaint::{
-        FontColorTransferFunction,
-        text::{Fonts, Galley, LayoutJob, PlacedRow, TextOptions},
-    },
+use epaint::{
+    Color32, FontColorTransferFunction, FontFamily, FontId,
+    text::{FontData, FontDefinitions, Fonts, Galley, LayoutJob, PlacedRow, TextOptions},
 };
 
 use crate::{

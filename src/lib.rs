@@ -43,6 +43,7 @@
 //! The scene and its pictures:
 //!
 //! - [`scene`]: the scene as a value; reading, checking and writing JSON.
+//! - [`picture`]: pictures in files, with the scene that they show.
 //! - [`document`]: the one writer of the scene: edits, checks, undo and redo.
 //! - [`channel`]: debug channels of scenes: their light, their scale, and their legends.
 //! - [`caption`]: pictures in words, and the strip below a picture that says them.
@@ -52,7 +53,7 @@
 //! - [`matching`]: the parameters of one view that come nearest to another.
 //! - [`library`]: the shader library: the files of all shader texts, and their errors.
 //! - [`recovery`]: crash recovery of unsaved work.
-//! - [`render`]: drawing with Bevy.
+//! - `render`: drawing with Bevy.
 //! - [`sweep`]: pictures of a scene with some of its values varied, for a folder, a sheet or a film.
 //! - [`export`]: a scene as code: projects, shader files, pages, programs.
 //! - [`curves`]: curves of models: BRDF, albedo, factors alone, image slices; measured data; figures.
@@ -60,17 +61,29 @@
 //!
 //! The program:
 //!
-//! - [`panel`]: egui panels, as functions of a state that return actions.
-//! - [`window`]: panels, camera and entities in one window.
+//! - `panel`: egui panels, as functions of a state that return actions.
+//! - `window`: panels, camera and entities in one window.
 //! - [`study`]: the differences between models, as numbers and a report.
 //! - [`testing`]: the tests that models, light types and object types pass, for those of other crates.
 //! - [`cli`]: the command line.
 //! - [`prelude`]: the names that extensions of the program need most.
+//!
+//! Without the feature `window`, which is a default, `render`, `panel` and `window` are missing, and with them Bevy's
+//! renderer and egui. Everything else works without them, and says so where it cannot.
+
+// Much of the rest serves the window.
+#![cfg_attr(not(feature = "window"), allow(dead_code, unused_imports))]
 
 /// The version of Bevy used by the window.
+#[cfg(feature = "window")]
 pub use bevy;
+/// Components, as which parameters, lights and shapes are known to Bevy.
+pub use bevy_ecs;
 /// The version of bevy_egui, which contains that of egui, used by the panels.
+#[cfg(feature = "window")]
 pub use bevy_egui;
+/// Reflection, by which tools read and write parameters.
+pub use bevy_reflect;
 /// The version of glam used by the equations.
 pub use glam;
 
@@ -110,6 +123,8 @@ pub mod custom;
 
 pub mod scene;
 
+pub mod picture;
+
 pub mod document;
 
 pub mod channel;
@@ -125,6 +140,7 @@ pub mod matching;
 
 pub mod library;
 pub mod recovery;
+#[cfg(feature = "window")]
 pub mod render;
 pub mod sweep;
 
@@ -134,7 +150,9 @@ pub mod curves;
 
 pub mod lesson;
 
+#[cfg(feature = "window")]
 pub mod panel;
+#[cfg(feature = "window")]
 pub mod window;
 
 pub mod study;

@@ -5,20 +5,10 @@ pub use crate::{
     document::{Edit, PartId, Selection},
     light::{self, Incident, LightRecord, LightType},
     optics::{Frame, Terms},
-    panel::{
-        Panel, PanelApp, PanelContext, Panels, Place,
-        state::{Action, Session},
-    },
     parameter::{Parameter, ParameterKind, Value},
     parameters,
     reflection::{self, ReflectionModel},
     registry::{Register, Registry},
-    render::{
-        parts::{
-            Animated, LightColour, LightPower, SceneLight, SceneObject, SceneObserver, Surface, Tessellation,
-        },
-        schedule::{LabFrame, LabSystems},
-    },
     scene::{
         Light, Object, Part, Scene,
         formats::{SceneFormat, SceneFormats},
@@ -26,10 +16,23 @@ pub use crate::{
     shader::Source,
     shading::{self, ShadingModel},
     shape::{self, ObjectType, PolygonMesh},
+};
+#[cfg(feature = "window")]
+pub use crate::{
+    panel::{
+        Panel, PanelApp, PanelContext, Panels, Place,
+        state::{Action, Session},
+    },
+    render::{
+        parts::{
+            Animated, LightColour, LightPower, SceneLight, SceneObject, SceneObserver, Surface, Tessellation,
+        },
+        schedule::{LabFrame, LabSystems},
+    },
     window::LabPlugins,
 };
 
-#[cfg(test)]
+#[cfg(all(test, feature = "window"))]
 mod tests {
     #![deny(ambiguous_glob_imports)]
 

@@ -7,6 +7,10 @@ use std::{borrow::Cow, env, path::PathBuf, sync::OnceLock};
 pub const LAB: &str = "lights-camera-models";
 /// The lab's name on the command line.
 const COMMAND: &str = "lcm";
+/// The hidden command that tries shaders in a process of its own, lest they end this one.
+pub const TRY_SHADERS: &str = "try-shaders";
+/// True if the program was built with the window, and with it the GPU renderer.
+pub const HAS_WINDOW: bool = cfg!(feature = "window");
 /// The folder that contains the folders of other programs.
 const OTHERS: &str = "programs";
 
@@ -45,6 +49,12 @@ fn fit(name: &str) -> String {
 #[must_use]
 pub fn command() -> &'static str {
     if name() == LAB { COMMAND } else { name() }
+}
+
+/// The answer to a request that needs the window or the GPU in a program without them, with what to do instead.
+#[must_use]
+pub fn without_window(remedy: &str) -> String {
+    format!("{} was built without the window: {remedy}", command())
 }
 
 /// The folder of this program within one shared by all programs, for files that it alone writes: settings,

@@ -127,8 +127,6 @@ mod system {
 mod system {
     use std::{io, process};
 
-    use bevy::app::ctrlc;
-
     use super::Interrupt;
 
     /// Exit status that shells report for a program ended by Ctrl+C.

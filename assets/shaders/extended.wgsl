@@ -8,7 +8,7 @@ fn from_lobes(position: vec3<f32>, v: vec3<f32>, frame: Frame, index: u32, count
     let l = frame.t * local.x + frame.b * local.y + frame.n * local.z;
     let pdf = lobes_pdf(local, v);
     var sum = vec3(0.0);
-    if local.z > 0.0 && pdf > 0.0 {
+    if counts(local.z) && pdf > 0.0 {
         for (var i = 0u; i < count; i++) {
             let light = illumination.lights[i];
             if has_extent(light.light_type) {
@@ -28,7 +28,7 @@ fn from_light(position: vec3<f32>, v: vec3<f32>, frame: Frame, index: u32, i: u3
     }
     let chosen = sample_light(light, position, sequence_point(sample_seed, i + 1u, index));
     let local = to_local(frame, chosen.l);
-    if !(chosen.pdf > 0.0 && local.z > 0.0) {
+    if !(chosen.pdf > 0.0 && counts(local.z)) {
         return LightSample(frame.n, vec3(0.0), 0.0);
     }
     let weight = power_heuristic(chosen.pdf, lobes_pdf(local, v));
@@ -58,8 +58,8 @@ fn extended(position: vec3<f32>, view_direction: vec3<f32>, frame: Frame) -> vec
         }
         if any(chosen.radiance != vec3(0.0)) {
             let terms = response(chosen.l, view_direction, frame, parameters);
-            colour += select_terms(terms, selection) * (chosen.radiance / chosen.pdf);
+            colour += select_terms(terms, on_side(selection, dot(frame.n, chosen.l))) * (chosen.radiance / chosen.pdf);
         }
     }
-    return colour / f32(samples);
+    return colour / f32(samples) + unspread(position, view_direction, frame, selection);
 }

@@ -8,6 +8,9 @@ const TERM_ALL: u32 = 0u;
 const TERM_AMBIENT: u32 = 1u;
 const TERM_DIFFUSE: u32 = 2u;
 const TERM_SPECULAR: u32 = 3u;
+const TERM_TRANSMITTED: u32 = 4u;
+// No term: what remains inside solid bodies, for a debug channel.
+const TERM_REMAINING: u32 = 5u;
 
 // What lights of all types have, the twin of `LightRecord` in src/light/mod.rs.
 struct Light {
@@ -62,6 +65,7 @@ fn select_terms(terms: Terms, selection: u32) -> vec3<f32> {
         case TERM_AMBIENT: { return terms.ambient; }
         case TERM_DIFFUSE: { return terms.diffuse; }
         case TERM_SPECULAR: { return terms.specular; }
+        case TERM_TRANSMITTED, TERM_REMAINING: { return vec3(0.0); }
         default: { return terms.ambient + terms.diffuse + terms.specular; }
     }
 }

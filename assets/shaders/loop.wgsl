@@ -18,7 +18,7 @@ fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec
         } else {
             terms = response(arriving.l, v, frame, parameters);
         }
-        colour += select_terms(terms, selection) * arriving.intensity * light.colour;
+        colour += select_terms(terms, on_side(selection, dot(frame.n, arriving.l))) * arriving.intensity * light.colour;
     }
-    return colour + extended(position, v, frame);
+    return colour + extended(position, v, frame) + through(position, v, frame, selection);
 }

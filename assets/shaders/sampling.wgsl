@@ -175,7 +175,8 @@ fn power_heuristic(own: f32, other: f32) -> f32 {
     return 1.0 / (1.0 + ratio * ratio);
 }
 
-// The lobes of a model: kind (0 cosine, 1 GGX, 2 power), two numbers, share.
+// The lobes of a model: kind (0 cosine, 1 GGX, 2 power; below the surface 3 cosine, 4 plus the refractive index GGX), two numbers,
+// share.
 const LOBES: u32 = 3u;
 
 // A viewer above the surface: at the horizon, rounding may have put it below.
@@ -191,35 +192,79 @@ fn lobe_sample(lobe: vec4<f32>, u: vec2<f32>, v: vec3<f32>) -> vec3<f32> {
         let d = sample_disc_map(u);
         return vec3(d, sqrt(max(1.0 - dot(d, d), 0.0)));
     }
-    let phi = 2.0 * PI * select(u.y, u.x, lobe.x == 1.0);
+    if lobe.x == 3.0 {
+        let d = sample_disc_map(u);
+        return -vec3(d, sqrt(max(1.0 - dot(d, d), 0.0)));
+    }
+    let phi = 2.0 * PI * select(u.x, u.y, lobe.x == 2.0);
     let turn = vec2(cos(phi), sin(phi));
-    if lobe.x == 1.0 {
+    if lobe.x != 2.0 {
         // Visible normals of GGX (E. Heitz 2018; J. Dupuy, A. Benyoub 2023).
         let wide = normalize(vec3(v.xy * lobe.yz, v.z));
         let z = (1.0 - u.y) * (1.0 + wide.z) - wide.z;
         let cap = vec3(sqrt(max((1.0 - z) * (1.0 + z), 0.0)) * turn, z) + wide;
         let h = unit_or_zero(vec3(cap.xy * lobe.yz, max(cap.z, 0.0)));
-        return 2.0 * dot(v, h) * h - v;
+        let mirrored = 2.0 * dot(v, h) * h - v;
+        if lobe.x == 1.0 {
+            return mirrored;
+        }
+        let eta = lobe.x - 4.0;
+        if eta == 1.0 {
+            return vec3(mirrored.xy, -mirrored.z);
+        }
+        let facing = dot(v, h);
+        let squared = 1.0 - (1.0 - facing * facing) / (eta * eta);
+        if squared <= 0.0 {
+            return vec3(0.0);
+        }
+        return (facing / eta - sqrt(squared)) * h - v / eta;
     }
     let cosine = power(u.x, 1.0 / (lobe.y + 1.0));
     let local = vec3(sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0)) * turn, cosine);
     return about(vec3(-v.xy, v.z), local);
 }
 
+// The density of visible GGX facets along h, of any length, over V·H.
+fn lobe_facets(widths: vec2<f32>, h: vec3<f32>, v: vec3<f32>) -> f32 {
+    let squared = dot(h, h);
+    if h.z <= 0.0 || squared <= 0.0 {
+        return 0.0;
+    }
+    let wide = vec3(h.xy / widths, h.z);
+    let stretched = dot(wide, wide);
+    let d = squared * squared / (PI * widths.x * widths.y * stretched * stretched);
+    return 2.0 * d / (v.z + length(vec3(widths * v.xy, v.z)));
+}
+
+fn lobe_pdf_below(lobe: vec4<f32>, l: vec3<f32>, v: vec3<f32>) -> f32 {
+    if lobe.x == 3.0 {
+        return max(-l.z, 0.0) / PI;
+    }
+    let eta = lobe.x - 4.0;
+    if eta == 1.0 {
+        return lobe_facets(lobe.yz, vec3(l.xy, -l.z) + v, v) / 4.0;
+    }
+    let sum = v + eta * l;
+    let h = unit_or_zero(sum) * select(1.0, -1.0, sum.z < 0.0);
+    let to_viewer = dot(v, h);
+    let to_light = dot(l, h);
+    if to_viewer <= 0.0 || to_light >= 0.0 {
+        return 0.0;
+    }
+    let across = to_viewer + eta * to_light;
+    let turned = to_viewer * eta * eta * -to_light / max(across * across, 1e-12);
+    return lobe_facets(lobe.yz, h, v) * turned;
+}
+
 fn lobe_pdf(lobe: vec4<f32>, l: vec3<f32>, v: vec3<f32>) -> f32 {
+    if lobe.x > 2.0 {
+        return lobe_pdf_below(lobe, l, v);
+    }
     if lobe.x == 0.0 {
         return max(l.z, 0.0) / PI;
     }
     if lobe.x == 1.0 {
-        let sum = l + v;
-        let squared = dot(sum, sum);
-        if sum.z <= 0.0 || squared <= 0.0 {
-            return 0.0;
-        }
-        let wide = vec3(sum.xy / lobe.yz, sum.z);
-        let stretched = dot(wide, wide);
-        let d = squared * squared / (PI * lobe.y * lobe.z * stretched * stretched);
-        return d / (2.0 * (v.z + length(vec3(lobe.yz * v.xy, v.z))));
+        return lobe_facets(lobe.yz, l + v, v) / 4.0;
     }
     let cosine = min(v.z * l.z - dot(v.xy, l.xy), 1.0);
     if cosine <= 0.0 {
@@ -233,7 +278,7 @@ fn lobes_are_isotropic() -> bool {
     var same = true;
     for (var i = 0u; i < LOBES; i++) {
         let lobe = lobe_row(i);
-        same = same && (lobe.x != 1.0 || lobe.y == lobe.z);
+        same = same && ((lobe.x != 1.0 && lobe.x < 4.0) || lobe.y == lobe.z);
     }
     return same;
 }
@@ -264,7 +309,7 @@ fn lobes_pdf(l: vec3<f32>, v: vec3<f32>) -> f32 {
 }
 
 // A direction to a light with extent, the radiance that arrives from there without the colour of the light, and the density of
-// the direction: the twin of `Sample` in src/light/extent.rs.
+// the direction: the twin of Rust's `Sample`.
 struct LightSample {
     l: vec3<f32>,
     radiance: vec3<f32>,

@@ -58,5 +58,6 @@ fn fragment(in: SeenStages) -> SeenPixel {
         discard;
     }
     // The depth of objects: the distance of the near plane over that along the view axis.
-    return SeenPixel(displayed(radiance * illumination.exposure), min(nearness * view.clip_from_view[3].z, 1.0));
+    // As bright as a white surface that receives it from everywhere, as objects are shown.
+    return SeenPixel(displayed(PI * radiance * illumination.exposure), min(nearness * view.clip_from_view[3].z, 1.0));
 }

@@ -10,11 +10,17 @@ struct Frame {
     b: vec3<f32>,
 }
 
-// The response of a model to one light of unit intensity, split into the terms of the equation.
+// The response of a model to one light of unit intensity, split into the terms of the equation. Of light from below the
+// surface, for models that it passes through, the sum is the transmitted term.
 struct Terms {
     ambient: vec3<f32>,
     diffuse: vec3<f32>,
     specular: vec3<f32>,
+}
+
+// Light that comes through the surface.
+fn terms_through(transmitted: vec3<f32>) -> Terms {
+    return Terms(vec3(0.0), vec3(0.0), transmitted);
 }
 
 // T. Duff et al. (2017), Building an Orthonormal Basis, Revisited.

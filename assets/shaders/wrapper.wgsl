@@ -13,6 +13,8 @@
 // The parameters of the object being drawn.
 var<private> parameters: Parameters;
 var<private> object_row: u32;
+// Where the object is found among all that are drawn.
+var<private> object_instance: u32;
 // The seed of the samples of light with extent: that of the pixel; 0 for all vertices, so that interpolation is smooth.
 var<private> sample_seed: u32;
 
@@ -36,6 +38,7 @@ struct Stages {
     @location(3) colour: vec3<f32>,
     @location(4) offset: vec3<f32>,
     @location(5) @interpolate(flat) row: u32,
+    @location(6) @interpolate(flat) instance: u32,
 }
 
 fn observer_position() -> vec3<f32> {
@@ -50,6 +53,7 @@ fn faces_away(position: vec3<f32>, normal: vec3<f32>, narrowness: f32) -> bool {
 
 @vertex
 fn vertex(in: VertexIn) -> Stages {
+    object_instance = in.instance_index;
     object_row = mesh_functions::get_tag(in.instance_index);
     parameters = parameter_table[object_row].parameters;
     let room_from_local = mesh_functions::get_world_from_local(in.instance_index);
@@ -86,12 +90,14 @@ fn vertex(in: VertexIn) -> Stages {
     out.colour = passed.colour;
     out.offset = (room_from_local * vec4(in.position, 0.0)).xyz;
     out.row = object_row;
+    out.instance = in.instance_index;
     return out;
 }
 
 @fragment
 fn fragment(in: Stages) -> @location(0) vec4<f32> {
     object_row = in.row;
+    object_instance = in.instance;
     parameters = parameter_table[object_row].parameters;
     let pixel = vec2<u32>(in.clip_position.xy);
     sample_seed = pixel.x | (pixel.y << 16u);

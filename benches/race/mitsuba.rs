@@ -1,5 +1,6 @@
-//! Light with extent in the CPU renderer and in Mitsuba 3 (`llvm_ad_rgb`, its `direct` integrator): the time
-//! to an equal relative error at 1280×720, for a sphere in dim surroundings with two small bright softboxes.
+//! Light with extent in the CPU renderer and in Mitsuba 3 (`llvm_ad_rgb`): the time to an equal relative error at
+//! 1280×720, for a sphere in dim surroundings with two small bright softboxes (its `direct` integrator), and for a ball
+//! of glass under the sky (`path`, `max_depth` 18).
 //! `$LCM_PYTHON` names the Python that has Mitsuba (`pip install mitsuba`); without it the race is skipped,
 //! with a message.
 
@@ -37,10 +38,17 @@ pub(super) fn race() {
     let registry = Registry::builtin();
     println!("1280×720, time to the relative error, medians");
     println!("{:<34} {:>10} {:>10} {:>7}", "", "lab", "Mitsuba", "ratio");
-    for (name, material, bsdf) in
-        [("GGX, α = 0.3", "microfacet", None), ("Disney's model", "disney", Some(PRINCIPLED))]
-    {
-        let scene = scene(material, &registry);
+    for (name, material, bsdf) in [
+        ("GGX, α = 0.3", "microfacet", None),
+        ("Disney's model", "disney", Some(PRINCIPLED)),
+        ("a ball of glass under the sky", "glass", None),
+    ] {
+        let mut scene = scene(material, &registry);
+        if material == "glass" {
+            // The first light is the studio.
+            scene.lights.truncate(1);
+            scene.lights[0].parameters.set("source", Value::Choice("sky".into()));
+        }
         let (ours, inner, mean) = ours(&scene, &registry);
         let (theirs, their_mean) = theirs(&python, &scene, &registry, bsdf, &inner);
         for error in ERRORS {
@@ -107,6 +115,8 @@ fn scene(model: &str, registry: &Registry) -> Scene {
             ("ior", Value::Triple([0.18, 0.42, 1.37])),
             ("extinction", Value::Triple([3.42, 2.35, 1.77])),
         ]
+    } else if model == "glass" {
+        Vec::new()
     } else {
         vec![("roughness", Value::Number(0.3f32.sqrt())), ("base_colour", Value::Colour([200, 120, 60]))]
     };

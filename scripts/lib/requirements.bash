@@ -1,6 +1,6 @@
 # shellcheck shell=bash
 # Requirements of the scripts: missing ones are installed on Debian and Ubuntu, and listed on other
-# systems. Sourced by scripts/run and scripts/test.
+# systems. Sourced by the other scripts.
 #
 # LCM_DRY_RUN=1  prints the installation commands without running them.
 
@@ -58,7 +58,7 @@ look_for_graphics() {
     have_library libX11-xcb.so.1 || need libx11-xcb1 "windows under X11"
     have_library libXcursor.so.1 || need libxcursor1 "the mouse pointer"
     have_library libXi.so.6 || need libxi6 "mouse and keyboard"
-    have_library libXrandr.so.2 || need libxrandr2 "the size of screens"
+    have_library libwayland-client.so.0 || need libwayland-client0 "windows under Wayland"
 }
 
 # True if EGL finds a driver.
@@ -97,6 +97,18 @@ look_for_browser() {
     [[ $(uname -s) == Linux ]] || return 0
     have chromium || need chromium "a browser for the tests of web pages"
     have chromedriver || need chromium-driver "the same, driven by tests"
+}
+
+# Looks for the validator of desktop entries, for the tests of packages.
+look_for_desktop() {
+    [[ $(uname -s) == Linux ]] || return 0
+    have desktop-file-validate || need desktop-file-utils "to validate the desktop entry"
+}
+
+# Looks for Python with environments, for the Python package.
+look_for_python() {
+    have python3 || need python3 "Python, for its package"
+    have python3 && python3 -c 'import ensurepip, venv' 2>/dev/null || need python3-venv "virtual environments for Python"
 }
 
 run_or_show() {
@@ -138,13 +150,13 @@ install_missing() {
 say_elsewhere() {
     if have dnf; then
         say "Fedora: sudo dnf install gcc vulkan-loader mesa-vulkan-drivers libxkbcommon-x11 libX11-xcb \\"
-        say "          libXcursor libXi libXrandr xorg-x11-server-Xvfb glslang spirv-tools chromium chromedriver"
+        say "          libXcursor libXi libwayland-client xorg-x11-server-Xvfb glslang spirv-tools chromium chromedriver python3 desktop-file-utils"
     elif have pacman; then
         say "Arch: sudo pacman -S --needed gcc vulkan-icd-loader vulkan-swrast libxkbcommon-x11 libx11 \\"
-        say "        libxcursor libxi libxrandr xorg-server-xvfb glslang spirv-tools chromium"
+        say "        libxcursor libxi wayland xorg-server-xvfb glslang spirv-tools chromium python desktop-file-utils"
     elif have zypper; then
         say "openSUSE: sudo zypper install gcc libvulkan1 libvulkan_lvp libxkbcommon-x11-0 libX11-xcb1 \\"
-        say "            libXcursor1 libXi6 libXrandr2 xorg-x11-server-Xvfb glslang-devel spirv-tools chromium chromedriver"
+        say "            libXcursor1 libXi6 libwayland-client0 xorg-x11-server-Xvfb glslang-devel spirv-tools chromium chromedriver python3 desktop-file-utils"
     elif [[ $(uname -s) == Darwin ]]; then
         say "macOS: xcode-select --install"
     else

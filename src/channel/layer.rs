@@ -114,6 +114,12 @@ pub fn layers(scene: &Scene, terms: TermSelection, kinds: &[LayerKind], registry
             LayerKind::Depth => all.push(geometry(DebugChannel::Depth, &["Z"])),
             LayerKind::Terms => {
                 let shown = TermSelection::ALL.into_iter().skip(1);
+                let through = scene.shown().any(|object| {
+                    registry
+                        .model(scene.model_of(object))
+                        .is_some_and(|model| model.passage(&object.material).transmits)
+                });
+                let shown = shown.filter(|one| *one != TermSelection::Transmitted || through);
                 let shown = shown.filter(|one| terms == TermSelection::All || terms == *one);
                 all.extend(shown.map(|one| light(one.id().to_owned(), one, Shows::Objects)));
                 if scene.shining().any(|lamp| can_be_hidden(lamp, registry)) {

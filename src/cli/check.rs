@@ -10,7 +10,10 @@ use super::{
     workshop::{Workshop, on_disk, shader_problems},
 };
 use crate::{
-    explain::finite::{Scope, Tried, probe},
+    explain::{
+        finite::{Scope, Tried, probe},
+        solids::{Tested, thin},
+    },
     reflection::ModelEntry,
     registry::Registry,
     scene::{
@@ -70,6 +73,20 @@ fn only_on_gpu(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
     said
 }
 
+/// A line for each object of a legal scene that a solid model draws as thin glass in any of its views.
+pub(super) fn drawn_thin(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
+    let (mut said, mut tested) = (Vec::new(), Tested::default());
+    for (seen, _) in (0..=scene.variants.len()).filter_map(|view| scene.seen(view, registry)) {
+        for thin in thin(&seen, registry, &mut tested) {
+            let line = format!("{name}: {thin}");
+            if !said.contains(&line) {
+                said.push(line);
+            }
+        }
+    }
+    said
+}
+
 /// Adds a problem unless it is known.
 fn put(problems: &mut Vec<Problem>, problem: Problem, say: impl FnOnce()) {
     if !problems.contains(&problem) {
@@ -111,9 +128,10 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         });
         match read {
             Ok(loaded) => {
-                for line in only_on_gpu(&loaded.scene, &source.name(), &workshop.registry) {
-                    options.tell(line);
-                }
+                let (scene, name) = (&loaded.scene, source.name());
+                let gpu = only_on_gpu(scene, &name, &workshop.registry);
+                let thin = drawn_thin(scene, &name, &workshop.registry);
+                gpu.into_iter().chain(thin).for_each(|line| options.tell(line));
                 let Scene { lights, objects, variants, .. } = &loaded.scene;
                 let mut counts = vec![plural(lights.len(), "light"), plural(objects.len(), "object")];
                 counts.extend((!variants.is_empty()).then(|| plural(variants.len(), "variant")));

@@ -12,8 +12,9 @@ use super::{
     Options, Outcome, collected, gauged,
     light_samples::{self, Sampling},
     one_of, outputs, pictures, print_json,
-    render::{self, cpu_can_draw, samples, sides},
+    render::{self, cpu_can_draw, samples},
     scenes::Source,
+    sides,
     views::{Choice, find},
     workshop::{Workshop, drawable},
 };
@@ -23,10 +24,10 @@ use crate::{
     compare::{Largest, Measured, Metric, Metrics, Pair, Shown, cells, compose, metric::Way, size_around},
     export::write::inputs,
     failure::Failure,
+    picture::png::About,
     progress::Progress,
     reference::{self, Reached, Settings},
     registry::Registry,
-    render::capture::png::About,
     scene::{Comparison, Scene, comparison::Compared, variant::LETTERS},
     text::listed,
 };

@@ -4,7 +4,8 @@ use std::{io, path::PathBuf};
 
 use super::{
     Options, Outcome, complain,
-    evaluate::find,
+    engine::ENGINE,
+    evaluate::{Machine, find},
     print_json, print_paths, print_text,
     workshop::{Places, Workshop, valid},
 };
@@ -14,12 +15,12 @@ use crate::{
     failure::Failure,
     library::assets::write_new,
     optics::colour::Encoding,
+    progress::Progress,
     reflection::{
         law_report::LawReport,
         laws::{self, Effort},
     },
     registry::Registry,
-    render::capture::evaluate::Evaluator,
     text::{listed, quoted},
 };
 
@@ -90,18 +91,30 @@ pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Wo
     }
     let model = find(registry, id)?;
     valid(registry, model)?;
-    let mut evaluator = Evaluator::new(registry.sources(), model)?;
-    let mut last = None;
     let effort = Effort::default();
     let bar = super::progress(effort.sets as u64, options);
-    let findings = laws::examine(model, effort, |values, pairs| {
-        if last.as_ref() != Some(values) {
-            evaluator.set(values, Encoding::Srgb);
-            last = Some(values.clone());
-            bar.inc(1);
+    let findings = match ENGINE {
+        Some(engine) => {
+            let mut evaluator = (engine.evaluator)(registry.sources(), model)?;
+            let mut last = None;
+            laws::examine(model, effort, |values, pairs| {
+                if last.as_ref() != Some(values) {
+                    evaluator.set(values, Encoding::Srgb);
+                    last = Some(values.clone());
+                    bar.inc(1);
+                }
+                evaluator.evaluate(pairs)
+            })?
         }
-        evaluator.evaluate(pairs)
-    })?;
+        None => {
+            Machine::Cpu.can_run(model)?;
+            let tell = |done: f32, _: &str| bar.set_position((done * effort.sets as f32) as u64);
+            let progress = Progress { tell: &tell, cancelled: &|| false };
+            let findings = laws::examine_on_cpu(model, effort, &progress).unwrap_or_default();
+            Machine::Cpu.can_run(model)?;
+            findings
+        }
+    };
     bar.finish_and_clear();
     let report = LawReport::new(model, &findings);
     if as_json {

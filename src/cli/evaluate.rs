@@ -8,18 +8,21 @@ use glam::Vec3;
 use super::{
     Outcome,
     angles::{self, Column},
+    engine::{Evaluator, engine},
     workshop::{Workshop, not_on_cpu, valid},
 };
 use crate::{
     failure::Failure,
     optics::{Frame, Terms, colour::Encoding, geometry::direction},
     parameter::{Value, Values},
-    reflection::{ModelEntry, Surface, brdf, brdf_of},
+    reflection::{ModelEntry, Surface, brdf_of, bsdf},
     registry::Registry,
-    render::capture::{evaluate::Evaluator, gpu::GpuError},
     scene::field::Ids,
-    text::{listed, nearest, quoted},
+    text::quoted,
 };
+
+/// What to do without a GPU.
+const WITH_CPU: &str = "no model can be evaluated on the GPU; use --on cpu";
 
 /// A model with its parameters, and the machine that evaluates it.
 #[derive(Args, Debug)]
@@ -98,7 +101,7 @@ pub(super) struct Quantity<const N: usize, I> {
     pub header: &'static str,
     pub input: fn([f64; N]) -> I,
     pub on_cpu: fn(&dyn Surface, &[I]) -> Vec<Vec3>,
-    pub on_gpu: fn(&Evaluator, &[I]) -> Result<Vec<Vec3>, GpuError>,
+    pub on_gpu: fn(&dyn Evaluator, &[I]) -> Result<Vec<Vec3>, Failure>,
 }
 
 impl<const N: usize, I> Quantity<N, I> {
@@ -107,7 +110,7 @@ impl<const N: usize, I> Quantity<N, I> {
         let (registry, model, values) = arguments.open(workshop)?;
         let surface = model.instantiate(&values, Encoding::Srgb);
         // The GPU starts at the first row.
-        let mut gpu: Option<Evaluator> = None;
+        let mut gpu: Option<Box<dyn Evaluator>> = None;
         let mut header = Some(self.header);
         let mut out = BufWriter::new(io::stdout().lock());
         angles::stream(io::stdin().lock(), &self.columns, |rows| {
@@ -115,11 +118,11 @@ impl<const N: usize, I> Quantity<N, I> {
             let results = match (arguments.on, &mut gpu) {
                 (Machine::Cpu, _) => (self.on_cpu)(surface.as_ref(), &inputs),
                 (Machine::Gpu, _) if rows.is_empty() => Vec::new(),
-                (Machine::Gpu, Some(gpu)) => (self.on_gpu)(gpu, &inputs)?,
+                (Machine::Gpu, Some(gpu)) => (self.on_gpu)(gpu.as_ref(), &inputs)?,
                 (Machine::Gpu, none) => {
-                    let gpu = none.insert(Evaluator::new(registry.sources(), model)?);
+                    let gpu = none.insert((engine(WITH_CPU)?.evaluator)(registry.sources(), model)?);
                     gpu.set(&values, Encoding::Srgb);
-                    (self.on_gpu)(gpu, &inputs)?
+                    (self.on_gpu)(gpu.as_ref(), &inputs)?
                 }
             };
             arguments.on.can_run(model)?;
@@ -135,7 +138,8 @@ impl<const N: usize, I> Quantity<N, I> {
     }
 }
 
-/// The BRDF for pairs of directions. Angles beyond 90° are below the surface, where it is 0.
+/// The BSDF for pairs of directions. Beyond 90° is below the surface: some models transmit light from there, and what they
+/// transmit to observers there is known on the CPU.
 pub(super) const BRDF: Quantity<4, (Vec3, Vec3)> = Quantity {
     columns: [
         Column { name: "theta_i", range: Some((0.0, 180.0)) },
@@ -145,7 +149,7 @@ pub(super) const BRDF: Quantity<4, (Vec3, Vec3)> = Quantity {
     ],
     header: "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b",
     input: |[theta_i, phi_i, theta_o, phi_o]| (direction(theta_i, phi_i), direction(theta_o, phi_o)),
-    on_cpu: |surface, pairs| pairs.iter().map(|(l, v)| brdf(surface, *l, *v, &Frame::LOCAL)).collect(),
+    on_cpu: |surface, pairs| pairs.iter().map(|(l, v)| bsdf(surface, *l, *v, &Frame::LOCAL)).collect(),
     on_gpu: |gpu, pairs| {
         let of = |(terms, (l, v)): (Terms, &(Vec3, Vec3))| brdf_of(terms, *l, *v, &Frame::LOCAL);
         Ok(gpu.evaluate(pairs)?.into_iter().zip(pairs).map(of).collect())
@@ -201,14 +205,7 @@ pub(super) fn setting(
     name: &str,
     written: &str,
 ) -> Result<(&'static str, Value), String> {
-    let spelling = name.replace("color", "colour");
-    let Some(parameter) = model.parameter(&spelling) else {
-        let names: Vec<_> = model.parameters.iter().map(|p| p.name).collect();
-        let known = model.parameters.iter().flat_map(|p| [p.name, p.label, p.symbol].map(|s| (s, p.name)));
-        let hint = nearest(&spelling, known)
-            .map_or_else(|| format!("it has {}", listed(&names, "and")), |n| format!("did you mean {n}?"));
-        return Err(format!("{} has no parameter {name}; {hint}", model.declaration.id));
-    };
+    let parameter = model.named(name)?;
     match parameter.parse(written) {
         Ok(value) => Ok((parameter.name, value)),
         Err(error) => Err(format!("{name} {error}")),

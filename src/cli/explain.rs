@@ -6,8 +6,9 @@ use clap::Args;
 
 use super::{
     Options, Outcome, outputs, print_json, print_text,
-    render::{cpu_can_draw, sides, term},
+    render::{cpu_can_draw, term},
     scenes::Source,
+    sides,
     views::{Plan, find},
     workshop::{Workshop, drawable},
 };
@@ -18,9 +19,9 @@ use crate::{
     },
     failure::Failure,
     optics::TermSelection,
+    picture::png::About,
     reference::{Settings, ignored_edits},
     registry::Registry,
-    render::capture::png::About,
     scene::{Scene, variant::LETTERS},
     text::listed,
 };

@@ -6,18 +6,20 @@ use clap::{Args, builder::PossibleValuesParser};
 
 use super::{
     Options, Outcome,
+    engine::engine,
     explain::place,
     outputs, progress,
-    render::sides,
     scenes::Source,
-    views,
+    sides, views,
     workshop::{Workshop, drawable},
 };
 use crate::files::Shown as _;
 use crate::{
     explain,
     export::{
-        self, ExportError, FORMS, Form, Progress, Request, view,
+        self, ExportError, FORMS, Form, Progress, Request,
+        executable::{FORM as PROGRAM, WITHOUT_WINDOW},
+        view,
         write::{WriteError, inputs, may_write, write},
     },
     failure::Failure,
@@ -70,6 +72,10 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             return Err(Failure::Usage(said));
         }
         explain::inside(pixel, size).map_err(|error| Failure::Usage(format!("--explain: {error}")))?;
+    }
+    // Before an existing file is spoken of.
+    if form.id == PROGRAM.id {
+        engine(WITHOUT_WINDOW)?;
     }
     let source = Source::of(arguments.scene.as_deref(), workshop);
     let scene = source.open(workshop, options)?;

@@ -9,6 +9,11 @@ use crate::{
     scene::Scene,
 };
 
+/// True if something is drawn that this crate's tests do not cover.
+pub(super) fn has_untested(registry: &Registry) -> bool {
+    registry.sources().edited().next().is_some() || registry.has_foreign()
+}
+
 /// The setting of the debug channel that shows such pixels.
 pub(super) fn channel(scene: &Scene, registry: &Registry) -> Setting {
     Setting::new(DebugChannel::NotANumber, scene, registry, scene.observer.position, None)

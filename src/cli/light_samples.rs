@@ -3,10 +3,10 @@
 use clap::Args;
 
 use crate::{
+    picture::png::About,
     reference::{Reached, Until},
     registry::Registry,
-    render::capture::png::About,
-    scene::{Scene, has_extent},
+    scene::Scene,
 };
 
 /// Maximum number of samples of lights with extent.
@@ -53,8 +53,8 @@ impl Sampling {
 
     /// A remark on options that change nothing in a scene.
     pub(super) fn idle(self, scene: &Scene, registry: &Registry) -> Option<String> {
-        let nothing = self.nothing().filter(|_| !has_extent(scene.shining(), registry))?;
-        Some(format!("no light has extent, so the picture has no noise, and {nothing}"))
+        let nothing = self.nothing().filter(|_| !scene.rests_on_samples(registry))?;
+        Some(format!("no light has extent and no body is rough, so the picture has no noise, and {nothing}"))
     }
 
     /// A remark on options that change nothing, as pictures are compared as they are.

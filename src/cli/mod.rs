@@ -9,8 +9,9 @@ use crate::{
     failure::Failure,
     files::{self, printable, printable_json},
     parameter::Outside,
-    program::{self, in_own_words},
+    program::{self, HAS_WINDOW, in_own_words, without_window},
     progress::Progress,
+    reference::MAX_SIDE,
     registry::Registry,
     scene::load::Defaults,
     signals::Interrupt,
@@ -27,10 +28,11 @@ use std::{
     time::Duration,
 };
 
-use bevy::app::App;
 use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, error::ErrorKind};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+pub use engine::App;
+use engine::{Additions, ENGINE, engine};
 use serde::Serialize;
 use workshop::Places;
 
@@ -41,10 +43,12 @@ mod changes;
 mod check;
 mod compare;
 mod custom;
+mod engine;
 mod evaluate;
 mod explain;
 mod export;
 mod finite;
+mod installed;
 mod lesson;
 mod light_samples;
 mod linear;
@@ -60,16 +64,15 @@ mod runtime_folder;
 mod scenes;
 mod study;
 mod sweep;
-mod trial;
 mod view;
 mod views;
 mod workshop;
 
-/// A laboratory for the equations that light a surface: see, compare, edit and test reflection models.
+/// A laboratory for the equations that light a surface: see, compare, edit and trust reflection models.
 ///
 /// Without a command, opens the window; without a scene, shows the default scene.
 #[derive(Parser, Debug)]
-#[command(name = "lcm", version, override_usage = USAGE, after_help = EXIT_STATUS)]
+#[command(name = "lcm", version, override_usage = USAGE, after_help = after_help())]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -103,6 +106,16 @@ const USAGE: &str = "lcm [OPTIONS] [SCENE]\n       lcm [OPTIONS] <COMMAND>";
 const EXIT_STATUS: &str = "Exit status: 0 success; 1 a scene or an input is invalid; 2 wrong usage; \
                            3 no renderer or no display; 4 a result could not be written; \
                            128 + n ended by signal n (130 for Ctrl+C).";
+
+/// The end of the help.
+fn after_help() -> String {
+    let missing = if HAS_WINDOW {
+        String::new()
+    } else {
+        format!("{}\n\n", without_window("`lcm view` and the GPU are missing"))
+    };
+    missing + EXIT_STATUS
+}
 
 /// Options of every command.
 #[derive(Args, Clone, Copy, Debug)]
@@ -280,8 +293,9 @@ enum Command {
     ///
     /// Reads CSV from standard input, with the columns theta_i, phi_i, theta_o, phi_o: the directions to the light (i)
     /// and to the observer (o) in degrees, theta from the normal and phi around it from the tangent. Adds the columns
-    /// f_r, f_g, f_b: the red, green and blue BRDF in 1/sr, diffuse and specular without the cosine; 0 below the
-    /// surface (theta beyond 90°).
+    /// f_r, f_g, f_b: the red, green and blue BRDF in 1/sr, diffuse and specular without the cosine. A light or an
+    /// observer below the surface (theta beyond 90°) gives what the model transmits, 0 for most; with --on gpu,
+    /// observers there see 0.
     Evaluate(evaluate::Arguments),
     /// Compare Blinn–Phong with physically based models and take OpenPBR apart: a report with numbers
     Study(study::Arguments),
@@ -298,8 +312,21 @@ enum Command {
     Plot(plot::Arguments),
     /// Print the JSON Schema of scene files
     Schema,
+    /// Print a completion script for a shell
+    ///
+    /// For bash, for example: lcm completions bash > ~/.local/share/bash-completion/completions/lcm
+    Completions {
+        /// The shell that reads it
+        shell: clap_complete::Shell,
+    },
+    /// Write manual pages for man: one about the program, and one about each command
+    Manual {
+        /// Destination folder; created if it does not exist
+        #[arg(value_parser = outputs::place())]
+        folder: PathBuf,
+    },
     /// Try shaders for a window
-    #[command(hide = true, name = crate::render::trial::process::COMMAND)]
+    #[command(hide = true, name = program::TRY_SHADERS)]
     TryShaders,
 }
 
@@ -314,6 +341,13 @@ fn one_of(what: &str, word: &str, known: &[&str]) -> String {
 fn above_zero(text: &str) -> Result<u32, String> {
     let parsed = text.trim().parse::<u32>().ok().filter(|number| *number > 0);
     parsed.ok_or_else(|| format!("it must be a whole number from 1 to {}", u32::MAX))
+}
+
+/// Parser of sizes: width and height.
+fn sides(text: &str) -> Result<[u32; 2], String> {
+    let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=MAX_SIDE).contains(n));
+    let both = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    both.ok_or_else(|| format!("it must be WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE}, e.g. 800x600"))
 }
 
 /// The result of a command.
@@ -462,7 +496,7 @@ fn run_as(
         Err(error) => return ended(Err(Failure::Invalid(error.to_string()))),
     }
     #[cfg(target_os = "linux")]
-    if cli.loads_driver() {
+    if ENGINE.is_some() && cli.loads_driver() {
         runtime_folder::provide();
     }
     match cli.scene_options() {
@@ -476,7 +510,7 @@ fn run_as(
     }
     let mut registry = Registry::builtin();
     types(&mut registry);
-    ended(run(cli, registry, window))
+    ended(run(cli, registry, Box::new(window)))
 }
 
 /// Prints a failure, and returns the exit status.
@@ -504,7 +538,7 @@ fn misunderstood(error: &clap::Error, arguments: &[OsString]) {
 }
 
 /// Runs a command with all known types except custom models.
-fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
+fn run(cli: Cli, known: Registry, window: Additions) -> Outcome {
     use Command::*;
     let options = cli.options;
     if let Some(stray) = cli.view.given().filter(|_| cli.command.is_some()) {
@@ -512,8 +546,8 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
     }
     let places = &cli.places;
     match cli.command {
-        None => view::run(cli.view, options, places, known, window),
-        Some(View(given)) => view::run(given.own, options, places, known, window),
+        None => view(cli.view, options, places, known, window),
+        Some(View(given)) => view(given.own, options, places, known, window),
         Some(Render(given)) => render::run(&given.own, options, &mut places.open(options, known)?),
         Some(Sweep(given)) => sweep::run(&given.own, options, &mut places.open(options, known)?),
         Some(Compare(given)) => compare::run(&given.own, options, &mut places.open(options, known)?),
@@ -529,9 +563,27 @@ fn run(cli: Cli, known: Registry, window: impl FnOnce(&mut App)) -> Outcome {
         Some(Study(given)) => study::run(&given, options, &known),
         Some(Albedo(given)) => albedo::ALBEDO.print(&given, &mut places.open(options, known)?),
         Some(Plot(given)) => plot::run(&given, options, &mut places.open(options, known)?),
-        Some(TryShaders) => trial::run(),
+        Some(Completions { shell }) => installed::completions(shell),
+        Some(Manual { folder }) => installed::manual(&folder, options),
+        Some(TryShaders) => (engine("there are no shaders to try")?.try_shaders)(),
         Some(Schema) => print(&crate::scene::schema::text(places.open(options, known)?.list())),
     }
+}
+
+/// Opens the window.
+fn view(
+    arguments: view::Arguments,
+    options: Options,
+    places: &Places,
+    known: Registry,
+    window: Additions,
+) -> Outcome {
+    let engine = engine("`lcm render` draws scenes, and `lcm --help` lists all commands");
+    // A misspelt command is no scene.
+    let meant = |scene| view::meant_command(scene);
+    let engine =
+        engine.or_else(|missing| arguments.scene.as_deref().map_or(Ok(()), meant).and(Err(missing)))?;
+    (engine.view)(arguments, options, places, known, window)
 }
 
 /// Prints a result for people to standard output, with control characters escaped.
@@ -711,5 +763,13 @@ mod tests {
         assert!(outside.reach.allow_outside);
         let both = said(&["--use-defaults", "check", "x", "--no-defaults"]).expect_err("both");
         assert_eq!(both, "--use-defaults cannot be used with --no-defaults");
+    }
+
+    #[test]
+    fn sizes_have_two_sides() {
+        assert_eq!(sides("800x600"), Ok([800, 600]));
+        for wrong in ["800", "0x5", "5x-1", "x", "axb", "99999x1", ""] {
+            assert!(sides(wrong).is_err(), "{wrong}");
+        }
     }
 }

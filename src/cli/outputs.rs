@@ -13,7 +13,7 @@ use crate::{
     failure::Failure,
     files::{self, Shown as _, words},
     linear::{Channels, Format},
-    render::capture::{
+    picture::{
         linear,
         png::{self, About},
     },

@@ -7,58 +7,51 @@ use std::{
     time::Duration,
 };
 
-use bevy::app::App;
 use clap::{Args, ValueEnum};
 
 use super::{
     FINE, Options, Outcome,
     changes::Changes,
-    collected, finite, gauged,
+    check::drawn_thin,
+    collected,
+    engine::{ENGINE, Order, Pictures, engine},
+    finite::{self, has_untested},
+    gauged,
     light_samples::{self, Sampling},
     linear::{self, Kinds},
     one_of, outputs, progress,
     scenes::Source,
-    style,
+    sides, style,
     views::{self, Part, Plan, word},
-    workshop::{Workshop, drawable, invalid, not_on_cpu},
+    workshop::{Workshop, drawable, not_on_cpu},
 };
 use crate::files::Shown as _;
 use crate::{
     caption::{self, Sampled},
-    channel::{DebugChannel, Layer, LayerKind, Legend, Setting, layers, settle, too_large},
+    channel::{DebugChannel, Layer, LayerKind, Legend, Setting, layers, too_large},
     compare::{self, Cell, Shown, View, compose, with_legends, with_row_labels},
-    explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
     files::{Kind, PNG, is_descriptor, kind, printable},
     linear::{Channels, Format, MAX_PIXELS},
-    optics::{TermSelection, colour::Encoding},
+    optics::TermSelection,
+    picture::png::About,
+    program::HAS_WINDOW,
     progress::Progress,
-    reference::{self, LightSamples, MAX_SIDE, Reached},
-    reflection::ends::check_that_it_ends,
+    reference::{self, LightSamples, Reached},
     registry::Registry,
-    render::{
-        capture::{
-            gpu::{self, GpuError, GpuRenderer, find_adapter, may_have_hardware},
-            png::About,
-        },
-        trial::{
-            Bench,
-            process::{Budget, TrialProcess},
-        },
-    },
-    scene::{Comparison, Scene, comparison::Layout, has_extent, variant::LETTERS},
+    scene::{Comparison, Scene, comparison::Layout, variant::LETTERS},
     text::{listed, quoted},
 };
 
-/// Maximum number of objects whose models are tried on the CPU before the GPU draws them.
-const MOST_TRIED: usize = 64;
 /// Maximum number of lights listed one by one.
 const MOST_LISTED: usize = 16;
 /// Interval between updates of the progress bar for several pictures.
 const TICK: Duration = Duration::from_millis(200);
 /// Default folder for pictures (CA `RENDERS_DIR`).
 const RENDERS_DIR: &str = "renders";
+/// What to do without the GPU renderer.
+const WITH_CPU: &str = "there is no GPU renderer; use --renderer cpu";
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
@@ -127,7 +120,7 @@ impl Arguments {
     /// True if the command loads a graphics driver, to draw with it or to query it.
     pub(super) fn loads_driver(&self) -> bool {
         match self.renderer {
-            Renderer::Auto => may_have_hardware(),
+            Renderer::Auto => ENGINE.is_some_and(|engine| (engine.may_have_gpu)()),
             Renderer::Gpu => true,
             Renderer::Cpu => false,
         }
@@ -143,13 +136,6 @@ pub enum Renderer {
     Gpu,
     /// The program's own CPU renderer; needs no driver
     Cpu,
-}
-
-/// Parser of sizes: width and height.
-pub(super) fn sides(text: &str) -> Result<[u32; 2], String> {
-    let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=MAX_SIDE).contains(n));
-    let both = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
-    both.ok_or_else(|| format!("it must be WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE}, e.g. 800x600"))
 }
 
 pub(super) fn samples(text: &str) -> Result<u32, String> {
@@ -220,10 +206,15 @@ impl Job<'_> {
         if self.arguments.no_scene { about.without_scene() } else { about }
     }
 
+    /// A view of the picture, for the GPU.
+    fn order<'a>(&'a self, part: &'a Part, registry: &'a Registry) -> Order<'a> {
+        Order { part, samples: self.arguments.samples, registry, file: self.file }
+    }
+
     /// True if what is shown of a scene depends on samples of lights with extent.
     fn converges(&self, scene: &Scene, registry: &Registry) -> bool {
         self.channel.is_none_or(|setting| setting.channel.rests_on_samples())
-            && has_extent(scene.shining(), registry)
+            && scene.rests_on_samples(registry)
     }
 }
 
@@ -265,6 +256,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     for part in plans.iter().flat_map(|plan| &plan.parts) {
         drawable(registry, &part.scene)?;
     }
+    for (scene, source) in scenes.iter().zip(&sources) {
+        drawn_thin(scene, &source.name(), registry).into_iter().for_each(|line| options.tell(line));
+    }
     // All files are in a single folder.
     files.first().into_iter().for_each(|file| outputs::tidy_beside(file));
     if arguments.sampling.given().is_some() {
@@ -294,7 +288,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         .collect();
     if !passed.is_empty() {
         let passed = listed(&passed.iter().map(String::as_str).collect::<Vec<_>>(), "and");
-        options.tell(format!("the CPU renderer ignores the edited {passed}; --renderer gpu uses the edits"));
+        let remedy =
+            if HAS_WINDOW { "--renderer gpu uses the edits" } else { "a program with the window uses them" };
+        options.tell(format!("the CPU renderer ignores the edited {passed}; {remedy}"));
     }
     let channels = collected(scenes.iter().zip(&plans).zip(&sources).map(|((scene, plan), source)| {
         let invalid = |why| Failure::Invalid(format!("{}: {why}", source.name()));
@@ -431,10 +427,8 @@ struct Painter {
     gpu: bool,
     /// The program that tries shaders in a separate process.
     trial_program: Option<PathBuf>,
-    /// The renderer of the last picture, with its size, samples and output: the next picture likely has the same.
-    last: Option<((u32, u32, u8, gpu::Output), GpuRenderer)>,
-    /// The results on the CPU of models that tests do not cover.
-    tried: Tried,
+    /// The GPU renderer, once it has drawn.
+    pictures: Option<Box<dyn Pictures>>,
 }
 
 impl Painter {
@@ -442,19 +436,31 @@ impl Painter {
         let gpu = match renderer {
             Renderer::Cpu => false,
             Renderer::Gpu => {
-                find_adapter().map_err(|e| Failure::NoRenderer(e.to_string()))?;
+                (engine(WITH_CPU)?.find_adapter)()?;
                 true
             }
             // Querying the driver takes longer than rendering a picture; the device nodes reveal at once that
             // there is no GPU.
-            Renderer::Auto => may_have_hardware() && find_adapter().is_ok_and(|a| !a.software),
+            Renderer::Auto => ENGINE.is_some_and(|engine| {
+                (engine.may_have_gpu)() && (engine.find_adapter)().is_ok_and(|hardware| hardware)
+            }),
         };
-        Ok(Self { renderer, gpu, trial_program, last: None, tried: Tried::default() })
+        Ok(Self { renderer, gpu, trial_program, pictures: None })
+    }
+
+    /// The GPU renderer.
+    fn pictures(&mut self) -> Result<&mut dyn Pictures, Failure> {
+        let pictures = match self.pictures.take() {
+            Some(known) => known,
+            None => (engine(WITH_CPU)?.pictures)(self.trial_program.clone()),
+        };
+        Ok(self.pictures.insert(pictures).as_mut())
     }
 
     /// True if the GPU renders the views of a picture.
     fn takes_gpu(&self, plan: &Plan, registry: &Registry) -> bool {
         match self.renderer {
+            Renderer::Auto if ENGINE.is_none() => false,
             Renderer::Auto => {
                 let cpu = plan.parts.iter().all(|part| cpu_can_draw(&part.scene, registry).is_ok());
                 !cpu || self.gpu && !plan.needs_light()
@@ -521,6 +527,30 @@ impl Painter {
         Ok(Painted { remarks, light })
     }
 
+    fn on_gpu(&mut self, job: &Job, part: &Part, registry: &Registry) -> Result<Drawn, Failure> {
+        let (shown, remark) = self.pictures()?.draw(&job.order(part, registry), job.channel)?;
+        let reached = job
+            .converges(&part.scene, registry)
+            .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
+        Ok(Drawn { shown, reached, remarks: remark.into_iter().collect() })
+    }
+
+    fn layers_on_gpu(
+        &mut self,
+        job: &Job,
+        part: &Part,
+        layers: &[Layer],
+        registry: &Registry,
+        progress: &Progress,
+    ) -> Result<(Channels, Option<Reached>, Vec<String>), Failure> {
+        let (channels, remark) = self.pictures()?.layers(&job.order(part, registry), layers, progress)?;
+        let reached = part
+            .scene
+            .rests_on_samples(registry)
+            .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
+        Ok((channels, reached, remark.into_iter().collect()))
+    }
+
     /// Renders a linear picture with its layers.
     fn draw_linear(
         &mut self,
@@ -540,112 +570,11 @@ impl Painter {
         outputs::write_linear(job.file, format, &channels, &about)?;
         Ok(Painted { remarks, light })
     }
-
-    fn layers_on_gpu(
-        &mut self,
-        job: &Job,
-        part: &Part,
-        layers: &[Layer],
-        registry: &Registry,
-        progress: &Progress,
-    ) -> Result<(Channels, Option<Reached>, Vec<String>), Failure> {
-        let renderer = self.renderer(job, part, gpu::Output::Linear, registry)?;
-        let [width, height] = job.arguments.size;
-        let (mut channels, mut odd) = (Channels::new(width, height), false);
-        for (i, layer) in layers.iter().enumerate() {
-            (progress.tell)(i as f32 / layers.len() as f32, &layer.name);
-            let scene = layer.scene(&part.scene);
-            let (picture, is_odd) =
-                renderer.light(layer, scene, job.arguments.samples).map_err(|e| failed(job, e))?;
-            if let Some(problem) = renderer.shader_problem() {
-                return Err(invalid(registry, &problem));
-            }
-            odd |= is_odd;
-            channels.add(&layer.name, layer.channels, &picture.pixels);
-        }
-        settle(&mut channels, layers);
-        let reached = has_extent(part.scene.shining(), registry)
-            .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
-        let remark = odd.then(|| {
-            finite::remark_on_cpu(part, registry).unwrap_or_else(|| {
-                "some light is not finite: not a number became 0, infinite 1e30".to_owned()
-            })
-        });
-        Ok((channels, reached, remark.into_iter().collect()))
-    }
-
-    /// The renderer of the GPU for a part of a picture.
-    fn renderer(
-        &mut self,
-        job: &Job,
-        part: &Part,
-        output: gpu::Output,
-        registry: &Registry,
-    ) -> Result<&mut GpuRenderer, Failure> {
-        let Cell { width, height, .. } = part.cell;
-        let samples = if job.arguments.samples == 4 && output == gpu::Output::Display { 4 } else { 1 };
-        let key = (width, height, samples, output);
-        // An endless loop on a GPU cannot be stopped.
-        for object in part.scene.objects.iter().take(MOST_TRIED) {
-            if let Some(model) = registry.model(part.scene.model_of(object)) {
-                check_that_it_ends(model, &object.material, Encoding::Srgb)
-                    .map_err(|e| failed(job, e.into()))?;
-            }
-        }
-        if self.last.as_ref().is_none_or(|(last, _)| *last != key) {
-            self.last = None;
-            let renderer = GpuRenderer::extended(width, height, samples, output, |app| {
-                try_apart(app, registry, self.trial_program.clone());
-                app.insert_resource(registry.clone());
-            });
-            self.last = Some((key, renderer.map_err(|e| failed(job, e))?));
-        }
-        match &mut self.last {
-            Some((_, renderer)) => Ok(renderer),
-            None => Err(failed(job, GpuError::NoAdapter)),
-        }
-    }
-
-    fn on_gpu(&mut self, job: &Job, part: &Part, registry: &Registry) -> Result<Drawn, Failure> {
-        let Cell { width, height, .. } = part.cell;
-        let failed = |e: GpuError| failed(job, e);
-        let renderer = self.renderer(job, part, gpu::Output::Display, registry)?;
-        renderer.set_scene(part.scene.clone());
-        renderer.set_terms(part.terms);
-        renderer.set_channel(job.channel);
-        renderer.settle().map_err(failed)?;
-        if let Some(problem) = renderer.shader_problem() {
-            return Err(invalid(registry, &problem));
-        }
-        let rgb8 = renderer.read_rgb8().map_err(failed)?;
-        let shown =
-            Shown::of_codes(width, height, rgb8).map_err(|e| failed(GpuError::Copy(e.to_string())))?;
-        let reached = job
-            .converges(&part.scene, registry)
-            .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
-        // Everything shipped with the program is finite.
-        if !has_untested(registry) {
-            return Ok(Drawn { shown, reached, remarks: Vec::new() });
-        }
-        renderer.set_channel(Some(finite::channel(&part.scene, registry)));
-        renderer.settle().map_err(failed)?;
-        let channel = renderer.read_rgb8().map_err(failed)?;
-        let remark = finite::remark_on_gpu(part, registry, &channel, &mut self.tried);
-        Ok(Drawn { shown, reached, remarks: remark.into_iter().collect() })
-    }
 }
 
 /// The name of a renderer in the metadata of pictures.
 fn renderer_name(gpu: bool) -> &'static str {
     if gpu { "GPU" } else { "CPU" }
-}
-
-/// The failure of the GPU renderer.
-fn failed(job: &Job, error: GpuError) -> Failure {
-    match error {
-        GpuError::Invalid(_) | GpuError::Endless(_) => error.into(),
-        error => Failure::NoRenderer(format!("{}: {error}", job.file.shown())),
-    }
 }
 
 /// Fails if the CPU renderer cannot draw a part of a picture.
@@ -705,21 +634,6 @@ fn captioned(
     let mut caption = caption::of_picture(job.scene, &shown, registry).resting_on(rests_on);
     caption.facts.extend(numbers);
     caption::draw(&caption, rgb8, job.arguments.size)
-}
-
-/// True if something is drawn that this crate's tests do not cover.
-fn has_untested(registry: &Registry) -> bool {
-    registry.sources().edited().next().is_some() || registry.has_foreign()
-}
-
-/// Tries the shaders of users and of other crates in another process, since they may crash a driver.
-fn try_apart(app: &mut App, registry: &Registry, program: Option<PathBuf>) {
-    if has_untested(registry)
-        && let Some(program) = program
-        && let Some(mut bench) = app.world_mut().get_resource_mut::<Bench>()
-    {
-        bench.try_in(TrialProcess::new(program, Budget::default(), || {}));
-    }
 }
 
 fn on_cpu(job: &Job, part: &Part, registry: &Registry, progress: &Progress) -> Result<Drawn, Failure> {
@@ -908,13 +822,5 @@ mod tests {
         assert!(said(&["a/x.json", "b/x.json"], None).contains("would both be written to renders/x.png"));
         assert!(said(&["a.json"], Some("x.jpg")).contains("did you mean x.png?"));
         assert!(one_picture(Path::new("x.exr")).is_err(), "numbers have no linear picture beside them");
-    }
-
-    #[test]
-    fn sizes_have_two_sides() {
-        assert_eq!(sides("800x600"), Ok([800, 600]));
-        for wrong in ["800", "0x5", "5x-1", "x", "axb", "99999x1", ""] {
-            assert!(sides(wrong).is_err(), "{wrong}");
-        }
     }
 }

@@ -11,8 +11,9 @@ use super::{
     gauged,
     light_samples::Sampling,
     outputs,
-    render::{cpu_can_draw, samples, sides},
+    render::{cpu_can_draw, samples},
     scenes::Source,
+    sides,
     views::{self, Maps},
     workshop::{Workshop, drawable},
 };

@@ -15,9 +15,9 @@ use crate::{
     export::payload::{Payload, PayloadError},
     failure::Failure,
     library::assets::{self, Folders},
+    program::{HAS_WINDOW, without_window},
     reflection::ModelEntry,
     registry::{Registry, check::wgsl, compose::compose},
-    render::capture::gpu::GpuError,
     scene::{
         Scene,
         error::LoadError,
@@ -297,16 +297,6 @@ pub(super) fn all_annotated(problems: &[(PathBuf, ShaderProblem)]) -> String {
     each.join("\n")
 }
 
-impl From<GpuError> for Failure {
-    fn from(error: GpuError) -> Self {
-        match error {
-            GpuError::Invalid(problem) => Self::Invalid(annotated(&problem, &problem.file)),
-            GpuError::Endless(_) => Self::Invalid(error.to_string()),
-            other => Self::NoRenderer(other.to_string()),
-        }
-    }
-}
-
 /// The failure for a model that the CPU cannot run, with an alternative.
 pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> Failure {
     let id = model.declaration.id;
@@ -314,8 +304,9 @@ pub(super) fn not_on_cpu(model: &ModelEntry, why: &str, instead: &str) -> Failur
         // The GPU would not be asked to run it either.
         return Failure::Invalid(format!("{id} cannot be run: {why}"));
     }
+    let remedy = if HAS_WINDOW { format!("use {instead}") } else { without_window("the GPU could run it") };
     Failure::NoRenderer(format!(
-        "{id} cannot be run on the CPU, which interprets custom models: {why}; use {instead}"
+        "{id} cannot be run on the CPU, which interprets custom models: {why}; {remedy}"
     ))
 }
 
@@ -354,14 +345,16 @@ pub(super) fn shader_problems(registry: &Registry, scene: &Scene) -> Vec<(usize,
     let lights = registry.lights_in(scene.light_types(registry));
     let mut pairs = BTreeMap::new();
     for (i, object) in scene.objects.iter().enumerate() {
-        pairs.entry((scene.model_of(object), scene.shading_model_of(object))).or_insert(i);
+        let id = scene.model_of(object);
+        let passage = registry.model(id).map(|model| model.passage(&object.material));
+        pairs.entry((id, passage.unwrap_or_default(), scene.shading_model_of(object))).or_insert(i);
     }
     let mut problems: Vec<(usize, ShaderProblem)> = Vec::new();
-    for ((model, shading), i) in pairs {
+    for ((model, passage, shading), i) in pairs {
         let (Some(model), Some(shading)) = (registry.model(model), registry.shading_model(shading)) else {
             continue;
         };
-        let composed = compose(registry.sources(), model, shading, &lights);
+        let composed = compose(registry.sources(), (model, passage), shading, &lights);
         let faces = shading.declaration.stage == Stage::Polygon;
         if let Err(problem) = validate_drawing(&composed, faces) {
             let problem = wgsl::blamed(problem, registry, model, shading, &lights);

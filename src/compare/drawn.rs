@@ -13,7 +13,7 @@ use crate::{
         LightSamples, Reached, Settings, Until, render_channel_by, render_rgb8_noting, render_until,
     },
     registry::Registry,
-    scene::{Scene, has_extent},
+    scene::Scene,
 };
 
 /// A view to draw.
@@ -71,9 +71,9 @@ impl View<'_> {
             fits.and_then(|()| Ok(render_until(&scene, registry, &settings, until, odd, progress)?))
         };
         let converges =
-            channel.is_none_or(|own| own.channel.rests_on_samples()) && has_extent(scene.shining(), registry);
+            channel.is_none_or(|own| own.channel.rests_on_samples()) && scene.rests_on_samples(registry);
         if let Some(setting) = channel {
-            // A channel is not a mean of others, so it takes all samples at once: as many as the picture takes.
+            // A channel is not a mean of others, so it takes all samples at once: as many as the picture takes, or may take.
             let reached = match until {
                 _ if !converges => None,
                 Until { noise: Some(_), .. } => Some(converged()?.1),

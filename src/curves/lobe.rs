@@ -1,4 +1,5 @@
-//! The lobe of a model at a point: the BRDF over the hemisphere of viewers, as a surface.
+//! The lobe of a model at a point: the BRDF over the hemisphere of viewers, as a surface; for models that light passes
+//! through, over the whole sphere.
 //!
 //! The polar plot ([`Kind::Polar`]) is the section of this surface with the plane of incidence: it has the
 //! same quantity on the same axis.
@@ -7,9 +8,14 @@ use std::collections::{HashMap, HashSet};
 
 use glam::Vec3;
 
-use super::{Channel, Kind, angles::GRAZING, draw::Axis, sheet::span};
+use super::{
+    Channel, Kind,
+    angles::{GRAZING, from_surface},
+    draw::Axis,
+    sheet::span,
+};
 use crate::{
-    optics::{Frame, TermSelection, Terms, geometry::direction},
+    optics::{Frame, TermSelection, geometry::direction},
     progress::{Cancelled, Progress},
     reflection::{Surface, brdf_of},
 };
@@ -40,18 +46,16 @@ pub struct Lobe {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// The BRDF of the displayed terms, in sr⁻¹. The ambient term has none.
+/// The BSDF of the displayed terms, in sr⁻¹. The ambient term has none. Of light from below, only what comes out above is
+/// known.
 #[must_use]
 pub fn value(surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
-    let all = surface.response(l, v, frame);
-    let none = Vec3::ZERO;
-    let shown = match terms {
-        TermSelection::All => all,
-        TermSelection::Ambient => Terms { diffuse: none, specular: none, ..all },
-        TermSelection::Diffuse => Terms { specular: none, ..all },
-        TermSelection::Specular => Terms { diffuse: none, ..all },
-    };
-    brdf_of(shown, l, v, frame)
+    if surface.transmits() && frame.n.dot(v) < 0.0 {
+        let through = matches!(terms, TermSelection::All | TermSelection::Transmitted);
+        let through = through && frame.n.dot(l) > 0.0;
+        return if through { surface.behind(l, v, frame) } else { Vec3::ZERO };
+    }
+    brdf_of(surface.response(l, v, frame).only(terms), l, v, frame)
 }
 
 impl Lobe {
@@ -67,7 +71,7 @@ impl Lobe {
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
         let value = |v: Vec3| Channel::Luminance.of(value(surface, l, v, frame, terms));
-        let mut lobe = Self::coarse(l, frame, &value);
+        let mut lobe = Self::coarse(l, frame, surface.transmits(), &value);
         let mut settled = HashSet::new();
         for pass in 0..PASSES {
             progress.step(pass as f32 / PASSES as f32, "")?;
@@ -80,10 +84,10 @@ impl Lobe {
     }
 
     /// Rings around the normal, one of them through the mirror direction, which is itself one of the
-    /// directions.
-    fn coarse(l: Vec3, frame: &Frame, value: &impl Fn(Vec3) -> f64) -> Self {
+    /// directions; `around` the whole sphere, the rings below are those above, mirrored.
+    fn coarse(l: Vec3, frame: &Frame, around: bool, value: &impl Fn(Vec3) -> f64) -> Self {
         let local = frame.to_local(l);
-        let theta_i = f64::from(local.z.clamp(-1.0, 1.0).acos()).to_degrees();
+        let theta_i = from_surface(f64::from(local.z.clamp(-1.0, 1.0).acos()).to_degrees());
         let phi_i = f64::from(local.y.atan2(local.x)).to_degrees();
         let mut down: Vec<_> = DOWN.iter().copied().filter(|a| (a - theta_i).abs() > CLEAR).collect();
         if (CLEAR..GRAZING).contains(&theta_i) {
@@ -93,6 +97,10 @@ impl Lobe {
         down.push(GRAZING);
         down.sort_by(f64::total_cmp);
         down.dedup();
+        if around {
+            let below: Vec<_> = down.iter().rev().map(|angle| 180.0 - angle).collect();
+            down.extend(below);
+        }
         let room = |local: Vec3| frame.t * local.x + frame.b * local.y + frame.n * local.z;
         let mut ways = vec![frame.n];
         for theta in &down {
@@ -113,6 +121,12 @@ impl Lobe {
                     [[a, c, b], [b, c, d]]
                 });
             }
+        }
+        if around {
+            let bottom = ways.len() as u32;
+            ways.push(-frame.n);
+            let last = down.len() - 1;
+            triangles.extend((0..AROUND).map(|k| [bottom, at(last, k + 1), at(last, k)]));
         }
         let values = ways.iter().map(|way| value(*way)).collect();
         Self { ways, values, triangles }

@@ -1,6 +1,6 @@
 //! Curves of models and of measured data.
 
-use super::{Curve, CurveError, Detail, Kind, Point, Setup, Subject, adaptive, subject};
+use super::{Curve, CurveError, Detail, Kind, Point, Setup, Subject, adaptive, angles::behind, subject};
 use crate::{
     optics::colour::Encoding, parameter::Values, progress::Progress, reflection::ModelEntry,
     registry::Registry, text::listed,
@@ -25,12 +25,30 @@ pub fn curve(
     let declared = setup.kind.declaration();
     let value = |angle: f64| (declared.value)(subject, setup, angle);
     let fine = detail == Detail::Fine;
-    let mut points = adaptive::at(&(declared.angles)(setup.theta_i, fine), &value, progress)?;
-    if fine && declared.is_refined {
-        points = adaptive::refined(points, &value, progress)?;
+    let above = (declared.angles)(setup.theta_i, fine);
+    let [left, right] = if declared.is_around && subject.transmits() {
+        behind(&ways(subject, setup.theta_i))
+    } else {
+        [vec![], vec![]]
+    };
+    let mut points = Vec::new();
+    // Each side by itself: in the surface there are no values.
+    for angles in [left, above, right] {
+        let mut side = adaptive::at(&angles, &value, progress)?;
+        if fine && declared.is_refined {
+            side = adaptive::refined(side, &value, progress)?;
+        }
+        points.append(&mut side);
     }
     subject.runs()?;
     Ok(Curve { name: subject.name.clone(), points, measured: false })
+}
+
+/// The angles to the normal behind a surface at which light from an angle goes on: straight, and bent; and 0.
+fn ways(subject: &Subject, theta_i: f64) -> Vec<f64> {
+    let bent = subject.refractive_index().map(|n| theta_i.to_radians().sin() / f64::from(n));
+    let bent = bent.filter(|sine| *sine < 1.0).map(|sine| sine.asin().to_degrees());
+    [theta_i, 0.0].into_iter().chain(bent).collect()
 }
 
 impl Subject {

@@ -4,11 +4,12 @@ use std::io;
 
 use super::{
     Channel, Curve, Form, Kind, Setup, Slice,
+    angles::from_surface,
     draw::{Axis, COLOURS, Figure, Line, Mark, Plot, Polar, SIDE, Series, Slices, Tile},
     slice::LOG_RANGE,
 };
 use crate::{
-    render::capture::png::{About, encode},
+    picture::png::{About, encode},
     text::capitalised,
 };
 
@@ -116,6 +117,11 @@ impl Sheet {
         self.curves.iter().flat_map(|curve| &curve.points).any(|p| !grey(&p.rgb))
     }
 
+    /// True if a curve goes on behind the surface.
+    fn is_around(&self) -> bool {
+        self.curves.iter().flat_map(|curve| &curve.points).any(|point| point.angle.abs() > 90.0)
+    }
+
     /// The figure.
     #[must_use]
     pub fn figure(&self) -> Figure {
@@ -134,24 +140,24 @@ impl Sheet {
                 radius: self.axis(true),
                 series: self.series(),
                 light: self.setup.theta_i,
-                size: (960, 500),
+                around: self.is_around(),
+                size: (960, if self.is_around() { 760 } else { 500 }),
                 legend: true,
                 notes: self.notes(),
             }),
             Form::Plot => {
-                let (from, to) = self.setup.kind.declaration().horizontal.ends;
+                let horizontal = self.setup.kind.declaration().horizontal;
+                let x = if self.is_around() {
+                    let name = format!("{}, beyond 90° behind the surface", horizontal.name);
+                    Axis::new(&name, -180.0, 180.0, 9)
+                } else {
+                    let (from, to) = horizontal.ends;
+                    Axis::new(horizontal.name, from, to, 7)
+                };
                 let y = self.axis(false);
                 let mut notes = self.notes();
                 notes.extend(self.beyond(&y));
-                Figure::Plot(Plot {
-                    title,
-                    heading,
-                    x: Axis::new(self.setup.kind.declaration().horizontal.name, from, to, 7),
-                    y,
-                    series: self.series(),
-                    notes,
-                    ..Plot::default()
-                })
+                Figure::Plot(Plot { title, heading, x, y, series: self.series(), notes, ..Plot::default() })
             }
         }
     }
@@ -236,7 +242,7 @@ impl Sheet {
     fn axis(&self, from_centre: bool) -> Axis {
         let limit = if from_centre || self.log { 90.0 } else { self.limit() };
         let points = self.curves.iter().flat_map(|curve| &curve.points);
-        let shown = points.filter(|p| p.angle.abs() <= limit);
+        let shown = points.filter(|p| from_surface(p.angle) <= limit);
         let values: Vec<_> = shown.map(|p| self.value(p.rgb)).filter(|v| v.is_finite()).collect();
         span(self.setup.kind, self.log, from_centre, &values)
     }

@@ -12,7 +12,7 @@ use crate::{
     caption,
     optics::{Frame, Terms, colour::Encoding},
     parameter::{Parameter, Value, Values},
-    reflection::{Factor, ModelEntry, Surface, brdf, usage},
+    reflection::{Factor, ModelEntry, Surface, bsdf, usage},
     text::did_you_mean,
 };
 
@@ -99,10 +99,23 @@ impl Subject {
         }
     }
 
-    /// `f` in sr⁻¹.
+    /// True if light passes through the surface.
+    pub(super) fn transmits(&self) -> bool {
+        matches!(&self.source, Source::Model { surface, .. } if surface.transmits())
+    }
+
+    /// The refractive index behind the surface, for models that bend light.
+    pub(super) fn refractive_index(&self) -> Option<f32> {
+        match &self.source {
+            Source::Model { surface, .. } => surface.refractive_index(),
+            _ => None,
+        }
+    }
+
+    /// `f` in sr⁻¹, for light above the surface.
     pub(super) fn brdf(&self, l: Vec3, v: Vec3) -> Vec3 {
         match &self.source {
-            Source::Model { surface, .. } => brdf(surface.as_ref(), l, v, &Frame::LOCAL),
+            Source::Model { surface, .. } => bsdf(surface.as_ref(), l, v, &Frame::LOCAL),
             Source::Fit(fit) => Vec3::from(fit.brdf(l, v).map(|f| f as f32)),
             Source::Paint(_) => Vec3::NAN,
         }

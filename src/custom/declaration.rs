@@ -25,7 +25,7 @@ use crate::{
 const OPTIONS: ParseOptions = ParseOptions { allow_comments: true, allow_trailing_commas: true, ..STRICT };
 /// The keys of a declaration.
 const MODEL_KEYS: &str =
-    "name author source summary equation laws anisotropic lobe lobes curves parameters groups";
+    "name author source summary equation laws anisotropic transmits lobe lobes curves parameters groups";
 /// The keys of a part of the equation.
 const PART_KEYS: &[&str] = &["term", "text"];
 /// The most brackets of a declaration, and so its deepest nesting.
@@ -42,6 +42,8 @@ pub(super) struct Said {
     pub equation: &'static [EquationPart],
     pub laws: Laws,
     pub anisotropic: bool,
+    /// True if light passes through.
+    pub transmits: bool,
     /// The built-in model whose lobe the model uses.
     pub lobe: Option<&'static str>,
     /// The directions in which the model reflects most.
@@ -124,6 +126,7 @@ impl Reader<'_> {
             equation: self.equation(&fields),
             laws: self.laws(&fields),
             anisotropic: self.flag(&fields, "anisotropic", false, "it must be true or false"),
+            transmits: self.flag(&fields, "transmits", false, "it must be true or false"),
             parameters,
             groups: self.groups(&fields, parameters),
             lobe,
@@ -139,6 +142,7 @@ impl Reader<'_> {
             ("ambient", Term::Ambient),
             ("diffuse", Term::Diffuse),
             ("specular", Term::Specular),
+            ("transmitted", Term::Transmitted),
         ];
         let Some(value) = fields.get("equation") else { return intern::equation(Vec::new()) };
         let mut parts = Vec::new();

@@ -10,7 +10,7 @@ use crate::{
         lobes::{Lobe, Lobes, MAX_LOBES},
     },
     parameter::{Parameter, Values},
-    reflection::ModelEntry,
+    reflection::{Declaration, ModelEntry},
     text::{
         json::{Cursor, Fields, Reader as _},
         listed, quoted,
@@ -91,8 +91,15 @@ impl Shape {
 
 impl SaidLobes {
     /// The lobes for these values of the model's parameters.
-    pub fn lobes(&self, parameters: &[Parameter], values: &Values, encoding: Encoding) -> Lobes {
+    pub fn lobes(
+        &self,
+        declaration: &Declaration,
+        parameters: &[Parameter],
+        values: &Values,
+        encoding: Encoding,
+    ) -> Lobes {
         match self {
+            Self::Nothing if declaration.transmits => Lobes::of_both_sides(),
             Self::Nothing => Lobes::default(),
             Self::Of(model) => model.instantiate(&declared_alone(parameters, values), encoding).lobes(),
             Self::These(all) => {

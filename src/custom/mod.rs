@@ -18,7 +18,8 @@
 //!
 //! The GPU runs the file unchanged, the CPU interprets it. With a second function `fn ambient_response(v: vec3<f32>,
 //! frame: Frame, m: Parameters) -> vec3<f32>` the model answers uniform light by a formula, without it by its
-//! directional albedo.
+//! directional albedo. In a model that light passes through (`"transmits": true`), `fn sharp(i: u32, v: vec3<f32>, frame:
+//! Frame, m: Parameters) -> Sharp` gives the directions in which light does not spread.
 
 use std::{path::Path, sync::Arc};
 
@@ -50,11 +51,6 @@ pub use write::{BadName, NotDuplicated, duplicate, id_of_name, template};
 
 /// The file extension.
 pub const EXTENSION: &str = "wgsl";
-
-/// The marker type of all custom models' materials: they share one material type, since their shaders, not their types,
-/// distinguish them.
-#[derive(Clone, Copy, Debug)]
-pub struct CustomFile;
 
 pub use crate::registry::CustomModel;
 
@@ -115,7 +111,8 @@ pub fn read(path: &Path, text: &str, registry: &Registry) -> Result<CustomModel,
     sources.edit(model.entry.declaration.wgsl.path, model.text.clone());
     let module = wgsl::model(&sources, &model.entry).map_err(|found| vec![*found])?;
     for shading in registry.shading_models() {
-        let composed = compose(&sources, &model.entry, shading, registry.lights());
+        let drawn = (&model.entry, model.entry.declaration.passage());
+        let composed = compose(&sources, drawn, shading, registry.lights());
         let faces = shading.declaration.stage == Stage::Polygon;
         validate_drawing(&composed, faces).map_err(|found| vec![*found])?;
     }
@@ -145,7 +142,9 @@ fn declared(
         .map_err(|mistakes| mistakes.into_iter().map(wrong).collect::<Vec<_>>())?;
     let formula = text::definition(&text[said.end..], "ambient_response").is_some();
     let ambient = if formula { Ambient::Formula } else { Ambient::Albedo };
-    let wgsl = Source { path: intern::text(&source_path(id)), text: stand_in(ambient) };
+    // Other models may have a function of that name for their own use.
+    let sharp = said.transmits && text::definition(&text[said.end..], "sharp").is_some();
+    let wgsl = Source { path: intern::text(&source_path(id)), text: intern::text(&stand_in(ambient, sharp)) };
     let declaration = intern::declaration(Declaration {
         author: said.author,
         source: said.source,
@@ -154,6 +153,8 @@ fn declared(
         laws: said.laws,
         ambient,
         anisotropic: said.anisotropic,
+        transmits: said.transmits,
+        sharp,
         ..Declaration::new(intern::text(id), said.name, wgsl)
     });
     let lobe = said.lobe.and_then(|id| registry.model(id)).cloned();
@@ -173,10 +174,10 @@ fn usable_id<'a>(path: &'a Path, registry: &Registry) -> Result<&'a str, String>
     Ok(id)
 }
 
-/// The fallback for models without a valid version: Lambert's law in grey, regardless of the parameters.
-pub(crate) fn stand_in(ambient: Ambient) -> &'static str {
-    match ambient {
-        Ambient::Formula => include_str!("stand_in_with_ambient.wgsl"),
-        Ambient::Albedo => include_str!("stand_in.wgsl"),
-    }
+/// The fallback for models without a valid version: Lambert's law in grey, regardless of the parameters, with the
+/// functions that the declaration promises.
+pub(crate) fn stand_in(ambient: Ambient, sharp: bool) -> String {
+    let ambient = if ambient == Ambient::Formula { include_str!("stand_in_ambient.wgsl") } else { "" };
+    let sharp = if sharp { include_str!("stand_in_sharp.wgsl") } else { "" };
+    [include_str!("stand_in.wgsl"), ambient, sharp].concat()
 }

@@ -15,6 +15,7 @@ use crate::{
         albedo::{self, AlbedoCurve, LobeAlbedo},
         colour::Encoding,
         lobes::Lobes,
+        sharp::{self, Sharp, Sharps},
     },
     parameter::{BLOCK_BYTES, Parameter, Values, pack, words},
     reflection::{Ambient, Declaration, EquationPart, Instantiate, Lobe, ModelEntry, Surface, append_curve},
@@ -38,6 +39,8 @@ struct Programs {
     lets: Option<(Program, Vec<(String, usize)>)>,
     /// Present for models with a formula for uniform light.
     ambient: Option<Program>,
+    /// Present for models with directions in which light does not spread.
+    sharp: Option<Program>,
 }
 
 impl OnCpu {
@@ -59,6 +62,7 @@ impl OnCpu {
                 Ambient::Formula => Some(program("ambient_response")?),
                 Ambient::Albedo => None,
             };
+            let sharp = if declaration.sharp { Some(program("sharp")?) } else { None };
             // A second program is needed only for requested names.
             let wanted = module.functions.iter().filter(|(_, f)| f.name.as_deref() == Some("response"));
             let wanted = wanted.flat_map(|(_, f)| f.named_expressions.values()).any(|name| named(name));
@@ -68,7 +72,7 @@ impl OnCpu {
                 let of = |(name, words): (String, usize)| (symbol(&name).cloned().unwrap_or(name), words);
                 (program, lets.into_iter().map(of).collect())
             });
-            Ok(Programs { response, ambient, lets })
+            Ok(Programs { response, ambient, sharp, lets })
         });
         Self { programs, endless: AtomicBool::new(false) }
     }
@@ -153,12 +157,14 @@ pub(super) fn entry(
                 on_cpu: on_cpu.clone(),
                 ambient: declaration.ambient,
                 anisotropic: declaration.anisotropic,
+                transmits: declaration.transmits,
+                sharp: declaration.sharp,
                 parameters: flattened(parameters, values, encoding),
                 row: read.as_ref().map_or_else(Vec::new, |(lobe, curves)| {
                     row(declaration, parameters, values, encoding, *lobe, curves)
                 }),
                 read,
-                lobes: reads.lobes.lobes(parameters, values, encoding),
+                lobes: reads.lobes.lobes(declaration, parameters, values, encoding),
                 curve: OnceLock::new(),
             })
         })
@@ -190,7 +196,7 @@ struct Grey {
 impl Surface for Grey {
     fn response(&self, l: Vec3, _: Vec3, frame: &Frame) -> Terms {
         let diffuse = Vec3::splat(GREY * frame.n.dot(l).max(0.0));
-        Terms { ambient: Vec3::ZERO, diffuse, specular: Vec3::ZERO }
+        Terms::of(diffuse, Vec3::ZERO)
     }
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
@@ -234,6 +240,8 @@ struct Interpreted {
     on_cpu: Arc<OnCpu>,
     ambient: Ambient,
     anisotropic: bool,
+    transmits: bool,
+    sharp: bool,
     parameters: Vec<u32>,
     /// The row as in the shader's table, without the curve; empty if it is not read.
     row: Vec<u32>,
@@ -245,6 +253,16 @@ struct Interpreted {
 }
 
 impl Interpreted {
+    /// The part of uniform light that passes through, or does not spread.
+    fn beyond(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        const SAMPLES: u32 = 1 << 10;
+        if !self.transmits {
+            return Vec3::ZERO;
+        }
+        let sharp: Vec3 = self.sharp(v, frame).iter().map(|sharp| sharp.share).sum();
+        sharp + albedo::through(|l| self.response(l, v, frame).transmitted, &self.lobes, v, frame, SAMPLES)
+    }
+
     /// The results of a function of directions, the frame and the parameters.
     fn ask<const N: usize>(
         &self,
@@ -252,11 +270,22 @@ impl Interpreted {
         directions: &[Vec3],
         frame: &Frame,
     ) -> [f32; N] {
-        // Two directions, three vectors of the frame, and the maximum number of parameters.
-        let mut arguments = [0; 15 + BLOCK_BYTES / 4];
+        self.ask_for(which, None, directions, frame)
+    }
+
+    /// Like [`ask`](Self::ask), with a whole number as the first argument.
+    fn ask_for<const N: usize>(
+        &self,
+        which: fn(&Programs) -> Option<&Program>,
+        first: Option<u32>,
+        directions: &[Vec3],
+        frame: &Frame,
+    ) -> [f32; N] {
+        // A whole number, two directions, three vectors of the frame, and the maximum number of parameters.
+        let mut arguments = [0; 16 + BLOCK_BYTES / 4];
         let vectors = directions.iter().chain([&frame.n, &frame.t, &frame.b]);
-        let words =
-            vectors.flat_map(|v| v.to_array().map(f32::to_bits)).chain(self.parameters.iter().copied());
+        let vectors = vectors.flat_map(|v| v.to_array().map(f32::to_bits));
+        let words = first.into_iter().chain(vectors).chain(self.parameters.iter().copied());
         let mut count = 0;
         for (to, word) in arguments.iter_mut().zip(words) {
             *to = word;
@@ -270,7 +299,25 @@ impl Surface for Interpreted {
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let terms: [f32; 9] = self.ask(|p| Some(&p.response), &[l, v], frame);
         let vector = |at: usize| Vec3::new(terms[at], terms[at + 1], terms[at + 2]);
-        Terms { ambient: vector(0), diffuse: vector(3), specular: vector(6) }
+        let through = self.transmits && frame.n.dot(l) * frame.n.dot(v) < 0.0;
+        Terms::of_shader([0, 3, 6].map(vector), through)
+    }
+
+    fn transmits(&self) -> bool {
+        self.transmits
+    }
+
+    fn sharp(&self, v: Vec3, frame: &Frame) -> Sharps {
+        if !self.sharp {
+            return Sharps::new();
+        }
+        let at = |i: usize| {
+            let [a, b, c, red, green, blue] = self.ask_for(|p| p.sharp.as_ref(), Some(i as u32), &[v], frame);
+            let (l, share) = (Vec3::new(a, b, c), Vec3::new(red, green, blue));
+            let transmitted = frame.n.dot(l) * frame.n.dot(v) < 0.0;
+            (share != Vec3::ZERO).then_some(Sharp { l, share, transmitted })
+        };
+        (0..sharp::MOST).filter_map(at).collect()
     }
 
     fn quantity(&self, symbol: &str, arguments: &[f32], l: Vec3, v: Vec3, frame: &Frame) -> Option<Vec3> {
@@ -293,13 +340,19 @@ impl Surface for Interpreted {
             Ambient::Formula => self.ask::<3>(|p| p.ambient.as_ref(), &[v], frame).into(),
             Ambient::Albedo => match self.curve() {
                 Some(curve) => curve.at(v, frame),
-                None => albedo::directional(|l| self.response(l, v, frame), v, frame).as_vec3(),
+                None => {
+                    let reflected = albedo::directional(|l| self.response(l, v, frame), v, frame).as_vec3();
+                    reflected + self.beyond(v, frame)
+                }
             },
         }
     }
 
     fn curve(&self) -> Option<AlbedoCurve> {
-        let new = || AlbedoCurve::new(|l, v| self.response(l, v, &Frame::LOCAL), self.anisotropic);
+        let new = || {
+            let curve = AlbedoCurve::new(|l, v| self.response(l, v, &Frame::LOCAL), self.anisotropic);
+            curve.with(|v| self.beyond(v, &Frame::LOCAL), self.anisotropic)
+        };
         *self.curve.get_or_init(|| (self.ambient == Ambient::Albedo).then(new))
     }
 

@@ -120,6 +120,9 @@ pub fn duplicate(
     let laws: Vec<_> = d.laws.list().into_iter().filter(|(_, kept)| *kept).map(|(name, _)| name).collect();
     let _ = writeln!(out, "    \"laws\": {},", spaced(&json!(laws)));
     let _ = writeln!(out, "    \"anisotropic\": {},", d.anisotropic);
+    if d.transmits {
+        let _ = writeln!(out, "    \"transmits\": true,");
+    }
     if let Some(lobe) = entry.lobe_of() {
         let _ =
             writeln!(out, "    // The shader reads the albedo of the lobe, or the curves, of this model.");

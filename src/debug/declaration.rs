@@ -22,6 +22,8 @@ pub struct Declaration {
     pub legend_of_shading: bool,
     /// True if the channel is about one light.
     pub has_light: bool,
+    /// True if the light of its formula is the part that remains inside solid bodies, not what leaves the surface.
+    pub of_remaining: bool,
     /// The ends of its scale, from the distances between the eye and the near and the far side of each object.
     pub range: Option<fn(&mut dyn Iterator<Item = [f32; 2]>) -> [f32; 2]>,
     /// The picture.
@@ -37,6 +39,7 @@ impl Declaration {
         legend: |_| Legend::new(""),
         legend_of_shading: false,
         has_light: false,
+        of_remaining: false,
         range: None,
         shows: Shows::Picture,
     };

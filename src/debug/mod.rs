@@ -18,6 +18,7 @@ mod n_dot_v;
 mod normals;
 mod not_a_number;
 mod one_light;
+mod remaining_light;
 mod vertex_normals;
 mod vertices;
 mod wireframe;
@@ -46,12 +47,17 @@ declared! {
         Luminance = luminance::CHANNEL,
         Clipped = clipped::CHANNEL,
         NotANumber = not_a_number::CHANNEL,
+        RemainingLight = remaining_light::CHANNEL,
         Light = one_light::CHANNEL,
     }
 }
 
 /// The number in shaders from which on channels are of geometry: `CHANNEL_OF_GEOMETRY` in `channels.wgsl`.
 const OF_GEOMETRY: u32 = 64;
+
+/// The number that shaders have instead of that of a term where they draw what remains inside bodies: `TERM_REMAINING` in
+/// `lights.wgsl`.
+pub const REMAINING: u32 = 5;
 
 impl DebugChannel {
     /// The display name.
@@ -121,6 +127,12 @@ impl DebugChannel {
         self.declaration().has_light
     }
 
+    /// True if the channel shows the part of the light that remains inside solid bodies.
+    #[must_use]
+    pub const fn is_of_remaining(self) -> bool {
+        self.declaration().of_remaining
+    }
+
     /// The next channel after this one, or after `None`: cycles through all channels, then `None`.
     #[must_use]
     pub fn next(channel: Option<Self>) -> Option<Self> {
@@ -158,6 +170,7 @@ pub fn wgsl() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optics::TermSelection;
 
     #[test]
     fn ids_and_codes_tell_channels_apart_and_the_key_goes_through_all() {
@@ -180,6 +193,13 @@ mod tests {
             assert!(!channel.has_wires() || channel.code() == DebugChannel::NotANumber.code());
         }
         assert_eq!(DebugChannel::from_id("normal"), None);
+    }
+
+    #[test]
+    fn what_remains_has_a_number_that_no_term_has() {
+        let shared = include_str!("../../assets/shaders/lights.wgsl");
+        assert!(shared.contains(&format!("const TERM_REMAINING: u32 = {REMAINING}u;")));
+        assert!(TermSelection::ALL.iter().all(|term| *term as u32 != REMAINING));
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! Explanations collected from the renderer's own calculation.
 
-use std::sync::Arc;
+use std::{f32::consts::PI, sync::Arc};
 
-use super::{Asked, Brightest, Geometry, Integral, Lamp, Lit, Model, Part, Place, Seen, Setting, Spot};
+use super::{
+    Asked, Brightest, Geometry, Integral, Lamp, Lit, Model, Part, Place, Refraction, Seen, Setting, Spot,
+};
 use glam::Vec3;
 
 use crate::{
@@ -11,7 +13,7 @@ use crate::{
     parameter::{Parameter, Value, Values},
     reference::{
         Shot,
-        probe::{LitBy, Loop, Point, Probe, light_loop},
+        probe::{Body, LitBy, Loop, Point, Probe, light_loop},
         visible::Shown,
     },
     reflection::{ModelEntry, Surface},
@@ -27,7 +29,8 @@ impl Shot<'_> {
         let shading = self.registry.shading_model(self.scene.shading_model_of(object))?;
         let type_name = self.registry.shape(&object.object_type).map(|entry| entry.declaration.name);
         let corners = found.corners;
-        let spot = |place: Place, point: &Point| self.spot(place, point, &*found.surface);
+        let spot =
+            |place: Place, point: &Point| self.spot(place, point, (&*found.surface, found.body.as_ref()));
         let of_corner = |corner: usize| match found.stage {
             Stage::Polygon => Place::Polygon,
             _ => Place::Vertex { vertex: corners[corner].vertex, weight: corners[corner].weight },
@@ -59,11 +62,11 @@ impl Shot<'_> {
     /// The lights that are visible at a pixel.
     pub(super) fn lamp(&self, shown: &Shown) -> Lamp {
         let lights = shown.lights.iter().filter_map(|i| Some(self.light(*i, self.scene.lights.get(*i)?)));
-        Lamp { lights: lights.collect(), radiance: shown.radiance }
+        Lamp { lights: lights.collect(), radiance: shown.light / PI, light: shown.light }
     }
 
-    fn spot(&self, place: Place, point: &Point, surface: &dyn Surface) -> Spot {
-        let run = light_loop(*self, surface, point);
+    fn spot(&self, place: Place, point: &Point, of: (&dyn Surface, Option<&Body>)) -> Spot {
+        let run = light_loop(*self, of, point);
         let lit = |by: &LitBy| Some(self.lit(self.scene.lights.get(by.index)?, by, point, &run));
         Spot {
             place,
@@ -73,6 +76,7 @@ impl Shot<'_> {
             eye: run.eye,
             view: run.v,
             distance: self.scene.observer.position.distance(point.position),
+            refraction: Refraction::of(of.0, of.1, point.position, run.v, &run.frame),
             lights: run.lights.iter().filter_map(lit).collect(),
             sum: run.sum,
             colour: point.colour,
@@ -113,6 +117,7 @@ impl Shot<'_> {
             geometry: geometry.filter(|_| !extends),
             response: by.response,
             integral,
+            through: by.through,
             contribution: by.contribution,
         }
     }

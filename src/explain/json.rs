@@ -4,8 +4,8 @@ use glam::Vec3;
 use serde_json::{Value as Json, json};
 
 use super::{
-    Brightest, Explanation, Geometry, Influence, Integral, Line, Lit, Model, Part, Place, Seen, Setting,
-    Spot, angle,
+    Brightest, Explanation, Geometry, Influence, Inside, Integral, Line, Lit, Model, Part, Place, Refraction,
+    Seen, Setting, Spot, Turn, angle,
 };
 use crate::{light::Factor, optics::Terms, parameter, text::number as finite};
 
@@ -54,6 +54,7 @@ impl Explanation {
             "light_seen": self.lamp.as_ref().map(|lamp| json!({
                 "lights": lamp.lights.iter().map(part).collect::<Json>(),
                 "radiance": triple(lamp.radiance),
+                "light": triple(lamp.light),
             })),
             "seen": self.seen.as_ref().map(Seen::to_json),
             "display": {
@@ -155,6 +156,7 @@ impl Spot {
             "eye": triple(self.eye),
             "V": triple(self.view),
             "distance": number(self.distance),
+            "refraction": self.refraction.as_ref().map(Refraction::to_json),
             "lights": self.brightest().into_iter().map(|lit| lit.to_json(model)).collect::<Json>(),
             "sum": triple(self.sum),
             "colour": triple(self.colour),
@@ -167,8 +169,47 @@ fn cosines(geometry: &Geometry, of: impl Fn(f32) -> f32) -> Json {
     geometry.cosines.into_iter().map(|(name, c)| (name.to_owned(), number(of(c)))).collect()
 }
 
-fn terms(Terms { ambient, diffuse, specular }: &Terms) -> Json {
-    json!({ "ambient": triple(*ambient), "diffuse": triple(*diffuse), "specular": triple(*specular) })
+impl Refraction {
+    fn to_json(&self) -> Json {
+        let turn = |turn: &Turn| {
+            json!({
+                "position": triple(turn.position),
+                "length": number(turn.length),
+                "angle": number(angle(turn.cosine)),
+                "reflectance": number(turn.reflectance),
+                "from": turn.leaves.map(|(direction, _)| triple(direction)),
+                "part": turn.leaves.map(|(_, part)| triple(part)),
+            })
+        };
+        let (inside, turns, remaining) = match &self.inside {
+            None => (None, None, None),
+            Some(Inside::Pane(_)) => (Some("pane"), None, None),
+            Some(Inside::Chance) => (Some("rough"), None, None),
+            Some(Inside::Ways(turns, remaining)) => {
+                (Some("solid"), Some(turns.iter().map(turn).collect::<Json>()), Some(triple(*remaining)))
+            }
+        };
+        json!({
+            "index": number(self.index),
+            "incidence": number(self.incidence),
+            "refracted": self.refracted.map(number),
+            "critical": number(self.critical),
+            "reflectance": number(self.reflectance),
+            "inside": inside,
+            "turns": turns,
+            "remaining": remaining,
+        })
+    }
+}
+
+/// The terms; the transmitted one of models that light passes through alone.
+fn terms(Terms { ambient, diffuse, specular, transmitted }: &Terms, model: &Model) -> Json {
+    let mut all =
+        json!({ "ambient": triple(*ambient), "diffuse": triple(*diffuse), "specular": triple(*specular) });
+    if model.surface.0.transmits() {
+        all["transmitted"] = triple(*transmitted);
+    }
+    all
 }
 
 fn lines(lines: &[Line]) -> Json {
@@ -199,14 +240,14 @@ impl Integral {
                 "cosines": cosines(geometry, |c| c),
                 "angles": cosines(geometry, angle),
                 "luminance": triple(brightest.luminance),
-                "response": terms(&brightest.response),
+                "response": terms(&brightest.response, model),
                 "lines": lines(&brightest.lines(model, FULL)),
             })
         };
         let [solid_angle, solid_angle_error] = self.solid_angle.map(number);
         json!({
             "samples": { "light": self.samples, "lobes": self.samples },
-            "errors": terms(&self.errors),
+            "errors": terms(&self.errors, model),
             "error": triple(self.error),
             "solid_angle": solid_angle,
             "solid_angle_error": solid_angle_error,
@@ -244,9 +285,10 @@ impl Lit {
             "intensity": one.then(|| triple(self.intensity)),
             "colour": triple(self.colour),
             "arriving": one.then(|| triple(self.arriving)),
-            "response": terms(&self.response),
+            "response": terms(&self.response, model),
             "integral": self.integral.map(|integral| integral.json(model)),
             "lines": lines(&self.rounded_lines(model, FULL)),
+            "through": (self.through != Vec3::ZERO).then(|| triple(self.through)),
             "contribution": triple(self.contribution),
         })
     }

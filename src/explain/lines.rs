@@ -199,7 +199,11 @@ impl Lit {
     pub(super) fn product(&self, terms: TermSelection) -> String {
         let with = |digits: usize| {
             let sum = factor(self.shown(terms).map(|(_, value)| rounded_triple(value, digits)));
-            format!("{sum} × {}", rounded_triple(self.arriving, digits))
+            let through = match self.through {
+                Vec3::ZERO => String::new(),
+                through => format!(" + {}", rounded_triple(through, digits)),
+            };
+            format!("{sum} × {}{through}", rounded_triple(self.arriving, digits))
         };
         calculation(DIGITS, &colour(self.contribution), with)
     }

@@ -51,11 +51,13 @@ mod numbers;
 mod pairs;
 mod pinned;
 mod put;
+mod refraction;
 mod sentence;
+pub mod solids;
 mod text;
 mod workings;
 
-pub use crate::reference::probe::ProbeCorner as Corner;
+pub use crate::reference::probe::{Inside, ProbeCorner as Corner, Turn};
 pub use arriving::Step;
 pub use factor_curve::{Along, FactorCurve};
 pub use geometry::Geometry;
@@ -67,6 +69,7 @@ pub use numbers::{measured, number, of_value, rounded, rounded_number_or_triple,
 pub use pairs::{Pair, pairs};
 pub use pinned::{Anchor, Sight};
 pub use put::{Put, Symbols, put, put_in};
+pub use refraction::Refraction;
 pub use sentence::sentence;
 
 /// The reason why a pixel cannot be explained.
@@ -150,6 +153,8 @@ pub struct Lamp {
     pub lights: Vec<Part>,
     /// The radiance of the light or lights, cd/m².
     pub radiance: Vec3,
+    /// The light that the picture shows: π times the radiance, as a white surface shows that receives it from everywhere.
+    pub light: Vec3,
 }
 
 /// A part of the scene.
@@ -269,6 +274,8 @@ pub struct Spot {
     pub view: Vec3,
     /// The distance to the observer, metres.
     pub distance: f32,
+    /// The refraction of the view, for models that bend light.
+    pub refraction: Option<Refraction>,
     /// The active lights, in the order of the scene.
     pub lights: Vec<Lit>,
     /// The unmodified sum over the lights.
@@ -303,7 +310,9 @@ pub struct Lit {
     pub response: Terms,
     /// Basis of the integral, for light with extent.
     pub integral: Option<Integral>,
-    /// The light to the observer: the response times the arriving light, for the displayed terms.
+    /// The light of a light without extent that comes through the body, if that is displayed.
+    pub through: Vec3,
+    /// The light to the observer: the response times the arriving light, for the displayed terms, and what comes through.
     pub contribution: Vec3,
 }
 
@@ -375,7 +384,18 @@ impl Lit {
         self.geometry.is_some_and(|geometry| geometry.cosine("N·L") <= 0.0)
     }
 
-    /// The remark to show before the equation, if any.
+    /// The remark to show before the equation of a model, if any.
+    #[must_use]
+    pub fn remark_on(&self, model: &Model) -> Option<&'static str> {
+        if model.declaration.transmits && self.is_behind() && !self.is_dark() {
+            return Some(
+                "N·L ≤ 0: the light is behind the surface, and what is seen of it has come through.",
+            );
+        }
+        self.remark()
+    }
+
+    /// The remark to show before the equation of a model that only reflects, if any.
     #[must_use]
     pub fn remark(&self) -> Option<&'static str> {
         if self.is_dark() {
@@ -447,7 +467,7 @@ impl Explainer {
 fn explanation(shot: Shot, pixel: [u32; 2], found: Option<Probe>, lamp: Option<Lamp>) -> Explanation {
     let Shot { scene, settings, .. } = shot;
     let of_object = || found.as_ref().map_or(Vec4::ZERO, |found| found.light);
-    let light = lamp.as_ref().map_or_else(of_object, |lamp| lamp.radiance.extend(1.0));
+    let light = lamp.as_ref().map_or_else(of_object, |lamp| lamp.light.extend(1.0));
     Explanation {
         pixel,
         size: [settings.width, settings.height],

@@ -5,20 +5,22 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::{Explanation, Lamp, Seen};
-use crate::optics::{TermSelection, colour::luminance};
+use crate::optics::{TERMS, TermSelection, Terms, colour::luminance};
 
 /// Fraction above which a term counts as all of a lamp's light.
 const ALL: f64 = 0.995;
 
-/// The contributions of lights to a pixel as luminances, by index of the light: the sum, and the ambient, diffuse and
-/// specular terms. With Gouraud shading, it is the weighted light of the vertices.
-fn given(seen: &Seen) -> BTreeMap<usize, [f64; 4]> {
+/// The contributions of lights to a pixel as luminances, by index of the light: the sum, and the
+/// terms. With Gouraud shading, it is the weighted light of the vertices.
+fn given(seen: &Seen) -> BTreeMap<usize, [f64; 1 + TERMS]> {
     let mut lights = BTreeMap::new();
     for spot in &seen.spots {
         let weight = f64::from(spot.place.weight());
         for lit in &spot.lights {
-            let sums: &mut [f64; 4] = lights.entry(lit.light.index).or_default();
-            let terms = lit.response.each().map(|term| term * lit.arriving);
+            let sums: &mut [f64; 1 + TERMS] = lights.entry(lit.light.index).or_default();
+            let reflected = lit.response.each().map(|term| term * lit.arriving);
+            let through = Terms::through(lit.through).each();
+            let terms: [Vec3; TERMS] = std::array::from_fn(|i| reflected[i] + through[i]);
             let all = [lit.contribution].into_iter().chain(terms);
             for (sum, light) in sums.iter_mut().zip(all) {
                 *sum += weight * brightness(light);
@@ -38,12 +40,12 @@ fn brightness(light: Vec3) -> f64 {
 }
 
 /// The term that contributes most of a lamp's light, in words.
-fn by_term(terms: [f64; 3]) -> Option<String> {
+fn by_term(terms: [f64; TERMS]) -> Option<String> {
     let sum: f64 = terms.iter().sum();
     let parts = terms.map(|term| term / sum);
     let (most, name) = parts
         .into_iter()
-        .zip(["ambient", "diffuse", "specular"])
+        .zip(["ambient", "diffuse", "specular", "transmitted"])
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .filter(|_| parts.iter().all(|part| part.is_finite() && *part >= 0.0))?;
     match most {
@@ -85,7 +87,7 @@ fn most(seen: &Seen, terms: TermSelection, name: &dyn Fn(usize) -> String) -> St
         part => format!("{:.0} % of its light", 100.0 * part),
     };
     let by = match terms {
-        TermSelection::All => by_term([sums[1], sums[2], sums[3]]).unwrap_or_default(),
+        TermSelection::All => by_term([sums[1], sums[2], sums[3], sums[4]]).unwrap_or_default(),
         terms => format!(", by the {} term, the only one shown", terms.id()),
     };
     format!("{} gives {part}{by}", name(*index))
@@ -129,11 +131,12 @@ mod tests {
 
     #[test]
     fn the_term_is_named_that_gives_the_most() {
-        assert_eq!(by_term([0.0, 0.0, 2.0]).as_deref(), Some(", by the specular term"));
-        assert_eq!(by_term([0.1, 0.7, 0.2]).as_deref(), Some(", mostly by the diffuse term"));
-        assert_eq!(by_term([0.3, 0.3, 0.4]), None);
+        assert_eq!(by_term([0.0, 0.0, 2.0, 0.0]).as_deref(), Some(", by the specular term"));
+        assert_eq!(by_term([0.1, 0.7, 0.2, 0.0]).as_deref(), Some(", mostly by the diffuse term"));
+        assert_eq!(by_term([0.1, 0.0, 0.1, 0.8]).as_deref(), Some(", mostly by the transmitted term"));
+        assert_eq!(by_term([0.3, 0.3, 0.4, 0.0]), None);
         assert_eq!(
-            (by_term([0.0; 3]), by_term([f64::NAN, 1.0, 0.0]), by_term([-1.0, 3.0, 0.0])),
+            (by_term([0.0; 4]), by_term([f64::NAN, 1.0, 0.0, 0.0]), by_term([-1.0, 3.0, 0.0, 0.0])),
             (None, None, None)
         );
     }

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use glam::Vec3;
 
 use super::{
-    Brightest, Explanation, Geometry, Influence, Line, Lit, Part, Place, Seen, Spot, agrees, angle,
+    Brightest, Explanation, Geometry, Influence, Line, Lit, Part, Place, Refraction, Seen, Spot, agrees,
+    angle,
     lines::{self, calculation, reading},
     noise::{estimated, told, within},
     number,
@@ -126,6 +127,7 @@ impl Explanation {
                     say!(out, 0, "{}, {}, is seen here.", named("lights", light), light.type_name);
                 }
                 say!(out, 1, "L = {} cd/m²", triple(lamp.radiance));
+                say!(out, 1, "light = π L = {}", triple(lamp.light));
             }
             (None, None) => out.line(0, self.about_background()),
         }
@@ -164,6 +166,9 @@ impl Explanation {
                 format!("V is the direction to the observer, {}, mirrored in the surface", triple(spot.eye));
             say!(out, 1, "The normal faces away from the observer: {eye}.");
         }
+        for line in spot.refraction.iter().flat_map(Refraction::lines) {
+            out.line(1, line);
+        }
         if spot.lights.is_empty() {
             out.line(1, "No light is switched on, so there is no light here.");
         }
@@ -197,7 +202,7 @@ impl Explanation {
             }
             None => arriving(out, lit),
         }
-        if let Some(remark) = lit.remark() {
+        if let Some(remark) = lit.remark_on(&seen.model) {
             out.line(2, remark);
         }
         if lit.is_dark() {
@@ -210,7 +215,14 @@ impl Explanation {
         if lit.integral.is_some() {
             say!(out, 2, "light to the observer: {sum}");
         } else {
-            say!(out, 2, "light to the observer: {sum} × {}", triple(lit.arriving));
+            let through = match lit.through {
+                Vec3::ZERO => String::new(),
+                through => {
+                    say!(out, 2, "light that comes through the body: {}", triple(through));
+                    format!(" + {}", triple(through))
+                }
+            };
+            say!(out, 2, "light to the observer: {sum} × {}{through}", triple(lit.arriving));
             if sum != "0" {
                 out.equals(lit.product(self.terms));
             }

@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use super::{Geometry, Model, Setting, numbers::colour};
 use crate::{
-    optics::Terms,
+    optics::{TERMS, Terms},
     parameter::Value as Parameter,
     reflection::{Quantity, Term},
     text::{
@@ -86,10 +86,11 @@ fn number(v: f32) -> Value {
     Value::number(f64::from(v))
 }
 
-/// The ambient, diffuse and specular term, each with its value.
-pub(super) fn of_terms(response: &Terms) -> [(Term, Vec3); 3] {
-    let [ambient, diffuse, specular] = response.each();
-    [(Term::Ambient, ambient), (Term::Diffuse, diffuse), (Term::Specular, specular)]
+/// The terms, each with its value.
+pub(super) fn of_terms(response: &Terms) -> [(Term, Vec3); TERMS] {
+    let terms = [Term::Ambient, Term::Diffuse, Term::Specular, Term::Transmitted];
+    let values = response.each();
+    std::array::from_fn(|i| (terms[i], values[i]))
 }
 
 impl<'a> Workings<'a> {

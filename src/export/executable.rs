@@ -9,6 +9,7 @@ use crate::files::Shown as _;
 use crate::{
     files,
     parameter::{Parameter, Value, Values},
+    program::{HAS_WINDOW, without_window},
     registry::MODELS,
     scene::{Scene, save},
 };
@@ -24,10 +25,17 @@ pub const FORM: Form = Form {
     make,
 };
 
+/// What to do in a program without the window.
+pub(crate) const WITHOUT_WINDOW: &str =
+    "a copy of it could not show the scene; a web page can, with --as html";
+
 /// Default size of the window.
 const USUAL: (u32, u32) = (1280, 720);
 
 fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
+    if !HAS_WINDOW {
+        return Err(ExportError::refused(without_window(WITHOUT_WINDOW)));
+    }
     progress.step(0.0, "gathering the files of the scene")?;
     let mut files = Vec::new();
     let scene = with_files(request, &mut files)?;

@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 
-use bevy::mesh::{Mesh, MeshVertexAttribute, VertexAttributeValues};
 use glam::{Mat4, Vec3};
 
 use super::{
@@ -16,19 +15,15 @@ use super::{
 use crate::{
     optics::{
         colour::{BACKGROUND, Encoding},
+        interior::Interior,
         tone::exposure_factor,
     },
     parameter::{Parameter, Values, pack},
-    reflection::ModelEntry,
-    render::{
-        entities::object_transform,
-        material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT},
-        meshes::{face_mesh, shared_mesh},
-    },
-    scene::{Background, Object},
+    reflection::{ModelEntry, Passage},
+    scene::{Background, Object, Scene},
     shader::compose::WRAPPER,
     shading::{ShadingEntry, Stage},
-    shape::MeshKey,
+    shape::{MeshKey, Says, Vertices},
 };
 
 /// A scene taken apart.
@@ -53,14 +48,16 @@ struct Known {
     meshes: HashMap<(MeshKey, bool), usize>,
     /// Names of the meshes.
     names: Names,
-    /// By program and values.
-    materials: HashMap<(usize, String), usize>,
+    /// By program and values, and the mesh of a solid body.
+    materials: HashMap<(usize, String, Option<MeshKey>), usize>,
 }
 
 /// A shader, and the models that it consists of.
 pub struct Program<'a> {
     /// The reflection model.
     pub model: &'a ModelEntry,
+    /// How light passes through the objects with the shader.
+    pub passage: Passage,
     /// The shading model.
     pub shading: &'a ShadingEntry,
     /// The shader.
@@ -74,10 +71,11 @@ impl Program<'_> {
         self.shading.declaration.stage == Stage::Polygon
     }
 
-    /// A name for files: `microfacet_phong`.
+    /// A name for files: `microfacet_phong`, `openpbr_phong_body`.
     #[must_use]
     pub fn name(&self) -> String {
-        format!("{}_{}", self.model.declaration.id, self.shading.declaration.id)
+        let body = if self.passage.solid && self.model.passage_varies() { "_body" } else { "" };
+        format!("{}_{}{body}", self.model.declaration.id, self.shading.declaration.id)
     }
 }
 
@@ -94,6 +92,8 @@ pub struct Material {
     pub curve: Vec<u8>,
     /// The bytes of `material_lobes`; empty for shaders that do not read it.
     pub lobes: Vec<u8>,
+    /// The bytes of `interior`; empty for shaders that do not read it.
+    pub interior: Vec<u8>,
     /// The bytes of `ShadingParameters`; empty for shaders that do not read it.
     pub shading: Vec<u8>,
 }
@@ -148,7 +148,7 @@ impl Drawn {
     /// Transformation from the object's own coordinates to the room.
     #[must_use]
     pub fn room_from_object(&self, request: &Request) -> Mat4 {
-        object_transform(&request.scene.objects[self.index]).to_matrix()
+        request.scene.objects[self.index].room_from_object()
     }
 }
 
@@ -196,35 +196,38 @@ impl<'a> Lit<'a> {
         let shading = registry.shading_model(shading).ok_or_else(|| unknown("shading model", shading))?;
         let shape =
             registry.shape(&object.object_type).ok_or_else(|| unknown("object type", &object.object_type))?;
+        let solid = model.passage(&object.material).solid;
         let same = |p: &Program| {
             p.model.declaration.id == model.declaration.id
                 && p.shading.declaration.id == shading.declaration.id
+                && p.passage.solid == solid
         };
         let program = match self.programs.iter().position(same) {
             Some(program) => program,
             None => {
-                let shader = compose(&self.lights, registry, model, shading, host)?;
-                self.programs.push(Program { model, shading, shader });
+                let passage = passage_of(scene, model, solid);
+                let shader = compose(&self.lights, registry, (model, passage), shading, host)?;
+                self.programs.push(Program { model, passage, shading, shader });
                 self.programs.len() - 1
             }
         };
         let values = self.values(program, object);
+        let key = shape.key(&object.shape, object.tessellation);
         // Debug distinguishes all numbers.
-        let look = (program, format!("{values:?}"));
+        let look = (program, format!("{values:?}"), solid.then(|| key.clone()));
         let material = *known.materials.entry(look).or_insert_with(|| {
             let material = self.material(program, values);
             self.materials.push(material);
             self.materials.len() - 1
         });
         let faces = self.programs[program].faces();
-        let key = (shape.key(&object.shape, object.tessellation), faces);
-        let mesh = *known.meshes.entry(key).or_insert_with(|| {
+        let mesh = *known.meshes.entry((key, faces)).or_insert_with(|| {
             let tessellation = shape.tessellation(object.tessellation);
             let polygons = shape.mesh(&object.shape, tessellation);
-            let mesh = if faces { face_mesh(&polygons) } else { shared_mesh(&polygons) };
+            let mesh = if faces { Vertices::apart(&polygons) } else { Vertices::shared(&polygons) };
             let suffix = if faces { "_polygons" } else { "" };
             let base = format!("{}_{tessellation}{suffix}", shape.declaration.id);
-            self.meshes.push(data(known.names.unique(base), &mesh, faces));
+            self.meshes.push(data(known.names.unique(base), mesh));
             self.meshes.len() - 1
         });
         self.objects.push(Drawn { index, material, mesh });
@@ -239,7 +242,7 @@ impl<'a> Lit<'a> {
     }
 
     fn material(&self, program: usize, values: Values) -> Material {
-        let Program { model, shading, shader } = &self.programs[program];
+        let Program { model, shading, shader, .. } = &self.programs[program];
         let encoding = self.request.scene.display.encoding;
         let parameters = pack(model.parameters, &values, encoding);
         let curve = if shader.reads_curve {
@@ -253,8 +256,15 @@ impl<'a> Lit<'a> {
         } else {
             Vec::new()
         };
+        let interior = if shader.reads_body {
+            let inside = model.instantiate(&values, encoding).interior().unwrap_or(Interior::AIR);
+            let rows = inside.rows(self.programs[program].shading.declaration.faceted);
+            rows.into_iter().flat_map(|row| row.to_array()).flat_map(f32::to_le_bytes).collect()
+        } else {
+            Vec::new()
+        };
         let own = if shader.reads_shading { pack(shading.parameters, &values, encoding) } else { Vec::new() };
-        Material { program, values, parameters, curve, lobes, shading: own }
+        Material { program, values, parameters, curve, lobes, interior, shading: own }
     }
 
     /// Sentences about differences from the picture in the lab.
@@ -295,26 +305,15 @@ impl<'a> Lit<'a> {
     }
 }
 
-fn data(name: String, mesh: &Mesh, faces: bool) -> MeshData {
-    let all: &[(&'static str, MeshVertexAttribute)] = &[
-        ("position", Mesh::ATTRIBUTE_POSITION),
-        ("normal", Mesh::ATTRIBUTE_NORMAL),
-        ("tangent", TANGENT),
-        ("face_normal", FACE_NORMAL),
-        ("face_tangent", FACE_TANGENT),
-        ("face_centre", FACE_CENTRE),
-    ];
-    let count = if faces { 6 } else { 3 };
-    let attributes = all[..count]
-        .iter()
-        .map(|(name, attribute)| Attribute {
-            name,
-            values: match mesh.attribute(attribute.id) {
-                Some(VertexAttributeValues::Float32x3(values)) => values.clone(),
-                _ => Vec::new(),
-            },
-        })
-        .collect();
-    let indices = mesh.indices().map(|i| i.iter().map(|i| i as u32).collect()).unwrap_or_default();
-    MeshData { name, attributes, indices }
+/// How light passes through the objects that share a shader: all solid bodies of a model, or all others.
+#[must_use]
+pub fn passage_of(scene: &Scene, model: &ModelEntry, solid: bool) -> Passage {
+    let own = scene.objects.iter().filter(|object| scene.model_of(object) == model.declaration.id);
+    let passages = own.map(|object| model.passage(&object.material)).filter(|passage| passage.solid == solid);
+    passages.fold(Passage { solid, ..Passage::NONE }, |all, one| all | one)
+}
+
+fn data(name: String, mesh: Vertices) -> MeshData {
+    let attribute = |(says, values): (Says, _)| Attribute { name: says.name(), values };
+    MeshData { name, attributes: mesh.attributes.into_iter().map(attribute).collect(), indices: mesh.indices }
 }

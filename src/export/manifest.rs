@@ -23,6 +23,7 @@ pub fn uniforms(module: &Module, lit: &Lit, drawn: &Drawn, aspect: f32) -> Vec<(
             "parameters" => material.parameters.clone(),
             "albedo_curve" => material.curve.clone(),
             "material_lobes" => material.lobes.clone(),
+            "interior" => material.interior.clone(),
             "shading_values" => material.shading.clone(),
             "illumination" => lights(module, lit),
             "lamp_numbers" => lit.lights.numbers.iter().flat_map(|n| n.to_le_bytes()).collect(),

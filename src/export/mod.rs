@@ -11,7 +11,8 @@ pub use crate::progress::Progress;
 use crate::{progress::Cancelled, registry::Registry, scene::Scene};
 
 mod bevy;
-mod executable;
+pub mod bodies;
+pub(crate) mod executable;
 pub mod html;
 pub mod lights;
 pub mod lit;

@@ -94,6 +94,15 @@ fn lit<'a>(request: &Request<'a>) -> Result<Lit<'a>, ExportError> {
         let what = format!("{path} is hidden; make it visible, or choose another object");
         return Err(ExportError::refused(what));
     }
+    if let Some(program) = lit.programs.iter().find(|program| program.shader.reads_body) {
+        let (path, model) = (object_path(request.scene, request.object), program.model);
+        let instead = if model.passage_varies() { "make it thin-walled" } else { "choose thin_glass" };
+        let what = format!(
+            "{path}: {} follows the mesh of the object, which these shaders do not hold; {instead}, or render the picture",
+            model.declaration.id
+        );
+        return Err(ExportError::refused(what));
+    }
     Ok(lit)
 }
 

@@ -23,6 +23,8 @@ pub const TEXTS: &[(&str, &str)] = texts![
     "08_energy_and_the_white_furnace",
     "09_a_highlight_has_the_shape_of_the_lamp",
     "10_a_material_under_the_sky",
+    "11_why_a_straw_looks_broken",
+    "12_glass_paper_leaf",
 ];
 
 /// All shipped lessons, in the order of lists.

@@ -145,6 +145,7 @@ pub fn built_in_sources(registry: &Registry) -> Vec<Source> {
         registry.models().iter().map(|m| m.declaration).filter(|d| registry.custom_file(d.id).is_none());
     compose::OPTICS
         .iter()
+        .chain(compose::TRANSMISSION)
         .copied()
         .chain(SHARED)
         .chain(models.map(|d| d.wgsl))

@@ -18,7 +18,8 @@ pub fn of(model: &ModelEntry, shading: &ShadingEntry, lights: &[LightEntry]) -> 
         Twin::all(light.declaration.extent).iter().map(function).collect()
     };
     let lights = lights.iter().map(|light| (light.declaration.wgsl.path, dark(light)));
-    let model = (model.declaration.wgsl.path, custom::stand_in(model.declaration.ambient).to_owned());
+    let own = model.declaration;
+    let model = (own.wgsl.path, custom::stand_in(own.ambient, own.sharp));
     let shading = (shading.declaration.wgsl.path, crate::shading::STAND_IN.text.to_owned());
     lights.chain([model, shading]).collect()
 }
@@ -41,7 +42,8 @@ mod tests {
                 let all = of(model, shading, registry.lights());
                 assert_eq!(all.len(), registry.lights().len() + 2);
                 all.into_iter().for_each(|(path, text)| sources.edit(path, text));
-                let composed = compose(&sources, model, shading, registry.lights());
+                let composed =
+                    compose(&sources, (model, model.declaration.passage()), shading, registry.lights());
                 for faces in [false, shading.declaration.stage == Stage::Polygon] {
                     assert_eq!(validate_drawing(&composed, faces), Ok(()), "{}", model.declaration.id);
                 }

@@ -192,8 +192,9 @@ fn the_last_good_texts_are_kept_for_files_that_all_models_share() -> io::Result<
     bench.save("shaders/loop.wgsl", &good);
     let model = &bench.registry.models()[0];
     let shading = &bench.registry.shading_models()[0];
+    let drawn = (model, model.declaration.passage());
     let composed =
-        crate::registry::compose::compose(bench.registry.sources(), model, shading, bench.registry.lights());
+        crate::registry::compose::compose(bench.registry.sources(), drawn, shading, bench.registry.lights());
     assert!(!bench.library.is_built_in(&composed, &bench.registry));
     bench.library.note_good(&composed, &bench.registry);
     bench.save("shaders/loop.wgsl", "broken");

@@ -3,7 +3,8 @@
 //! **To add one**: write `light/x.rs` and `assets/shaders/light/x.wgsl`, and add its name to
 //! [`register_builtin`].
 
-use bevy::{ecs::component::Component, reflect::Reflectable};
+use bevy_ecs::component::Component;
+use bevy_reflect::Reflectable;
 use glam::{Vec2, Vec3};
 
 use crate::{

@@ -4,6 +4,7 @@
 
 use std::f32::consts::PI;
 
+use arrayvec::ArrayVec;
 use glam::{Vec2, Vec3, Vec4};
 
 use super::{equivalence::alpha_of_exponent, sampling};
@@ -14,6 +15,9 @@ pub const MAX_LOBES: usize = 3;
 /// Minimum width of sampled GGX lobes; below, the maximum exponent of sampled power lobes.
 const NARROWEST: f32 = 1e-3;
 const STEEPEST: f32 = 1e6;
+
+/// The kind of the lobes of refraction in the shaders' rows, to which their index is added.
+const BELOW: f32 = 4.0;
 
 /// The cosine between light and facet at which reflectances are compared for the shares of lobes: lobes are
 /// the same for all views, so it lies between normal incidence and grazing angles, at which surfaces become
@@ -38,6 +42,19 @@ pub enum Lobe {
     Power {
         /// The exponent.
         exponent: f32,
+    },
+    /// Proportional to the cosine to the normal, below the surface.
+    CosineBelow,
+    /// Refraction in the visible facets of a GGX surface: B. Walter, S. Marschner, H. Li, K. Torrance (2007),
+    /// *Microfacet Models for Refraction through Rough Surfaces*.
+    GgxBelow {
+        /// Width of the distribution of facets along the tangent.
+        alpha_x: f32,
+        /// Width along the bitangent.
+        alpha_y: f32,
+        /// Refractive index below the surface divided by that above it. 1 stands for a thin sheet, which transmits the
+        /// lobe that it reflects, mirrored in the surface.
+        eta: f32,
     },
 }
 
@@ -65,6 +82,12 @@ impl Lobe {
         Self::Ggx { alpha_x: alpha.x, alpha_y: alpha.y }
     }
 
+    /// Refraction in facets with these widths along tangent and bitangent.
+    #[must_use]
+    pub fn refracted(alpha: Vec2, eta: f32) -> Self {
+        Self::GgxBelow { alpha_x: alpha.x, alpha_y: alpha.y, eta }
+    }
+
     /// A GGX lobe about as wide as the brightest part of the generalised distribution (GTR): wider for γ
     /// below 2, where the tails are longer, and narrower above.
     #[must_use]
@@ -88,6 +111,9 @@ impl Lobe {
             Self::Cosine => [0.0, 0.0, 0.0],
             Self::Ggx { alpha_x, alpha_y } => [1.0, alpha_x, alpha_y],
             Self::Power { exponent } => [2.0, exponent, 0.0],
+            Self::CosineBelow => [3.0, 0.0, 0.0],
+            // The index is part of the kind: a row has no other number left.
+            Self::GgxBelow { alpha_x, alpha_y, eta } => [BELOW + eta, alpha_x, alpha_y],
         }
     }
 
@@ -95,7 +121,10 @@ impl Lobe {
     fn clamped(self) -> Self {
         let width = |alpha: f32| if alpha >= NARROWEST { alpha.min(1.0) } else { NARROWEST };
         match self {
-            Self::Cosine => self,
+            Self::Cosine | Self::CosineBelow => self,
+            Self::GgxBelow { alpha_x, alpha_y, eta } => {
+                Self::GgxBelow { alpha_x: width(alpha_x), alpha_y: width(alpha_y), eta: eta.clamp(0.1, 10.0) }
+            }
             Self::Ggx { alpha_x, alpha_y } => Self::Ggx { alpha_x: width(alpha_x), alpha_y: width(alpha_y) },
             Self::Power { exponent } => {
                 Self::Power { exponent: if exponent >= 0.0 { exponent.min(STEEPEST) } else { 0.0 } }
@@ -108,12 +137,7 @@ impl Lobe {
         match self {
             Self::Cosine => sampling::cosine(u),
             Self::Ggx { alpha_x, alpha_y } => {
-                let wide = Vec3::new(v.x * alpha_x, v.y * alpha_y, v.z).normalize();
-                let phi = 2.0 * PI * u.x;
-                let z = (1.0 - u.y) * (1.0 + wide.z) - wide.z;
-                let sine = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
-                let cap = Vec3::new(sine * phi.cos(), sine * phi.sin(), z) + wide;
-                let h = Vec3::new(cap.x * alpha_x, cap.y * alpha_y, cap.z.max(0.0)).normalize_or_zero();
+                let h = visible_normal(u, v, alpha_x, alpha_y);
                 2.0 * v.dot(h) * h - v
             }
             Self::Power { exponent } => {
@@ -123,6 +147,18 @@ impl Lobe {
                 let local = Vec3::new(sine * phi.cos(), sine * phi.sin(), cosine);
                 sampling::about(Vec3::new(-v.x, -v.y, v.z), local)
             }
+            Self::CosineBelow => -sampling::cosine(u),
+            Self::GgxBelow { alpha_x, alpha_y, eta } => {
+                let h = visible_normal(u, v, alpha_x, alpha_y);
+                let cosine = v.dot(h);
+                if eta == 1.0 {
+                    let l = 2.0 * cosine * h - v;
+                    return Vec3::new(l.x, l.y, -l.z);
+                }
+                let squared = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
+                // Without a density if the facet reflects all light.
+                if squared <= 0.0 { Vec3::ZERO } else { (cosine / eta - squared.sqrt()) * h - v / eta }
+            }
         }
     }
 
@@ -130,17 +166,22 @@ impl Lobe {
     fn pdf(self, l: Vec3, v: Vec3) -> f32 {
         match self {
             Self::Cosine => l.z.max(0.0) / PI,
-            Self::Ggx { alpha_x, alpha_y } => {
-                let sum = l + v;
-                let squared = sum.length_squared();
-                if sum.z <= 0.0 || squared <= 0.0 {
+            Self::Ggx { alpha_x, alpha_y } => facets(l + v, v, alpha_x, alpha_y) / 4.0,
+            Self::CosineBelow => (-l.z).max(0.0) / PI,
+            Self::GgxBelow { alpha_x, alpha_y, eta: 1.0 } => {
+                facets(Vec3::new(l.x, l.y, -l.z) + v, v, alpha_x, alpha_y) / 4.0
+            }
+            Self::GgxBelow { alpha_x, alpha_y, eta } => {
+                let sum = v + eta * l;
+                let h = sum.normalize_or_zero() * if sum.z < 0.0 { -1.0 } else { 1.0 };
+                let (towards_v, towards_l) = (v.dot(h), l.dot(h));
+                if towards_v <= 0.0 || towards_l >= 0.0 {
                     return 0.0;
                 }
-                // D(h) G₁(v) / (4 N·V), with G₁/(N·V) = 2/(N·V + √(…)).
-                let stretched = (sum.x / alpha_x).powi(2) + (sum.y / alpha_y).powi(2) + sum.z * sum.z;
-                let d = squared * squared / (PI * alpha_x * alpha_y * stretched * stretched);
-                let seen = ((alpha_x * v.x).powi(2) + (alpha_y * v.y).powi(2) + v.z * v.z).sqrt();
-                d / (2.0 * (v.z + seen))
+                // The facets' density times the Jacobian of refraction.
+                let across = towards_v + eta * towards_l;
+                facets(h, v, alpha_x, alpha_y) * towards_v * eta * eta * -towards_l
+                    / (across * across).max(1e-12)
             }
             Self::Power { exponent } => {
                 let cosine = (v.z * l.z - v.x * l.x - v.y * l.y).min(1.0);
@@ -151,6 +192,29 @@ impl Lobe {
             }
         }
     }
+}
+
+/// A GGX facet seen from `v`.
+fn visible_normal(u: Vec2, v: Vec3, alpha_x: f32, alpha_y: f32) -> Vec3 {
+    let wide = Vec3::new(v.x * alpha_x, v.y * alpha_y, v.z).normalize();
+    let phi = 2.0 * PI * u.x;
+    let z = (1.0 - u.y) * (1.0 + wide.z) - wide.z;
+    let sine = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
+    let cap = Vec3::new(sine * phi.cos(), sine * phi.sin(), z) + wide;
+    Vec3::new(cap.x * alpha_x, cap.y * alpha_y, cap.z.max(0.0)).normalize_or_zero()
+}
+
+/// The density of visible GGX facets with a normal along `h`, of any length, divided by V·H: D(h) G₁(v) / N·V, with
+/// G₁/(N·V) = 2/(N·V + √(…)).
+fn facets(h: Vec3, v: Vec3, alpha_x: f32, alpha_y: f32) -> f32 {
+    let squared = h.length_squared();
+    if h.z <= 0.0 || squared <= 0.0 {
+        return 0.0;
+    }
+    let stretched = (h.x / alpha_x).powi(2) + (h.y / alpha_y).powi(2) + h.z * h.z;
+    let d = squared * squared / (PI * alpha_x * alpha_y * stretched * stretched);
+    let seen = ((alpha_x * v.x).powi(2) + (alpha_y * v.y).powi(2) + v.z * v.z).sqrt();
+    2.0 * d / (v.z + seen)
 }
 
 impl Lobes {
@@ -170,6 +234,21 @@ impl Lobes {
         }
         out.iter_mut().for_each(|(_, share)| *share /= sum);
         Self(out)
+    }
+
+    /// The lobes below the surface; without any, a cosine.
+    #[must_use]
+    pub fn below(&self) -> Self {
+        let is_below = |lobe: &Lobe| matches!(lobe, Lobe::CosineBelow | Lobe::GgxBelow { .. });
+        let below: ArrayVec<_, MAX_LOBES> =
+            self.0.into_iter().filter(|(lobe, share)| is_below(lobe) && *share > 0.0).collect();
+        if below.is_empty() { Self::new(&[(Lobe::CosineBelow, 1.0)]) } else { Self::new(&below) }
+    }
+
+    /// The default of models that light passes through: the other default, and a cosine below the surface.
+    #[must_use]
+    pub fn of_both_sides() -> Self {
+        Self::new(&[(Lobe::Cosine, 0.25), (Lobe::ggx(0.4), 0.25), (Lobe::CosineBelow, 0.5)])
     }
 
     /// The cosine lobe alone, for checks.
@@ -206,11 +285,14 @@ impl Lobes {
     /// a renderer may omit.
     #[must_use]
     pub fn are_isotropic(&self) -> bool {
-        self.0.iter().all(|(lobe, _)| !matches!(lobe, Lobe::Ggx { alpha_x, alpha_y } if alpha_x != alpha_y))
+        self.0.iter().all(|(lobe, _)| match lobe {
+            Lobe::Ggx { alpha_x, alpha_y } | Lobe::GgxBelow { alpha_x, alpha_y, .. } => alpha_x == alpha_y,
+            _ => true,
+        })
     }
 
-    /// The lobes in the shaders' layout: for each its kind (0 cosine, 1 GGX, 2 power), its numbers, its
-    /// share.
+    /// The lobes in the shaders' layout: for each its kind (0 cosine, 1 GGX, 2 power; 3 cosine below, 4 plus the
+    /// refractive index GGX below), its numbers, its share.
     #[must_use]
     pub fn rows(&self) -> [Vec4; MAX_LOBES] {
         self.0.map(|(lobe, share)| {
@@ -225,8 +307,7 @@ impl Lobes {
         self.rows().iter().flat_map(|row| row.to_array()).flat_map(f32::to_le_bytes).collect()
     }
 
-    /// A direction in the local frame (normal z, tangent x) for a viewer on the same side; it may be below
-    /// the surface.
+    /// A direction in the local frame (normal z, tangent x) for a viewer above the surface; it may be below.
     #[must_use]
     pub fn sample(&self, u: Vec2, v: Vec3) -> Vec3 {
         let v = above(v);
@@ -261,9 +342,13 @@ fn above(v: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::{geometry::direction, sequence::Sequence};
+    use crate::optics::{
+        chi_squared::{chi_squared, passes},
+        geometry::direction,
+        sequence::Sequence,
+    };
 
-    fn all() -> [Lobes; 8] {
+    fn all() -> [Lobes; 13] {
         [
             Lobes::cosine(),
             Lobes::default(),
@@ -273,71 +358,24 @@ mod tests {
             Lobes::new(&[(Lobe::Power { exponent: 20.0 }, 1.0)]),
             Lobes::new(&[(Lobe::Power { exponent: 0.0 }, 1.0)]),
             Lobes::new(&[(Lobe::Cosine, 1.0), (Lobe::ggx(0.3), 2.0), (Lobe::Power { exponent: 50.0 }, 1.0)]),
+            Lobes::new(&[(Lobe::CosineBelow, 1.0)]),
+            Lobes::new(&[(Lobe::refracted(Vec2::splat(0.3), 1.0), 1.0)]),
+            Lobes::new(&[(Lobe::refracted(Vec2::new(0.7, 0.3), 1.5), 1.0)]),
+            Lobes::new(&[(Lobe::refracted(Vec2::splat(0.5), 2.4), 1.0)]),
+            Lobes::new(&[(Lobe::ggx(0.4), 1.0), (Lobe::refracted(Vec2::splat(0.4), 2.4), 2.0)]),
         ]
     }
 
     const VIEWS: [(f64, f64); 4] = [(0.0, 0.0), (40.0, 70.0), (75.0, 200.0), (89.0, 10.0)];
-
-    /// The chi-squared statistic of samples against a density, over boxes of equal solid angle, and the
-    /// number of boxes that count. The density of a box is the mean over interior points.
-    fn chi_squared(sample: impl Fn(Vec2) -> Vec3, pdf: impl Fn(Vec3) -> f32) -> (f64, f64) {
-        const ROWS: usize = 32;
-        const COLUMNS: usize = 64;
-        const FINE: usize = 12;
-        let count = 1 << 17;
-        let mut found = vec![0.0f64; ROWS * COLUMNS];
-        for i in 0..count {
-            // Plain random numbers, since a sequence is too evenly distributed for the test.
-            let random = |k: u32| (crate::optics::sequence::hash(2 * i + k) >> 8) as f32 / (1 << 24) as f32;
-            let l = sample(Vec2::new(random(0), random(1)));
-            let row = ((0.5 + 0.5 * l.z) * ROWS as f32).clamp(0.0, ROWS as f32 - 1.0) as usize;
-            let turn = (l.y.atan2(l.x) / (2.0 * PI)).rem_euclid(1.0);
-            let column = ((turn * COLUMNS as f32) as usize).min(COLUMNS - 1);
-            found[row * COLUMNS + column] += 1.0;
-        }
-        let (mut sum, mut boxes, mut rest) = (0.0, 0.0, [0.0; 2]);
-        for (i, found) in found.iter().enumerate() {
-            let mut mean = 0.0;
-            for j in 0..FINE * FINE {
-                let at = |k: usize, n: usize, whole: usize| {
-                    (k as f64 + (n as f64 + 0.5) / FINE as f64) / whole as f64
-                };
-                let z = 2.0 * at(i / COLUMNS, j / FINE, ROWS) - 1.0;
-                let phi = 2.0 * std::f64::consts::PI * at(i % COLUMNS, j % FINE, COLUMNS);
-                let sine = (1.0 - z * z).sqrt();
-                let l = Vec3::new((sine * phi.cos()) as f32, (sine * phi.sin()) as f32, z as f32);
-                mean += f64::from(pdf(l));
-            }
-            let solid_angle = 4.0 * std::f64::consts::PI / (ROWS * COLUMNS) as f64;
-            let expected = mean / (FINE * FINE) as f64 * solid_angle * f64::from(count);
-            // Boxes with few samples are merged.
-            if expected < 20.0 {
-                rest[0] += found;
-                rest[1] += expected;
-            } else {
-                sum += (found - expected).powi(2) / expected;
-                boxes += 1.0;
-            }
-        }
-        if rest[1] > 20.0 {
-            sum += (rest[0] - rest[1]).powi(2) / rest[1];
-            boxes += 1.0;
-        }
-        (sum, boxes)
-    }
-
-    /// True if chi-squared is as expected by chance, or slightly higher, for narrow lobes whose boxes are not
-    /// captured by the mean over points.
-    fn passes((sum, boxes): (f64, f64)) -> bool {
-        sum < boxes + 6.0 * (2.0 * boxes).sqrt() + 10.0
-    }
 
     #[test]
     fn samples_of_all_lobes_have_their_density() {
         for (i, lobes) in all().into_iter().enumerate() {
             for (theta, phi) in VIEWS {
                 let v = direction(theta, phi);
-                let found = chi_squared(|u| lobes.sample(u, v), |l| lobes.pdf(l, v));
+                let sample =
+                    |random: &mut dyn FnMut() -> f32| Some(lobes.sample(Vec2::new(random(), random()), v));
+                let found = chi_squared(sample, |l| lobes.pdf(l, v));
                 assert!(passes(found), "{i} from {theta}°: {found:?}");
                 // Wrong twins: half the width, another share, a missing cosine.
                 let wrong = match lobes.0[0].0 {
@@ -348,8 +386,12 @@ mod tests {
                     Lobe::Power { exponent } => {
                         Lobes::new(&[(Lobe::Power { exponent: exponent + 2.0 }, 1.0)])
                     }
+                    Lobe::CosineBelow => Lobes::cosine(),
+                    Lobe::GgxBelow { alpha_x, alpha_y, eta } => {
+                        Lobes::new(&[(Lobe::refracted(0.8 * Vec2::new(alpha_x, alpha_y), eta), 1.0)])
+                    }
                 };
-                let found = chi_squared(|u| lobes.sample(u, v), |l| wrong.pdf(l, v));
+                let found = chi_squared(sample, |l| wrong.pdf(l, v));
                 assert!(!passes(found), "wrong twin of {i} from {theta}°: {found:?}");
             }
         }

@@ -10,9 +10,9 @@ macro_rules! pages {
 }
 
 /// The pages with their ids, which are the paths of the files.
-pub const PAGES: [(&str, &str); 34] = pages! {
-    "README" "window" "keys" "scenes" "reflection-models" "shading-and-lights" "comparing" "lessons"
-    "command-line" "figures" "worked-examples" "study" "exporting" "performance" "custom-models" "extending"
+pub const PAGES: [(&str, &str); 36] = pages! {
+    "README" "installing" "window" "keys" "scenes" "reflection-models" "shading-and-lights" "comparing" "lessons"
+    "command-line" "python" "figures" "worked-examples" "study" "exporting" "performance" "custom-models" "extending"
     "extending/reflection-model" "extending/light-type" "extending/object-type" "extending/shading-model"
     "extending/parameters" "extending/parameter-kind" "extending/scene-field" "extending/panel" "extending/systems"
     "extending/scene-format" "extending/metric" "extending/command" "extending/channel" "extending/plot-kind"

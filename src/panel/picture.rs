@@ -439,7 +439,7 @@ fn badges_of(view: usize, picture: Rect, ui: &Ui, session: &Session, registry: &
 
 fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect {
     let palette = Palette::here(ui);
-    let terms = [Term::Ambient, Term::Diffuse, Term::Specular];
+    let terms = [Term::Ambient, Term::Diffuse, Term::Specular, Term::Transmitted];
     let term = terms.into_iter().find(|term| term.alone() == Some(session.terms()));
     let padding = vec2(8.0, 4.0);
     let left = if term.is_some() { 14.0 } else { 0.0 };

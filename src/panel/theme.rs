@@ -93,6 +93,7 @@ impl Palette {
             Term::Ambient => Color32::from_rgb(0x00, 0x9e, 0x73),
             Term::Diffuse => Color32::from_rgb(0xe6, 0x9f, 0x00),
             Term::Specular => Color32::from_rgb(0xcc, 0x79, 0xa7),
+            Term::Transmitted => Color32::from_rgb(0x56, 0xb4, 0xe9),
         }
     }
 
@@ -104,9 +105,11 @@ impl Palette {
             (true, Term::Ambient) => Color32::from_rgb(0x2f, 0xc7, 0x9b),
             (true, Term::Diffuse) => Color32::from_rgb(0xf0, 0xb4, 0x2d),
             (true, Term::Specular) => Color32::from_rgb(0xe0, 0x9c, 0xc3),
+            (true, Term::Transmitted) => Color32::from_rgb(0x7c, 0xc5, 0xf2),
             (false, Term::Ambient) => Color32::from_rgb(0x00, 0x69, 0x4d),
             (false, Term::Diffuse) => Color32::from_rgb(0x80, 0x58, 0x00),
             (false, Term::Specular) => Color32::from_rgb(0x94, 0x3c, 0x70),
+            (false, Term::Transmitted) => Color32::from_rgb(0x0b, 0x5a, 0x8c),
         }
     }
 
@@ -429,7 +432,7 @@ mod tests {
                 for ink in [p.weak, p.accent, p.error, p.warning] {
                     assert!(contrast(ink, ground) >= 4.5, "{ink:?} on {ground:?}: {}", contrast(ink, ground));
                 }
-                for term in [Term::Total, Term::Ambient, Term::Diffuse, Term::Specular] {
+                for term in [Term::Total, Term::Ambient, Term::Diffuse, Term::Specular, Term::Transmitted] {
                     assert!(contrast(p.term_text(term), ground) >= 4.5, "{term:?} on {ground:?}");
                 }
             }

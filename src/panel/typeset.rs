@@ -270,7 +270,7 @@ impl Setter<'_> {
     }
 
     /// Sets an equation in lines of at most this width; continuation lines are indented to the text after the equals
-    /// sign. Lines break before + and − outside brackets, and before a new definition. What is still too wide is set
+    /// sign. Lines break before + and − outside brackets, before a condition, and before a new definition. What is still too wide is set
     /// smaller, then broken between factors, with a ×, then anywhere.
     #[must_use]
     pub fn lines(self, nodes: &[Node], width: f32) -> Vec<Set> {
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn definitions_have_a_line_each_broken_before_plus_and_minus_outside_brackets() {
+    fn definitions_have_a_line_each_broken_before_signs_and_conditions_outside_brackets() {
         // The initial and the minimum width of the panel.
         for width in [320.0, 276.0] {
             set_all(width, true, |text, size, lines| {
@@ -387,7 +387,7 @@ mod tests {
                     assert_eq!(count("([⟨"), count(")]⟩"), "{width}: “{words}” of {text} breaks a bracket");
                     assert!(line.width <= width, "{width}: “{words}” of {text} is {} wide", line.width);
                     let start = words.trim_start();
-                    let good = start.starts_with(['+', '−']);
+                    let good = start.starts_with(['+', '−']) || start.starts_with("if ");
                     assert!(i == 0 || good, "{width}: a line of {text} begins with “{start}”");
                 }
             });
@@ -402,7 +402,7 @@ mod tests {
                 for pair in lines.windows(2).filter(|pair| pair[1].broken < Break::Anywhere) {
                     let [before, here] = [words(&pair[0]), words(&pair[1])];
                     let here = here.trim_start();
-                    let signs = ["+", "−", "×", "where", "or ", "else"];
+                    let signs = ["+", "−", "×", "where", "or ", "if ", "else"];
                     let good = signs.iter().any(|s| here.starts_with(s)) || before.ends_with([',', '=', '·']);
                     assert!(good, "{width}: a line of {text} begins with “{here}” after “{before}”");
                     products += usize::from(here.starts_with('×'));

@@ -3,16 +3,14 @@
 
 use std::any::type_name;
 
-use bevy::{
-    ecs::{
-        component::ComponentId,
-        prelude::*,
-        query::QueryFilter,
-        reflect::AppTypeRegistry,
-        world::{EntityRef, EntityWorldMut},
-    },
-    reflect::GetTypeRegistration,
+use bevy_ecs::{
+    component::ComponentId,
+    prelude::*,
+    query::QueryFilter,
+    reflect::AppTypeRegistry,
+    world::{EntityRef, EntityWorldMut},
 };
+use bevy_reflect::GetTypeRegistration;
 
 use super::{Parameter, set::ParameterSet, values::Values};
 use crate::{declared::debug_by, optics::colour::Encoding};

@@ -11,7 +11,7 @@ use std::{
     },
 };
 
-use bevy::reflect::{Reflect, std_traits::ReflectDefault};
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 

@@ -30,8 +30,8 @@ pub use outside::Outside;
 pub use parse::ParseError;
 pub use set::ParameterSet;
 pub use shared::{
-    ALPHA, ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, K_A, K_D, K_S, METALLIC, REFLECTANCE, ROUGHNESS,
-    SIGMA, SPECULAR_COLOUR,
+    ALPHA, ALPHA_X, ALPHA_Y, BASE_COLOUR, EXTINCTION, IOR, K_A, K_D, K_S, METALLIC, REFLECTANCE,
+    REFRACTIVE_INDEX, ROUGHNESS, SIGMA, SPECULAR_COLOUR, TRANSMITTANCE_COLOUR,
 };
 pub use values::Values;
 

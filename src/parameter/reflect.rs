@@ -7,9 +7,9 @@
 macro_rules! reflect_parameters {
     ($name:ident { $( $field:ident: $type:ty ),* } derived { $( $derived:ident = $derive:expr ),* }) => {
         const _: () = {
-            use $crate::bevy::{
-                ecs::reflect::ReflectComponent,
-                reflect::{
+            use $crate::{
+                bevy_ecs::reflect::ReflectComponent,
+                bevy_reflect::{
                     ApplyError, FromReflect, FromType, GetTypeRegistration, NamedField, PartialReflect, Reflect,
                     ReflectFromPtr, ReflectFromReflect, ReflectKind, ReflectMut, ReflectOwned, ReflectRef, TypeInfo,
                     TypePath, TypeRegistration, TypeRegistry, Typed,
@@ -149,7 +149,7 @@ macro_rules! reflect_parameters {
                 }
                 fn reflect_clone(
                     &self,
-                ) -> ::core::result::Result<::std::boxed::Box<dyn Reflect>, $crate::bevy::reflect::ReflectCloneError>
+                ) -> ::core::result::Result<::std::boxed::Box<dyn Reflect>, $crate::bevy_reflect::ReflectCloneError>
                 {
                     ::core::result::Result::Ok(::std::boxed::Box::new(::core::clone::Clone::clone(self)))
                 }
@@ -191,7 +191,7 @@ macro_rules! reflect_parameters {
 
 #[cfg(test)]
 mod tests {
-    use bevy::reflect::{
+    use bevy_reflect::{
         FromReflect as _, GetPath as _, PartialReflect as _, TypePath as _, Typed as _, structs::Struct,
     };
 

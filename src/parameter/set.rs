@@ -66,10 +66,10 @@ macro_rules! parameters {
             }
         }
 
-        impl $crate::bevy::ecs::component::Component for $name {
-            const STORAGE_TYPE: $crate::bevy::ecs::component::StorageType =
-                $crate::bevy::ecs::component::StorageType::Table;
-            type Mutability = $crate::bevy::ecs::component::Mutable;
+        impl $crate::bevy_ecs::component::Component for $name {
+            const STORAGE_TYPE: $crate::bevy_ecs::component::StorageType =
+                $crate::bevy_ecs::component::StorageType::Table;
+            type Mutability = $crate::bevy_ecs::component::Mutable;
         }
 
         impl $crate::parameter::ParameterSet for $name {

@@ -41,6 +41,18 @@ pub const IOR: Parameter = Parameter::triple("ior", 0.01..=6.0, [1.5; 3])
         .label("refractive index")
         .help("The factor by which light is slower inside than outside, at 630, 532 and 465 nm: water 1.33, glass 1.5, diamond 2.4. Metals also need an extinction coefficient.");
 
+/// The refractive index of a transparent body, the same for all colours.
+pub const REFRACTIVE_INDEX: Parameter = Parameter::number("refractive_index", 1.0..=3.0, 1.5)
+        .symbol("n")
+        .label("refractive index")
+        .help("The factor by which light is slower inside than outside: ice 1.31, water 1.33, window glass 1.52, sapphire 1.77, diamond 2.42. The larger it is, the more light is bent and reflected; at 1 the boundary is invisible.");
+
+/// The colour that light has after passing through.
+pub const TRANSMITTANCE_COLOUR: Parameter = Parameter::colour("transmittance_colour", [255, 255, 255])
+    .symbol("C_t")
+    .label("transmittance colour")
+    .help("The colour of white light after it has passed through the material once: white takes nothing away, black lets nothing through.");
+
 /// The extinction coefficient k: the imaginary part of the refractive index n + ik.
 pub const EXTINCTION: Parameter = Parameter::triple("extinction", 0.0..=12.0, [0.0; 3])
         .symbol("k")

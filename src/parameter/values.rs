@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, collections::BTreeMap};
 
-use bevy::reflect::Reflect;
+use bevy_reflect::Reflect;
 use glam::Vec3;
 use serde::Serialize;
 

@@ -10,13 +10,13 @@ use crate::{
     optics::colour::luminance,
     progress::{Cancelled, Progress},
     registry::Registry,
-    scene::{Scene, has_extent},
+    scene::Scene,
 };
 
 /// The termination conditions of a converging picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Until {
-    /// Maximum number of samples of each light.
+    /// Maximum number of samples of each light. A picture without any noise after [`Until::FEWEST_FOR_NOISE`] ends there.
     pub samples: u32,
     /// Noise at which it ends earlier: the root mean square of the standard error of the luminance over all lit pixels,
     /// divided by their mean luminance. It is estimated from the blocks of samples of which the picture is the mean;
@@ -71,7 +71,7 @@ pub fn render_until(
     odd: &AtomicBool,
     progress: &Progress,
 ) -> Result<(Picture, Reached), Cancelled> {
-    if !has_extent(scene.shining(), registry) {
+    if !scene.rests_on_samples(registry) {
         let picture = render_samples(scene, registry, settings, LightSamples::default(), odd);
         return Ok((picture, Reached { samples: 0, noise: None }));
     }
@@ -102,7 +102,12 @@ pub fn render_until(
         }
         let (done, said) = until.progress(Reached { samples: taken, noise });
         progress.step(done, &said)?;
-        if until.noise.is_some_and(|enough| noise.is_some_and(|noise| noise <= enough)) {
+        // If nobody asks for a noise, only a picture without any ends early, as of smooth glass under the sky: its blocks agree to
+        // the bit. Darkness may be light that has not been found yet.
+        let is_lit = || mean.iter().any(|pixel| luminance(pixel.truncate()) > 0.0);
+        let is_enough =
+            |noise: f32| until.noise.map_or_else(|| noise == 0.0 && is_lit(), |enough| noise <= enough);
+        if noise.is_some_and(is_enough) {
             break;
         }
     }
@@ -170,6 +175,52 @@ mod tests {
         assert!(farthest(&picture, &at_once) < 1e-5, "{}", farthest(&picture, &at_once));
         let fewer = render_samples(&scene, &registry, &SMALL, LightSamples::of(64), &odd);
         assert!(farthest(&picture, &fewer) > 1e-4, "the wrong twin");
+    }
+
+    #[test]
+    fn ways_through_a_rough_body_are_samples_under_any_light() {
+        let registry = Registry::builtin();
+        let glass = |roughness: f32| {
+            let mut scene = Scene { reflection_model: "glass".to_owned(), ..Scene::default() };
+            for object in &mut scene.objects {
+                object.material.set("roughness", Value::Number(roughness));
+            }
+            scene
+        };
+        let (once, _) = until(&glass(0.5), &registry, 1, None);
+        let (often, reached) = until(&glass(0.5), &registry, 32, None);
+        assert_eq!(reached.samples, 32);
+        assert!(once.pixels != often.pixels);
+        // A smooth one leads light nowhere by chance, and one that nobody sees does not count.
+        assert_eq!(until(&glass(0.0), &registry, 32, None).1.samples, 0);
+        let mut hidden = glass(0.5);
+        hidden.objects.iter_mut().for_each(|object| object.visible = false);
+        assert!(!hidden.rests_on_samples(&registry));
+    }
+
+    #[test]
+    fn a_picture_that_does_not_depend_on_chance_ends_as_soon_as_that_is_known() {
+        let registry = Registry::builtin();
+        let under = |environment: &'static str, roughness: f32| {
+            let mut scene = Scene { reflection_model: "glass".to_owned(), ..Scene::default() };
+            scene.lights[0].set_type(
+                registry.light("environment").expect("built in"),
+                &registry,
+                scene.scene_size,
+            );
+            scene.lights[0].parameters.set("source", Value::Choice(environment.into()));
+            for object in &mut scene.objects {
+                object.material.set("roughness", Value::Number(roughness));
+            }
+            until(&scene, &registry, 96, None)
+        };
+        let (picture, reached) = under("sky", 0.0);
+        assert_eq!(reached, Reached { samples: Until::FEWEST_FOR_NOISE, noise: Some(0.0) });
+        assert!(picture.pixels.iter().any(|pixel| luminance(pixel.truncate()) > 0.0));
+        assert_eq!(under("sky", 0.5).1.samples, 96, "the wrong twin");
+        let mut dark = lit(&registry);
+        dark.lights[0].intensity = 0.0;
+        assert_eq!(until(&dark, &registry, 96, None).1.samples, 96, "light may be found later");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::{
         Registry,
         compose::{Part, files},
     },
-    scene::Scene,
+    scene::{Object, Scene},
 };
 
 /// The paths of the edited shaders that a scene uses on the GPU, but not on the CPU, where everything is Rust
@@ -19,13 +19,19 @@ pub fn ignored_edits(registry: &Registry, scene: &Scene) -> BTreeSet<String> {
         return BTreeSet::new();
     }
     let lights = &registry.lights_in(scene.light_types(registry));
-    let pairs: BTreeSet<_> =
-        scene.objects.iter().map(|o| (scene.model_of(o), scene.shading_model_of(o))).collect();
-    let known = pairs.into_iter().filter_map(|(m, n)| Some((registry.model(m)?, registry.shading_model(n)?)));
+    let passage = |o: &Object| {
+        let model = registry.model(scene.model_of(o));
+        model.map(|model| model.passage(&o.material)).unwrap_or_default()
+    };
+    let all: BTreeSet<_> =
+        scene.objects.iter().map(|o| (scene.model_of(o), passage(o), scene.shading_model_of(o))).collect();
+    let known = all
+        .into_iter()
+        .filter_map(|(m, passage, n)| Some(((registry.model(m)?, passage), registry.shading_model(n)?)));
     known
-        .flat_map(|(model, shading)| {
+        .flat_map(|((model, passage), shading)| {
             let own = model.declaration.family == Family::Custom;
-            files(registry.sources(), model, shading, lights)
+            files(registry.sources(), (model, passage), shading, lights)
                 .into_iter()
                 .filter(move |file| file.edited && !(own && file.part == Part::Vocabulary))
                 .map(|file| file.path)

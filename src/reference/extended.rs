@@ -10,7 +10,7 @@ use crate::{
         extent::{BLOCK, Directions, Sample},
     },
     optics::{
-        Frame, TermSelection, Terms, colour::luminance, lobes::Lobes, radiometry::Arriving,
+        Frame, TERMS, TermSelection, Terms, colour::luminance, lobes::Lobes, radiometry::Arriving,
         sampling::power_heuristic, sequence::Sequence,
     },
     reflection::Surface,
@@ -78,6 +78,23 @@ pub(crate) struct Brightest {
     pub(crate) response: Terms,
 }
 
+impl Integral {
+    /// Adds the standard error of light from elsewhere, which is independent.
+    pub(super) fn add_error(&mut self, error: Vec3) {
+        let both = |a: Vec3| (a * a + error * error).map(f32::sqrt);
+        self.errors.transmitted = both(self.errors.transmitted);
+        self.error = both(self.error);
+    }
+}
+
+/// Number of parts from which errors are estimated: independently scrambled sequences with a sixteenth of the samples each.
+pub(super) const PARTS: u32 = 16;
+
+/// The seed of one of them.
+pub(super) fn part_seed(seed: u32, part: u32) -> u32 {
+    seed ^ (part + 1) << 26
+}
+
 /// Receives directions with the light arriving from each, divided by its density.
 type Take<'a> = dyn FnMut(&[Arriving]) + 'a;
 
@@ -105,10 +122,12 @@ impl Extended {
         seed: u32,
     ) -> Vec3 {
         let mut sum = Vec3::ZERO;
-        let at = At::new(lobes, p, v, frame, seed);
+        let at = At::new((surface, lobes), p, v, frame, seed);
         let mut take = |arriving: &[Arriving]| sum += surface.lit_by(arriving, v, frame, terms);
         self.arrive(&at, self.samples, &mut take);
-        sum / self.samples.count.max(1) as f32
+        let sharp = surface.sharp(v, frame);
+        let unspread: Vec3 = sharp.iter().map(|sharp| sharp.response(terms) * self.seen(p, sharp.l)).sum();
+        sum / self.samples.count.max(1) as f32 + unspread
     }
 
     /// The integral over its single light by term, with the standard error from parts of the samples, and
@@ -122,11 +141,9 @@ impl Extended {
         frame: &Frame,
         seed: u32,
     ) -> Integral {
-        /// Number of parts: independently scrambled sequences with a sixteenth of the samples each.
-        const PARTS: u32 = 16;
         let LightSamples { first, count } = self.samples;
         let answer = |at: &At, first: u32, count: u32, watch: &mut dyn FnMut(Vec3, Terms)| {
-            let mut terms = [Vec3::ZERO; 3];
+            let mut terms = [Vec3::ZERO; TERMS];
             let mut take = |arriving: &[Arriving]| {
                 for Arriving { l, light } in arriving {
                     let answer = surface.response(*l, v, frame);
@@ -145,13 +162,18 @@ impl Extended {
                 brightest = Some((size, Brightest { l, radiance, response }));
             }
         };
-        let at = At::new(surface.lobes(), p, v, frame, seed);
-        let terms = answer(&at, first, count, &mut watch);
-        let parts: [[Vec3; 3]; PARTS as usize] = std::array::from_fn(|part| {
-            let at = At::new(surface.lobes(), p, v, frame, seed ^ (part as u32 + 1) << 26);
+        let at = At::new((surface, surface.lobes()), p, v, frame, seed);
+        let mut terms = answer(&at, first, count, &mut watch);
+        for sharp in surface.sharp(v, frame) {
+            let (response, radiance) = (sharp.terms(), self.seen(p, sharp.l));
+            terms = std::array::from_fn(|i| terms[i] + response.each()[i] * radiance);
+        }
+        let parts: [[Vec3; TERMS]; PARTS as usize] = std::array::from_fn(|part| {
+            let at = At::new((surface, surface.lobes()), p, v, frame, part_seed(seed, part as u32));
             answer(&at, 0, (count / PARTS).max(1), &mut |_, _| ())
         });
-        let errors = std::array::from_fn::<_, 3, _>(|i| standard_error(parts.iter().map(|terms| terms[i])));
+        let errors =
+            std::array::from_fn::<_, TERMS, _>(|i| standard_error(parts.iter().map(|terms| terms[i])));
         Integral {
             terms: terms.into(),
             errors: errors.into(),
@@ -159,6 +181,36 @@ impl Extended {
             samples: count,
             solid_angle: self.solid_angle((emitter, record), p, seed),
             brightest: brightest.map(|(_, brightest)| brightest),
+        }
+    }
+
+    /// The radiance that arrives from a direction, from all its lights.
+    pub(super) fn seen(&self, p: Vec3, l: Vec3) -> Vec3 {
+        // So dense that lights are not sampled in this direction.
+        self.weighted(p, l, f32::INFINITY)
+    }
+
+    /// The radiance that arrives from a direction that was chosen with this density, times its weight beside samples of
+    /// the lights.
+    pub(super) fn weighted(&self, p: Vec3, l: Vec3, pdf: f32) -> Vec3 {
+        let mut directions =
+            Directions { l: [Vec3::ZERO; BLOCK], pdf: [0.0; BLOCK], light: [Vec3::ZERO; BLOCK] };
+        directions.l[0] = l;
+        directions.pdf[0] = pdf;
+        self.groups.iter().for_each(|(group, _)| group.meet(p, &mut directions));
+        directions.light[0]
+    }
+
+    /// One direction to each light, with the radiance over its density.
+    pub(super) fn towards(&self, p: Vec3, (seed, index): (u32, u32), mut take: impl FnMut(Vec3, Vec3, f32)) {
+        for (group, number) in &self.groups {
+            for light in 0..group.count() {
+                let point = Sequence::new(seed, number + light as u32 + 1).point(index);
+                let Sample { l, radiance, pdf } = group.send(light, p, &[point])[0];
+                if pdf > 0.0 && radiance != Vec3::ZERO {
+                    take(l, radiance / pdf, pdf);
+                }
+            }
         }
     }
 
@@ -209,8 +261,7 @@ impl Extended {
         };
         for (i, u) in points(0).into_iter().enumerate().take(count) {
             let l = at.lobes.sample(u, at.v);
-            // Models respond only to light from above the surface.
-            if l.z > 0.0 {
+            if at.counts(l.z) {
                 directions.l[i] = at.frame.t * l.x + at.frame.b * l.y + at.frame.n * l.z;
                 directions.pdf[i] = at.lobes.pdf(l, at.v);
             }
@@ -224,11 +275,13 @@ impl Extended {
             }
         }
         for (group, number) in &self.groups {
-            for light in (0..group.count()).filter(|light| group.rises(*light, at.p, at.frame.n)) {
+            for light in
+                (0..group.count()).filter(|light| at.transmits || group.rises(*light, at.p, at.frame.n))
+            {
                 let sent = group.send(light, at.p, &points(number + light as u32 + 1)[..count]);
                 for Sample { l, radiance, pdf } in &sent[..count] {
                     let local = at.frame.to_local(*l);
-                    if *pdf > 0.0 && local.z > 0.0 && *radiance != Vec3::ZERO {
+                    if *pdf > 0.0 && at.counts(local.z) && *radiance != Vec3::ZERO {
                         let weight = power_heuristic(*pdf, at.lobes.pdf(local, at.v));
                         take(Arriving { l: *l, light: *radiance * (weight / pdf) });
                     }
@@ -239,7 +292,7 @@ impl Extended {
 }
 
 /// The standard error of the mean of independent values; zero for a single one.
-fn standard_error(values: impl ExactSizeIterator<Item = Vec3> + Clone) -> Vec3 {
+pub(super) fn standard_error(values: impl ExactSizeIterator<Item = Vec3> + Clone) -> Vec3 {
     let n = values.len() as f32;
     let mean = values.clone().sum::<Vec3>() / n;
     // Relative to the mean, since the squares of nearly equal numbers lose the digits in which they differ.
@@ -255,12 +308,18 @@ struct At {
     v: Vec3,
     frame: Frame,
     seed: u32,
+    transmits: bool,
 }
 
 impl At {
-    fn new(lobes: Lobes, p: Vec3, v: Vec3, frame: &Frame, seed: u32) -> Self {
+    fn new((surface, lobes): (&dyn Surface, Lobes), p: Vec3, v: Vec3, frame: &Frame, seed: u32) -> Self {
         let frame = if lobes.are_isotropic() { Frame::from_normal(frame.n) } else { *frame };
-        Self { lobes, p, v: frame.to_local(v), frame, seed }
+        Self { lobes, p, v: frame.to_local(v), frame, seed, transmits: surface.transmits() }
+    }
+
+    /// True if the model answers to light from a direction with this cosine: above the surface, or also below it.
+    fn counts(&self, cosine: f32) -> bool {
+        cosine > 0.0 || self.transmits && cosine < 0.0
     }
 }
 

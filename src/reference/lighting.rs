@@ -1,87 +1,32 @@
 //! The light loop: the sum over all lights, common to all models.
 
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::Vec3;
 
 use super::{
     Shot,
-    extended::{Extended, Integral, LightSamples},
+    extended::{Extended, Integral, LightSamples, PARTS, part_seed, standard_error},
+    lights::{Lights, within_bounds},
+    through::{Body, Through, Viewed},
 };
 use crate::{
-    light::{AT_ONCE, Emitters, Factor, Incident, LightRecord},
+    light::{AT_ONCE, Factor, Incident, LightRecord},
     optics::{Frame, TermSelection, Terms, lobes::Lobes, radiometry::Arriving, sequence::pixel_seed},
     reflection::Surface,
-    registry::Registry,
-    scene::{Light, Scene, emitter, record},
+    scene::{Light, emitter},
     shading::Lighting,
 };
 
-/// The light of all models is limited to these bounds, so that interpolation and sums give neither infinity
-/// nor NaN.
-const BRIGHTEST: f32 = 1e30;
-
-/// Light limited to these bounds; NaN becomes dark.
-pub(crate) fn within_bounds(light: Vec3) -> Vec3 {
-    light.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
-}
-
-/// All lights of a scene, ready for calculation.
-#[derive(Default)]
-pub(super) struct Lights {
-    /// Consecutive lights of one type together, in the order of the scene.
-    groups: Vec<Box<dyn Emitters>>,
-    /// Lights with extent.
-    extended: Extended,
-    observer: Vec3,
-    terms: TermSelection,
-    /// True if NaN and excessive values are kept.
-    raw: bool,
-    /// True once a sum was not finite.
-    odd: AtomicBool,
-}
-
 impl Lights {
-    pub(super) fn new(scene: &Scene, registry: &Registry, terms: TermSelection) -> Self {
-        let encoding = scene.display.encoding;
-        let known: Vec<_> =
-            scene.shining().filter_map(|light| Some((registry.light(&light.light_type)?, light))).collect();
-        let (mut groups, mut extended, mut first) = (Vec::new(), Extended::default(), 0);
-        for lights in known.chunk_by(|(a, _), (b, _)| a.index == b.index) {
-            let entry = lights[0].0;
-            let lights: Vec<_> =
-                lights.iter().map(|(_, l)| (&l.parameters, record(l, registry, encoding))).collect();
-            let group = (entry.group)(&lights, encoding);
-            if entry.declaration.extent {
-                extended.add(group, first);
-            } else {
-                groups.push(group);
-            }
-            first += lights.len() as u32;
-        }
-        let observer = scene.observer.position;
-        Self { groups, extended, observer, terms, ..Self::default() }
-    }
-
-    /// Sets the samples of lights with extent.
-    pub(super) fn sampled(mut self, samples: LightSamples) -> Self {
-        self.extended.samples = samples;
-        self
-    }
-
-    /// Keeps NaN and excessive values.
-    pub(super) fn raw(self) -> Self {
-        Self { raw: true, ..self }
-    }
-
-    /// True if any sum was not finite so far.
-    pub(super) fn was_odd(&self) -> bool {
-        self.odd.load(Ordering::Relaxed)
-    }
-
-    /// The lights shining on one surface.
-    pub(super) fn on<'a>(&'a self, surface: &'a dyn Surface, lobes: Lobes) -> LightsOn<'a> {
-        LightsOn { lights: self, surface, lobes, seed: AtomicU32::new(0) }
+    /// The lights shining on one surface, which may be that of a solid body.
+    pub(super) fn on<'a>(
+        &'a self,
+        surface: &'a dyn Surface,
+        lobes: Lobes,
+        body: Option<&'a Body>,
+    ) -> LightsOn<'a> {
+        LightsOn { lights: self, surface, lobes, body, seed: AtomicU32::new(0) }
     }
 }
 
@@ -90,6 +35,8 @@ pub(super) struct LightsOn<'a> {
     lights: &'a Lights,
     surface: &'a dyn Surface,
     lobes: Lobes,
+    /// The body behind the surface, if it is solid.
+    body: Option<&'a Body>,
     /// The seed of the pixel, or that of all vertices and polygons: with one seed neighbours get the same points, so that what
     /// is interpolated between them is smooth, and every corner of a polygon the same colour.
     seed: AtomicU32,
@@ -117,6 +64,9 @@ impl LightsOn<'_> {
 
     /// The unmodified sum over the lights.
     fn sum(&self, position: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
+        if self.lights.remaining {
+            return self.through(position, v, frame).remaining;
+        }
         let terms = self.lights.terms;
         let (mut sum, mut uniform) = (Vec3::ZERO, Vec3::ZERO);
         let mut arriving = [Arriving::default(); AT_ONCE];
@@ -136,7 +86,34 @@ impl LightsOn<'_> {
             let seed = self.seed.load(Ordering::Relaxed);
             sum += self.lights.extended.sum((self.surface, self.lobes), position, v, frame, terms, seed);
         }
+        if matches!(terms, TermSelection::All | TermSelection::Transmitted) {
+            sum += self.through(position, v, frame).light;
+        }
         sum
+    }
+
+    /// What comes through the body.
+    pub(super) fn through(&self, position: Vec3, view: Vec3, frame: &Frame) -> Through {
+        let from = Viewed { position, view, frame, seed: self.seed() };
+        self.through_by(self.lights.extended.samples, &from)
+    }
+
+    /// The standard error of the light that comes through a rough body, from independent parts of the ways.
+    fn error_of_through(&self, position: Vec3, view: Vec3, frame: &Frame) -> Vec3 {
+        let samples = LightSamples { first: 0, count: (self.lights.extended.samples.count / PARTS).max(1) };
+        let parts: [Vec3; PARTS as usize] = std::array::from_fn(|part| {
+            let from = Viewed { position, view, frame, seed: part_seed(self.seed(), part as u32) };
+            self.through_by(samples, &from).light
+        });
+        standard_error(parts.into_iter())
+    }
+
+    fn through_by(&self, samples: LightSamples, from: &Viewed) -> Through {
+        self.body.map_or_else(Through::default, |body| {
+            let through = body.through(self.lights, samples, from);
+            let enters = self.surface.entering(from.view, from.frame);
+            Through { light: enters * through.light, remaining: enters * through.remaining }
+        })
     }
 }
 
@@ -192,6 +169,8 @@ pub(crate) struct LitBy {
     pub(crate) factors: Vec<Factor>,
     /// The response of the model to light of unit intensity.
     pub(crate) response: Terms,
+    /// The part of the contribution of a light without extent that comes through the body.
+    pub(crate) through: Vec3,
     /// The light's part of the sum, with the selected terms.
     pub(crate) contribution: Vec3,
     /// For a light with extent: the integral of the response over the light.
@@ -202,13 +181,13 @@ pub(crate) struct LitBy {
 /// alone, up to rounding.
 pub(crate) fn light_by_light(
     Shot { scene, registry, settings }: Shot,
-    surface: &dyn Surface,
+    (surface, body): (&dyn Surface, Option<&Body>),
     point: &Point,
 ) -> Loop {
     let terms = settings.terms;
     let all = Lights::new(scene, registry, terms);
     let lobes = surface.lobes();
-    let lights = all.on(surface, lobes).seeded(point.seed);
+    let lights = all.on(surface, lobes, body).seeded(point.seed);
     let [eye, v] = lights.view(point.position, point.normal);
     let frame = Frame::new(point.normal, point.tangent);
     let encoding = scene.display.encoding;
@@ -219,11 +198,18 @@ pub(crate) fn light_by_light(
         let (entry, emitter, record) = emitter(light, registry, encoding)?;
         let incident = emitter.incident(&record, point.position);
         let group = (entry.group)(&[(&light.parameters, record)], encoding);
+        let mut through = Vec3::ZERO;
         let (response, contribution, integral) = if entry.declaration.extent {
-            let mut alone = Extended::default();
-            alone.add(group, number as u32);
-            let integral =
-                alone.integral((&*emitter, &record), surface, point.position, v, &frame, point.seed);
+            let mut extended = Extended::default();
+            extended.add(group, number as u32);
+            let mut integral =
+                extended.integral((&*emitter, &record), surface, point.position, v, &frame, point.seed);
+            let alone = Lights { extended, observer: all.observer, terms, ..Lights::default() };
+            let on = alone.on(surface, lobes, body).seeded(point.seed);
+            integral.terms.transmitted += on.through(point.position, v, &frame).light;
+            if body.is_some_and(Body::leads_by_chance) {
+                integral.add_error(on.error_of_through(point.position, v, &frame));
+            }
             (integral.terms, integral.terms.select(terms), Some(integral))
         } else {
             let alone = Lights { groups: vec![group], observer: all.observer, terms, ..Lights::default() };
@@ -233,10 +219,13 @@ pub(crate) fn light_by_light(
                     Terms { ambient: surface.ambient_response(v, &frame), ..Terms::default() }
                 }
             };
-            (response, alone.on(surface, lobes).sum(point.position, v, &frame), None)
+            let on = alone.on(surface, lobes, body).seeded(point.seed);
+            through = on.through(point.position, v, &frame).light;
+            (response, on.sum(point.position, v, &frame), None)
         };
         let factors = emitter.factors(&record, point.position);
-        Some(LitBy { index, record, incident, factors, response, contribution, integral })
+        let through = Terms::through(through).select(terms);
+        Some(LitBy { index, record, incident, factors, response, through, contribution, integral })
     };
     Loop {
         eye,

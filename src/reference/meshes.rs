@@ -11,7 +11,10 @@ use rayon::prelude::*;
 use crate::{
     registry::Registry,
     scene::Object,
-    shape::{MeshKey, PolygonMesh, ShapeEntry},
+    shape::{
+        Hierarchy, MeshKey, PolygonMesh, ShapeEntry,
+        closed::{self, NotSolid},
+    },
 };
 
 /// Maximum number of polygons of meshes held at a time, about 100 bytes each: bounds the memory for scenes in
@@ -30,6 +33,8 @@ pub(crate) struct Prepared {
     pub(super) vertex_normals: Vec<Vec3>,
     /// The tangents of polygons and vertices; only anisotropic models need them.
     tangents: OnceLock<[Vec<Vec3>; 2]>,
+    /// The triangles of a closed mesh, for rays inside; only solid bodies need them.
+    body: OnceLock<Result<Hierarchy, NotSolid>>,
     /// Largest distance of a vertex from the origin.
     pub(super) radius: f32,
 }
@@ -41,9 +46,19 @@ impl Prepared {
             polygon_centres: mesh.polygon_centres(),
             vertex_normals: mesh.vertex_normals(),
             tangents: OnceLock::new(),
+            body: OnceLock::new(),
             radius: mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max),
             mesh,
         }
+    }
+
+    /// The triangles, or the reason why the mesh is no solid.
+    pub(super) fn body(&self) -> Result<&Hierarchy, &NotSolid> {
+        let closed = || {
+            let hierarchy = Hierarchy::new(&self.mesh);
+            closed::check(&self.mesh, &hierarchy).map(|_| hierarchy)
+        };
+        self.body.get_or_init(closed).as_ref()
     }
 
     pub(super) fn tangents(&self) -> &[Vec<Vec3>; 2] {

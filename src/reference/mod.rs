@@ -49,15 +49,18 @@ mod converge;
 mod display;
 mod edits;
 mod extended;
+pub mod inside;
 mod instead;
 mod layers;
 mod lighting;
+mod lights;
 pub(crate) mod meshes;
 mod nearest;
 mod object;
 mod outlines;
 pub(crate) mod probe;
 mod raster;
+mod through;
 mod vertices;
 pub(crate) mod visible;
 mod wires;
@@ -73,8 +76,8 @@ pub use extended::LightSamples;
 use instead::Instead;
 pub(crate) use instead::Leaving;
 pub use layers::{render_layers, render_numbers};
-use lighting::Lights;
-pub(crate) use lighting::within_bounds;
+use lights::Lights;
+pub(crate) use lights::within_bounds;
 use meshes::{Meshes, Prepared};
 use object::{Draw, hidden};
 pub use outlines::outlines;
@@ -168,7 +171,15 @@ impl<'a> Shot<'a> {
     /// A picture for whose light nobody watches, with the usual samples.
     fn drawing(self) -> Drawing<'a> {
         let samples = LightSamples::default();
-        Drawing { shot: self, sight: None, samples, end: None, odd: None, tiles: TILES_AT_ONCE }
+        Drawing {
+            shot: self,
+            sight: None,
+            remaining: false,
+            samples,
+            end: None,
+            odd: None,
+            tiles: TILES_AT_ONCE,
+        }
     }
 }
 
@@ -250,7 +261,8 @@ pub fn render_channel_by(
     }
     let shot = Shot::new(scene, registry, settings);
     let sight = Sight::new(shot, Setting { channel: setting.channel.ground(), ..*setting });
-    let drawing = Drawing { sight: Some(&|draw| sight.seen(draw)), samples, ..shot.drawing() };
+    let remaining = setting.channel.is_of_remaining();
+    let drawing = Drawing { sight: Some(&|draw| sight.seen(draw)), remaining, samples, ..shot.drawing() };
     let mut rgb8 = drawing.rgb8(&Display::default());
     if setting.channel.has_wires() {
         draw_wires(&mut rgb8, scene, registry, settings, setting.channel);
@@ -274,6 +286,8 @@ struct Drawing<'a> {
     shot: Shot<'a>,
     /// Another way of drawing objects, if any.
     sight: Option<&'a Seen<'a>>,
+    /// True if what remains inside solid bodies takes the place of the light.
+    remaining: bool,
     samples: LightSamples,
     /// Anything not done by then is skipped.
     end: Option<Instant>,
@@ -310,7 +324,7 @@ impl Drawing<'_> {
 }
 
 fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
-    &Drawing { shot, sight, samples, end, odd, tiles: at_once }: &Drawing,
+    &Drawing { shot, sight, remaining, samples, end, odd, tiles: at_once }: &Drawing,
     finish: impl Fn(Vec4, usize) -> T + Sync,
 ) -> Vec<T> {
     let Shot { scene, registry, settings } = shot;
@@ -324,6 +338,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     let screen = Screen::new(width, height, S);
     let lights = Lights::new(scene, registry, settings.terms).sampled(samples);
     let lights = if sight.is_some() { lights.raw() } else { lights };
+    let lights = if remaining { lights.remaining() } else { lights };
     let mut meshes = Meshes::new(registry);
     let clip_from_room = clip_from_room(&scene.observer, width as f32 / height as f32);
     let frustum = raster::frustum(&clip_from_room);

@@ -6,9 +6,12 @@ use glam::{EulerRot, Mat3, Mat4, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::{
-    lighting::{Lights, LightsOn},
+    inside::Normals,
+    lighting::LightsOn,
+    lights::Lights,
     meshes::{Meshes, Prepared},
     raster::{Placed, Screen, Triangle, set_up},
+    through::Body,
 };
 use crate::{
     optics::lobes::Lobes,
@@ -36,6 +39,8 @@ pub(super) struct Draw<'a> {
     pub(super) surface: Arc<dyn Surface>,
     /// The lobes of the surface.
     pub(super) lobes: Lobes,
+    /// The body behind the surface, if it is solid.
+    pub(super) body: Option<Body>,
     /// True if the model needs tangents.
     pub(super) anisotropic: bool,
 }
@@ -71,11 +76,19 @@ impl<'a> Draw<'a> {
         let surface = model.instantiate(&object.material, encoding);
         Some(Self {
             object,
-            shape,
             stage: shading.declaration.stage,
             shading: (shading.instantiate)(&object.material, encoding),
             lobes: surface.lobes(),
+            body: surface.interior().map(|interior| Body {
+                interior,
+                shape: shape.clone(),
+                normals: if shading.declaration.faceted { Normals::Polygons } else { Normals::Vertices },
+                rotation: rotation(object.rotation),
+                size: object.size,
+                position: object.position,
+            }),
             surface,
+            shape,
             anisotropic: model.declaration.anisotropic,
         })
     }
@@ -93,7 +106,7 @@ impl<'a> Draw<'a> {
 
     /// Some lights as they shine on the object.
     pub(super) fn under<'l>(&'l self, lights: &'l Lights) -> LightsOn<'l> {
-        lights.on(&*self.surface, self.lobes)
+        lights.on(&*self.surface, self.lobes, self.body.as_ref())
     }
 
     fn per_polygon(&self) -> bool {

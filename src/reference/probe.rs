@@ -10,7 +10,8 @@ use glam::{Mat4, Vec3, Vec4};
 
 use super::{
     Shot,
-    lighting::{Lights, LightsOn},
+    lighting::LightsOn,
+    lights::Lights,
     meshes::{MeshStore, Meshes},
     nearest::nearest,
     object::{Draw, Face, Posed},
@@ -24,12 +25,16 @@ use crate::{
 };
 
 pub(crate) use super::lighting::{LitBy, Loop, Point, light_by_light as light_loop};
+pub(crate) use super::through::Body;
+pub use super::{inside::Turn, through::Inside};
 
 /// The object at a pixel, and the calculation of the pixel's light.
 pub(crate) struct Probe {
     /// Index among the objects of the scene.
     pub(crate) object: usize,
     pub(crate) surface: Arc<dyn Surface>,
+    /// The body behind the surface, if it is solid.
+    pub(crate) body: Option<Body>,
     pub(crate) stage: Stage,
     /// Index of the polygon in the mesh.
     pub(crate) polygon: usize,
@@ -233,6 +238,7 @@ fn shaded(found: &Found, Shot { scene, registry, settings }: Shot, at: &At) -> P
             shading: Box::new(PhongShading::default()),
             surface: draw.surface.clone(),
             lobes: draw.lobes,
+            body: draw.body.clone(),
             anisotropic: draw.anisotropic,
         };
         let varyings =
@@ -262,6 +268,7 @@ fn shaded(found: &Found, Shot { scene, registry, settings }: Shot, at: &At) -> P
         phong: phong.flatten(),
         light,
         surface: draw.surface.clone(),
+        body: draw.body.clone(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3};
 
-use super::{lighting::Lights, meshes::Meshes, object::Draw, raster::Screen};
+use super::{lights::Lights, meshes::Meshes, object::Draw, raster::Screen};
 use crate::{
     optics::{TermSelection, colour::luminance},
     registry::Registry,

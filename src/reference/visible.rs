@@ -1,8 +1,10 @@
 //! Lights with extent visible in the picture: the nearest in each direction, with its radiance.
 
+use std::f32::consts::PI;
+
 use glam::{Mat3, Vec3};
 
-use super::{Shot, lighting::within_bounds};
+use super::{Shot, lights::within_bounds};
 use crate::{
     light::{Emitter, LightRecord, extent::Cone},
     scene::{
@@ -16,16 +18,16 @@ use crate::{
 pub(crate) struct Shown {
     /// Indices among the lights of the scene: one, or several at infinity.
     pub(crate) lights: Vec<usize>,
-    /// The radiance, cd/m².
-    pub(crate) radiance: Vec3,
+    /// The light that the picture shows: π times the radiance, as a white surface shows that receives it from everywhere.
+    pub(crate) light: Vec3,
     /// `1 / w`, as for objects; 0 at infinity.
     pub(crate) nearness: f32,
 }
 
-/// Radiance and nearness, without the indices.
+/// Light and nearness, without the indices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sight {
-    pub(super) radiance: Vec3,
+    pub(super) light: Vec3,
     pub(super) nearness: f32,
 }
 
@@ -57,8 +59,8 @@ impl Visible {
     }
 
     fn sight(&self, radiance: Vec3, distance: f32, stretch: f32) -> Option<Sight> {
-        let radiance = within_bounds(radiance * self.record.colour);
-        (distance > 0.0).then(|| Sight { radiance, nearness: stretch / distance })
+        let light = within_bounds(PI * radiance * self.record.colour);
+        (distance > 0.0).then(|| Sight { light, nearness: stretch / distance })
     }
 }
 
@@ -125,10 +127,10 @@ impl VisibleLights {
     pub(super) fn at(&self, place: [f32; 2]) -> Option<Shown> {
         let ray = self.ray(place);
         let all: Vec<_> = self.lights.iter().collect();
-        let Sight { radiance, nearness } = sum(&all, None, &ray, self.eye)?;
+        let Sight { light, nearness } = sum(&all, None, &ray, self.eye)?;
         let is_it = |light: &&Visible| light.seen(&ray, self.eye).is_some_and(|s| s.nearness == nearness);
         let lights = self.lights.iter().filter(is_it).map(|light| light.index).collect();
-        Some(Shown { lights, radiance, nearness })
+        Some(Shown { lights, light, nearness })
     }
 
     /// The lights that may be visible in a square part of the picture, whose pixels have so many samples; `None` if
@@ -159,7 +161,7 @@ impl VisibleLights {
             Some(_) => Vec::new(),
             None => self.surroundings(&around, origin, edge, samples),
         };
-        let throughout = same.flatten().filter(|_| bounded.is_empty()).map(|sight| sight.radiance);
+        let throughout = same.flatten().filter(|_| bounded.is_empty()).map(|sight| sight.light);
         let same = same.map(|same| (same, around.len()));
         Some(Part { of: self, lights: [around, bounded].concat(), origin, edge, same, known, throughout })
     }
@@ -237,9 +239,8 @@ fn even(centres: &[Option<Sight>], i: usize, side: usize) -> Option<Sight> {
     let here = centres[i]?;
     let is_near = |i: usize| {
         let there = centres[i]?;
-        let difference = (there.radiance - here.radiance).abs().max_element();
-        (there.nearness == here.nearness && difference <= EVEN * here.radiance.abs().max_element())
-            .then_some(())
+        let difference = (there.light - here.light).abs().max_element();
+        (there.nearness == here.nearness && difference <= EVEN * here.light.abs().max_element()).then_some(())
     };
     [i - side, i - 1, i + 1, i + side].into_iter().try_for_each(is_near)?;
     // Something near has a different nearness at each sample.
@@ -257,7 +258,7 @@ fn joined(known: Option<Sight>, sight: Option<Sight>) -> Option<Sight> {
         (known, None) => known,
         (Some(known), Some(sight)) if sight.nearness > known.nearness => Some(sight),
         (Some(known), Some(sight)) if known.nearness == 0.0 => {
-            Some(Sight { radiance: known.radiance + sight.radiance, ..known })
+            Some(Sight { light: known.light + sight.light, ..known })
         }
         (Some(known), Some(_)) => Some(known),
         (None, sight) => sight,
@@ -327,7 +328,7 @@ mod tests {
     /// The light that the observer receives from straight ahead.
     fn ahead(scene: &Scene) -> Vec3 {
         let shown = in_front(Shot::new(scene, &Registry::builtin(), &settings(1)), [SIZE / 2; 2], None);
-        shown.expect("it is in the middle").radiance
+        shown.expect("it is in the middle").light
     }
 
     #[test]
@@ -338,7 +339,7 @@ mod tests {
             let radiance = ahead(&scene);
             assert!(radiance.x > 0.0 && radiance.z == 0.0, "{light_type}: {radiance}");
             if light_type != "sun" && light_type != "environment" {
-                assert!((radiance.x - 3.0).abs() < 1e-5, "{light_type}: {radiance}");
+                assert!((radiance.x - 3.0 * PI).abs() < 1e-5, "{light_type}: {radiance}");
             }
             let error = (middle(&scene) - radiance).abs().max_element();
             assert!(error <= 2e-2 * radiance.x, "{light_type}: {error}");
@@ -370,15 +371,15 @@ mod tests {
     fn the_nearest_light_is_seen_and_lights_without_end_add_up() {
         let mut both = scene("sphere", 5.0);
         both.lights.push(Light { intensity: 7.0, ..scene("disc", 3.0).lights.remove(0) });
-        assert!((ahead(&both).x - 3.0).abs() < 1e-5);
+        assert!((ahead(&both).x - 3.0 * PI).abs() < 1e-5);
         both.lights.reverse();
-        assert!((ahead(&both).x - 3.0).abs() < 1e-5);
+        assert!((ahead(&both).x - 3.0 * PI).abs() < 1e-5);
         let mut sum = scene("environment", 0.0);
         let [sky, sun] = [ahead(&sum), ahead(&scene("sun", 0.0))];
         sum.lights.extend(scene("sun", 0.0).lights);
         assert!((ahead(&sum) - sky - sun).abs().max_element() < 1e-5 * sun.x);
         sum.lights.extend(scene("sphere", 5.0).lights);
-        assert!((ahead(&sum).x - 3.0).abs() < 1e-5);
+        assert!((ahead(&sum).x - 3.0 * PI).abs() < 1e-5);
     }
 
     #[test]
@@ -405,8 +406,7 @@ mod tests {
                             let all =
                                 VisibleLights { lights: all.lights.into_iter().map(cone).collect(), ..all };
                             let known = all.at(place);
-                            let known =
-                                known.map(|Shown { radiance, nearness, .. }| Sight { radiance, nearness });
+                            let known = known.map(|Shown { light, nearness, .. }| Sight { light, nearness });
                             differ += usize::from(shown.and_then(|[one]| one) != known);
                         }
                     }
@@ -435,7 +435,7 @@ mod tests {
         for (x, y) in (0..SIZE).flat_map(|y| (0..SIZE).map(move |x| (x, y))) {
             let at = |[right, down]: [f32; 2]| {
                 let place = [x as f32 + right / 256.0, y as f32 + down / 256.0];
-                exact.at(place).expect("it is everywhere").radiance.x
+                exact.at(place).expect("it is everywhere").light.x
             };
             let each = samples.map(at);
             let mean = each.iter().sum::<f32>() / 4.0;

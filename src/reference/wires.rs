@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::{
     DisplayTransform, Settings, Shot,
-    lighting::Lights,
+    lights::Lights,
     meshes::{MeshStore, Meshes},
     object::{Draw, Face, Posed},
     raster::{self, Screen},

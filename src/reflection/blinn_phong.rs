@@ -61,6 +61,7 @@ impl ReflectionModel for BlinnPhong {
             ambient: self.k_a * self.base_colour,
             diffuse: self.k_d * cos_i.max(0.0) * self.base_colour,
             specular,
+            transmitted: Vec3::ZERO,
         }
     }
 

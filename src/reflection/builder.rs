@@ -35,6 +35,9 @@ impl Declaration {
             ambient: Ambient::Formula,
             anisotropic: false,
             matte: false,
+            transmits: false,
+            sharp: false,
+            solid: false,
             wgsl,
         }
     }
@@ -72,6 +75,15 @@ impl Declaration {
 
         /// Makes a cosine its lobe for sampling light with extent.
         matte() { matte: true }
+
+        /// Makes it a model that light passes through: it has a transmitted term.
+        transmitting() { transmits: true }
+
+        /// Makes it a model that also reflects or transmits without spreading.
+        sharp() { sharp: true }
+
+        /// Makes it a model of a solid body, with an [`interior`](super::ReflectionModel::interior).
+        solid() { solid: true }
     }
 
     /// Claims reciprocity: the path of light may be reversed.

@@ -33,6 +33,13 @@ pub struct Declaration {
     pub anisotropic: bool,
     /// True for a model without a highlight.
     pub matte: bool,
+    /// True for a model of the whole sphere of directions (a BSDF), which light passes through.
+    pub transmits: bool,
+    /// True for a model with directions in which light does not spread; see
+    /// [`sharp`](super::ReflectionModel::sharp).
+    pub sharp: bool,
+    /// True for a model of a solid body; see [`interior`](super::ReflectionModel::interior).
+    pub solid: bool,
     /// The twin in WGSL: `fn response` over a struct `Parameters`, and `fn ambient_response` for models
     /// that declare [`Ambient::Formula`].
     pub wgsl: Source,
@@ -74,6 +81,8 @@ texts! {
         Diffuse = "diffuse" "I_d",
         /// `I_s`.
         Specular = "specular" "I_s",
+        /// `I_t`.
+        Transmitted = "transmitted" "I_t",
     }
 }
 
@@ -102,6 +111,8 @@ texts! {
         Microfacet = "Microfacet",
         /// The practical standard.
         Standard = "Standard",
+        /// Surfaces that light passes through.
+        Transmission = "Transmission",
         /// Models written by users.
         Custom = "Custom models",
     }

@@ -16,6 +16,7 @@ use super::{
     declaration::{Ambient, Declaration},
     group::Group,
     model::OnPages,
+    passage::Passage,
     preset::{self, Measured},
     surface::{Instance, Surface},
 };
@@ -28,6 +29,7 @@ use crate::{
     },
     parameter::{Parameter, Value, Values, pack},
     shader::Source,
+    text::{listed, nearest},
 };
 
 /// A registered model, in the form used by the rest of the program.
@@ -43,8 +45,11 @@ pub struct ModelEntry {
     pub preset: fn(&Measured) -> Vec<(&'static str, Value)>,
     lobe: Lobe,
     curves: &'static [NamedCurve],
+    /// See [`ReflectionModel::PASSAGE`].
+    passage: Option<fn(&Values) -> Passage>,
     pub(super) instantiate: Instantiate,
     on_pages: Option<OnPages>,
+    interior_on_pages: Option<&'static str>,
     on_cpu: Option<Arc<dyn Interpreted>>,
     identity: Identity,
     /// Surfaces with curves, by their packed parameters: objects of one material share one.
@@ -111,7 +116,9 @@ impl ModelEntry {
         Self {
             groups: M::GROUPS,
             preset: M::preset,
+            passage: M::PASSAGE,
             on_pages: M::ON_PAGES,
+            interior_on_pages: M::INTERIOR_ON_PAGES,
             ..Self::custom(const { &M::DECLARATION }, M::PARAMETERS, lobe, M::CURVES, instantiate, None)
         }
     }
@@ -132,8 +139,10 @@ impl ModelEntry {
             preset: preset::by_names(parameters),
             lobe,
             curves,
+            passage: None,
             instantiate,
             on_pages: None,
+            interior_on_pages: None,
             on_cpu,
             identity: Identity::new(declaration, parameters),
             kept: Arc::default(),
@@ -143,6 +152,23 @@ impl ModelEntry {
     /// Puts the parameters into groups.
     pub(crate) fn grouped(self, groups: &'static [Group]) -> Self {
         Self { groups, ..self }
+    }
+
+    /// The parameter with a name, which may be spelt as in American English.
+    ///
+    /// # Errors
+    /// Returns the nearest name, or all of them.
+    pub fn named(&self, name: &str) -> Result<&'static Parameter, String> {
+        let spelling = name.replace("color", "colour");
+        self.parameters.iter().find(|p| p.name == spelling).ok_or_else(|| {
+            let names: Vec<_> = self.parameters.iter().map(|p| p.name).collect();
+            let known = self.parameters.iter().flat_map(|p| [p.name, p.label, p.symbol].map(|s| (s, p.name)));
+            let hint = nearest(&spelling, known).map_or_else(
+                || format!("it has {}", listed(&names, "and")),
+                |n| format!("did you mean {n}?"),
+            );
+            format!("{} has no parameter {name}; {hint}", self.declaration.id)
+        })
     }
 
     /// A number that changes whenever the file of the model is read again.
@@ -175,6 +201,34 @@ impl ModelEntry {
     pub(crate) fn run_again(&self) {
         if let Some(on_cpu) = &self.on_cpu {
             on_cpu.run_again();
+        }
+    }
+
+    /// How light passes through surfaces with these parameters.
+    #[must_use]
+    pub fn passage(&self, values: &Values) -> Passage {
+        self.passage.map_or_else(|| self.declaration.passage(), |of| of(values))
+    }
+
+    /// True if light takes one of many ways through bodies with these parameters, by chance.
+    #[must_use]
+    pub fn leads_by_chance(&self, values: &Values) -> bool {
+        let is_rough = |surface: Arc<dyn Surface>| surface.interior().is_some_and(|inside| inside.is_rough());
+        self.passage(values).solid && is_rough(self.instantiate(values, Encoding::default()))
+    }
+
+    /// True if the parameters decide how light passes.
+    #[must_use]
+    pub fn passage_varies(&self) -> bool {
+        self.passage.is_some()
+    }
+
+    /// All ways in which light passes through surfaces of the model.
+    #[must_use]
+    pub fn passages(&self) -> Vec<Passage> {
+        match self.passage {
+            Some(_) => vec![Passage::NONE, Passage::SHEET, Passage::BODY],
+            None => vec![self.declaration.passage()],
         }
     }
 
@@ -241,6 +295,12 @@ impl ModelEntry {
     #[must_use]
     pub fn on_pages(&self) -> Option<OnPages> {
         self.on_pages
+    }
+
+    /// See [`ReflectionModel::INTERIOR_ON_PAGES`].
+    #[must_use]
+    pub fn interior_on_pages(&self) -> Option<&'static str> {
+        self.interior_on_pages
     }
 
     /// The number of quadruples in the curves of a row: the harmonics of the albedo, then the additional

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::optics::interface::Interface;
+
 /// A factor of the lobe `D F G / (4 (N·L)(N·V))`, with the directions or the angle at which it is evaluated.
 /// All vectors are unit vectors in the local frame (normal +z, tangent +x), above the surface.
 ///
@@ -43,5 +45,14 @@ impl Factor {
             Self::Distribution { h } => Vec3::splat(distribution(h)),
             Self::Masking { l, v } => Vec3::splat(4.0 * l.z * v.z * visibility(l, v)),
         })
+    }
+
+    /// The factor of what a rough boundary reflects.
+    pub(super) fn of_boundary(self, interface: &Interface) -> Option<Vec3> {
+        self.by(
+            |cos_d| Vec3::splat(interface.reflectance(cos_d)),
+            |h| interface.distribution(h),
+            |l, v| interface.visibility(l, v),
+        )
     }
 }

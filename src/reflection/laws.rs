@@ -1,12 +1,16 @@
 //! A search for violations of a model's laws: over random directions and legal parameters, identical in every
 //! run, and at the ends of all ranges. Tests use it on the CPU for the built-in models, `lcm models check` on
-//! the GPU for any model.
+//! the GPU for any model, and on the CPU where there is no window.
 
-use std::f32::consts::{FRAC_PI_2, PI, TAU};
+use std::{
+    f32::consts::{FRAC_PI_2, PI, TAU},
+    sync::Arc,
+};
 
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
-use super::{Laws, ModelEntry, brdf_of};
+use super::{Laws, ModelEntry, Surface, brdf_of};
 use crate::{
     optics::{
         Frame, Terms,
@@ -18,6 +22,7 @@ use crate::{
         sequence::Sequence,
     },
     parameter::{Parameter, Value, Values},
+    progress::{Cancelled, Progress},
 };
 
 /// Maximum relative difference after exchanging directions that is attributed to rounding.
@@ -124,7 +129,7 @@ pub fn reciprocity_error(there: Terms, back: Terms, l: Vec3, v: Vec3, frame: &Fr
 /// The smallest number in a response.
 #[must_use]
 pub fn smallest(terms: &Terms) -> f32 {
-    terms.ambient.min_element().min(terms.diffuse.min_element()).min(terms.specular.min_element())
+    terms.each().into_iter().map(Vec3::min_element).fold(f32::INFINITY, f32::min)
 }
 
 /// Directions to the light with weights, such that the weighted sum of the responses approximates the
@@ -155,7 +160,7 @@ pub fn sampled_directions(
 /// True if a response has neither NaN nor infinity.
 #[must_use]
 pub fn is_finite(terms: &Terms) -> bool {
-    terms.ambient.is_finite() && terms.diffuse.is_finite() && terms.specular.is_finite()
+    terms.each().into_iter().all(Vec3::is_finite)
 }
 
 /// Directions to the light with weights, such that the weighted sum of the responses is the directional
@@ -191,9 +196,21 @@ pub fn albedo_directions(v: Vec3, frame: &Frame, rows: usize) -> Vec<(Vec3, f32)
 /// The largest directional albedo of any channel, from the responses in [`albedo_directions`].
 #[must_use]
 pub fn albedo(directions: &[(Vec3, f32)], responses: impl IntoIterator<Item = Terms>) -> f32 {
-    let weighted =
-        directions.iter().zip(responses).map(|((_, weight), t)| (t.diffuse + t.specular) * *weight);
+    let weighted = directions
+        .iter()
+        .zip(responses)
+        .map(|((_, weight), t)| (t.diffuse + t.specular + t.transmitted) * *weight);
     weighted.sum::<Vec3>().max_element()
+}
+
+/// Directions below the surface with weights, such that the weighted sum of the responses approximates the part of
+/// uniform light that passes through: `count` samples of the lobes there.
+#[must_use]
+pub fn directions_below(lobes: &Lobes, v: Vec3, count: u32) -> Vec<(Vec3, f32)> {
+    let (lobes, sequence) = (lobes.below(), Sequence::new(0, 0));
+    let below = (0..count).map(|i| lobes.sample(sequence.point(i), v)).filter(|l| l.z < 0.0);
+    let weighted = below.map(|l| (l, (PI * lobes.pdf(l, v) * count as f32).recip()));
+    weighted.filter(|(_, weight)| weight.is_finite()).collect()
 }
 
 /// The location of a finding, in the local frame (normal +z, tangent +x).
@@ -299,9 +316,31 @@ pub fn examine<E>(
             }
         }
         compare(&values, effort.pairs, &mut random, &mut findings, &mut ask)?;
-        integrate(&values, &mut random, &mut findings, &mut ask)?;
+        integrate(model, &values, &mut random, &mut findings, &mut ask)?;
     }
     Ok(findings)
+}
+
+/// Like [`examine`], with the model on the CPU.
+///
+/// # Errors
+/// Returns [`Cancelled`] if the user cancels.
+pub fn examine_on_cpu(
+    model: &ModelEntry,
+    effort: Effort,
+    progress: &Progress,
+) -> Result<Findings, Cancelled> {
+    let mut last: Option<(Values, Arc<dyn Surface>)> = None;
+    let mut sets = 0;
+    examine(model, effort, |values, pairs| {
+        if last.as_ref().is_none_or(|(known, _)| known != values) {
+            progress.step(sets as f32 / effort.sets as f32, "sets of parameters")?;
+            sets += 1;
+            last = Some((values.clone(), model.instantiate(values, Encoding::Srgb)));
+        }
+        let Some((_, surface)) = &last else { return Ok(Vec::new()) };
+        Ok(pairs.par_iter().map(|(l, v)| surface.response(*l, *v, &Frame::LOCAL)).collect())
+    })
 }
 
 /// The deviation of directional albedos from [`SAMPLES`] of some lobes from those by quadrature, for several
@@ -373,8 +412,9 @@ fn compare<E>(
     Ok(())
 }
 
-/// Directional albedos, the largest with the finer quadrature.
+/// Directional albedos, the largest with the finer quadrature; with what passes through.
 fn integrate<E>(
+    model: &ModelEntry,
     values: &Values,
     random: &mut Random,
     findings: &mut Findings,
@@ -388,11 +428,17 @@ fn integrate<E>(
             if i % 2 == 0 { (0.0, 1.0) } else { (TAU * random.unit()).sin_cos() };
         let v = Vec3::new(sin * cos_azimuth, sin * sin_azimuth, cos);
         let mut found = 0.0;
+        let through = model.declaration.transmits.then(|| model.instantiate(values, Encoding::Srgb));
+        let sharp = through.iter().flat_map(|surface| surface.sharp(v, &Frame::LOCAL));
+        let sharp = sharp.map(|sharp| sharp.share).sum::<Vec3>().max_element();
         for rows in [COARSE, FINE] {
-            let directions = albedo_directions(v, &Frame::LOCAL, rows);
+            let mut directions = albedo_directions(v, &Frame::LOCAL, rows);
+            if let Some(surface) = &through {
+                directions.extend(directions_below(&surface.lobes(), v, (rows * rows) as u32));
+            }
             let pairs: Vec<_> = directions.iter().map(|(l, _)| (*l, v)).collect();
             let answers = ask(values, &pairs)?;
-            found = albedo(&directions, answers);
+            found = albedo(&directions, answers) + sharp;
             if found <= NEARLY_ALL {
                 break;
             }

@@ -1,15 +1,22 @@
 //! The trait of reflection models.
 
+use std::f32::consts::PI;
+
 use glam::{Vec3, Vec4};
 
-use super::{declaration::Declaration, factor::Factor, group::Group, preset::Measured, readout::Readout};
+use super::{
+    declaration::Declaration, factor::Factor, group::Group, passage::Passage, preset::Measured,
+    readout::Readout,
+};
 use crate::{
     optics::{
         Frame, Terms,
         albedo::{LobeAlbedo, NamedCurve},
+        interior::Interior,
         lobes::Lobes,
+        sharp::Sharps,
     },
-    parameter::{ParameterSet, Value},
+    parameter::{ParameterSet, Value, Values},
 };
 
 /// The curves of a model as JavaScript, for web pages.
@@ -45,9 +52,56 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// [`CURVES`](Self::CURVES) but without this has fixed parameters there, which the export reports.
     const ON_PAGES: Option<OnPages> = None;
 
+    /// The [`interior`](Self::interior) as a JavaScript function, `(m, curves) => [n, B, α, σ for red, green and blue]`, for web
+    /// pages that change parameters without the program: `m` has them by name, with colours as linear light, `curves` the
+    /// [`CURVES`](Self::CURVES). A model of a solid body without this has fixed parameters there, which the export reports.
+    const INTERIOR_ON_PAGES: Option<&'static str> = None;
+
+    /// How light passes through surfaces with these parameters, for models whose parameters decide that; `None` for those
+    /// that are as [declared](Declaration::passage). Called for every object that changes, so it must be quick. The same as
+    /// [`passage`](Self::passage), without the model.
+    const PASSAGE: Option<fn(&Values) -> Passage> = None;
+
+    /// How light passes through the surface.
+    fn passage(&self) -> Passage {
+        Self::DECLARATION.passage()
+    }
+
     /// The response `π f_r(l, v) cos θ_i` to a light of unit intensity, by term; for the models of the CA, their
-    /// formula as published. Finite for all unit vectors and legal parameters.
+    /// formula as published. Finite for all unit vectors and legal parameters. Of a model that is
+    /// [declared](Declaration::transmits) to transmit, also for light on the other side of the surface than the viewer:
+    /// then `π f_t(l, v) |cos θ_i|` as [`Terms::through`]. Others give zero there.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
+
+    /// The directions from which light reaches the viewer without spreading, by reflection or transmission at a smooth
+    /// surface, for models that are [declared](Declaration::sharp) to have any. Only light with extent is seen in them.
+    fn sharp(&self, _v: Vec3, _frame: &Frame) -> Sharps {
+        Sharps::new()
+    }
+
+    /// The inside of a solid body, for models of such: the light that enters follows the object's own mesh, which must be
+    /// closed, and is the transmitted term. [`response`](Self::response) is then that of the outer boundary alone.
+    fn interior(&self) -> Option<Interior> {
+        None
+    }
+
+    /// The BSDF in sr⁻¹ for light above the surface and a viewer below it, within the body if there is one, for plots. The
+    /// default exchanges the two directions, as reciprocity allows where the same medium is on both sides.
+    fn behind(&self, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
+        self.response(v, l, frame).transmitted / (PI * frame.n.dot(v).abs())
+    }
+
+    /// The refractive index of the body behind the surface relative to the room, for models in which light is bent by
+    /// Snell's law: explanations then give the angles.
+    fn refractive_index(&self) -> Option<f32> {
+        self.interior().map(|interior| interior.ior)
+    }
+
+    /// The part of the light from within a solid body that reaches the viewer through what lies on its surface, such as
+    /// paint that covers some of it. Its twin in WGSL is `entering`.
+    fn entering(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
+        Vec3::ONE
+    }
 
     /// The response to uniform light of 1 lx, for models that declare [`Ambient::Formula`](super::Ambient::Formula); not called for others.
     fn ambient_response(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
@@ -71,7 +125,11 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// The directions in which the model reflects most, for sampling light with extent. Any lobes give the
     /// same picture eventually, good ones sooner. A matte model has a cosine alone.
     fn lobes(&self) -> Lobes {
-        if Self::DECLARATION.matte { Lobes::cosine() } else { Lobes::default() }
+        match Self::DECLARATION {
+            Declaration { transmits: true, .. } => Lobes::of_both_sides(),
+            Declaration { matte: true, .. } => Lobes::cosine(),
+            _ => Lobes::default(),
+        }
     }
 
     /// Derived values that help interpret the parameters: the reflectance at normal incidence, the roughness

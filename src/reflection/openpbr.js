@@ -59,7 +59,7 @@
   const scattered = mix(1, roughness, mix(reflected, 1, m.metallic));
   const k = Math.min(0.9999, Math.max(0, mix(coatReflected, fromInside, scattered)));
   const darkening = rgb((i) => {
-    const body = f0[i] + (1 - f0[i]) * reflected;
+    const body = mix(f0[i] + (1 - f0[i]) * reflected, 1, m.transmission_weight);
     const albedo = Math.min(1, m.metallic * m.specular_strength * mean[i] + (1 - m.metallic) * body);
     return 1 + ((1 - k) / (1 - albedo * k) - 1) * (cover * m.coat_darkening);
   });

@@ -1,124 +1,72 @@
+mod parameters;
+
 use std::{f32::consts::PI, sync::LazyLock};
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::{Declaration, Factor, Group, Measured, OnPages, Readout, ReflectionModel, built_in, preset};
+use self::parameters::{
+    ABBE_NUMBER, BASE, BASE_DIFFUSE_ROUGHNESS, BASE_WEIGHT, COAT_ANISOTROPY, COAT_COLOUR, COAT_DARKENING,
+    COAT_IOR, COAT_ROUGHNESS, COAT_WEIGHT, DISPERSION_SCALE, FUZZ_COLOUR, FUZZ_ROUGHNESS, FUZZ_WEIGHT,
+    SPECULAR_ANISOTROPY, SPECULAR_IOR, SPECULAR_ROUGHNESS, SPECULAR_STRENGTH, THIN_FILM_IOR,
+    THIN_FILM_THICKNESS, THIN_FILM_WEIGHT, THIN_WALLED, TRANSMISSION_COLOUR, TRANSMISSION_DEPTH,
+    TRANSMISSION_WEIGHT,
+};
+use super::{
+    Declaration, Factor, Group, Measured, OnPages, Passage, Readout, ReflectionModel, built_in, preset,
+};
 use crate::{
     optics::{
-        Frame, Terms,
+        Frame, Terms, absorption,
         albedo::{Albedos, Lines, LobeAlbedo, NamedCurve, Spacing, lobe_albedos},
         diffuse::eon,
+        dispersion::cauchy_of_abbe,
         distribution::{MINIMUM_ALPHA, ggx},
         film::thin_film,
         fresnel::{dielectric, schlick},
         geometry::half_vector,
-        lobes::{self, Lobe, Lobes},
+        interior::Interior,
+        lobes::{self, Lobe, Lobes, MAX_LOBES},
         masking::{separable, smith_ggx},
+        refraction::refracted_cosine,
+        sharp::{Sharp, Sharps},
+        slab::{Slab, oblique, slab},
     },
-    parameter::{BASE_COLOUR, METALLIC, Parameter, ROUGHNESS, SPECULAR_COLOUR, Value},
+    parameter::{METALLIC, SPECULAR_COLOUR, Value, Values},
     parameters,
 };
 
 /// The smallest cosine distinguished from 0.
 const GRAZING: f32 = 1e-9;
 
-const fn fraction(name: &'static str, default: f32) -> Parameter {
-    Parameter::number(name, 0.0..=1.0, default)
-}
+/// The least α with which light that bounces between facets counts.
+const BOUNCES: f32 = 0.0016;
 
-const fn index(name: &'static str, default: f32) -> Parameter {
-    Parameter::number(name, 0.1..=6.0, default)
-}
-
-const BASE: Parameter = Parameter { kind: Parameter::colour("", [231, 231, 231]).kind, ..BASE_COLOUR };
-const SPECULAR_ROUGHNESS: Parameter = Parameter { kind: fraction("", 0.3).kind, ..ROUGHNESS };
-const BASE_WEIGHT: Parameter = fraction("base_weight", 1.0)
-    .symbol("w_b")
-    .label("weight of the base")
-    .help("A factor on the base colour, of the body and of metal alike.");
-const BASE_DIFFUSE_ROUGHNESS: Parameter = fraction("base_diffuse_roughness", 0.0)
-    .symbol("σ")
-    .label("roughness of the body")
-    .help("The roughness of the body that scatters light, as in EON: 0 is Lambert's law, 1 flat and chalky.");
-const SPECULAR_STRENGTH: Parameter = Parameter::number("specular_strength", 0.0..=10.0, 1.0)
-    .symbol("ξ")
-    .label("specular strength")
-    .help("A factor on the reflectance at normal incidence: 0 removes the reflection of the base, values above 1 raise it.");
-const SPECULAR_ANISOTROPY: Parameter = fraction("specular_roughness_anisotropy", 0.0)
-    .symbol("a")
-    .label("anisotropy")
-    .help("From 0, isotropic, to 1, highlights stretched along the tangent, as on brushed metal.");
-const SPECULAR_IOR: Parameter = index("specular_ior", 1.5)
-    .symbol("n_s")
-    .label("refractive index")
-    .help("The refractive index of the non-metallic base: water 1.33, plastic and glass 1.5, diamond 2.4.");
-const COAT_WEIGHT: Parameter = fraction("coat_weight", 0.0)
-    .symbol("C")
-    .label("coat")
-    .help("The fraction of the surface under a clear coat, such as lacquer.");
-const COAT_COLOUR: Parameter = Parameter::colour("coat_colour", [255; 3])
-    .symbol("C_c")
-    .label("colour of the coat")
-    .help("The fraction of light that passes through the coat twice, in and out along the normal.");
-const COAT_ROUGHNESS: Parameter = fraction("coat_roughness", 0.0)
-    .symbol("r_c")
-    .label("roughness of the coat")
-    .help("From 0, a mirror, to 1, a matte coat, which also blurs the reflection of the base.");
-const COAT_ANISOTROPY: Parameter = fraction("coat_roughness_anisotropy", 0.0)
-    .symbol("a_c")
-    .label("anisotropy of the coat")
-    .help("From 0, isotropic, to 1, reflections of the coat stretched along the tangent.");
-const COAT_IOR: Parameter = index("coat_ior", 1.6)
-    .symbol("n_c")
-    .label("refractive index of the coat")
-    .help("The refractive index of the coat: lacquer has 1.5 to 1.6.");
-const COAT_DARKENING: Parameter = fraction("coat_darkening", 1.0)
-    .symbol("δ")
-    .label("darkening by the coat")
-    .help("The amount of the darkening and saturation of a base under a coat, which returns part of the light to it. 1 is physical.");
-const FUZZ_WEIGHT: Parameter = fraction("fuzz_weight", 0.0)
-    .symbol("F_z")
-    .label("fuzz")
-    .help("The amount of fuzz, a layer of fine fibres like the nap of velvet, or of dust.");
-const FUZZ_COLOUR: Parameter = Parameter::colour("fuzz_colour", [255; 3])
-    .symbol("C_f")
-    .label("colour of the fuzz")
-    .help("The colour of the fibres. Black fuzz darkens what lies below.");
-const FUZZ_ROUGHNESS: Parameter = fraction("fuzz_roughness", 0.5)
-    .symbol("r_f")
-    .label("roughness of the fuzz")
-    .help("The disorder of the fibres: small values shine at the rim alone, as velvet does, 1 like dust everywhere. 0 is no fuzz.");
-const THIN_FILM_WEIGHT: Parameter = fraction("thin_film_weight", 0.0).symbol("w_t").label("thin film").help(
-    "The fraction of the base that has a film so thin that light interferes in it, as on soap bubbles.",
-);
-const THIN_FILM_THICKNESS: Parameter = Parameter::number("thin_film_thickness", 0.0..=10.0, 0.5)
-    .symbol("d")
-    .label("thickness of the film")
-    .unit("µm")
-    .help("The thickness of the film. Colours are strongest from 0.1 to 1 µm, and fade below 0.03 µm.");
-const THIN_FILM_IOR: Parameter = index("thin_film_ior", 1.4)
-    .symbol("n_t")
-    .label("refractive index of the film")
-    .help("The refractive index of the film: soap 1.33, oxides of metals 2 to 2.7.");
+/// The cosine at which light that meets several facets passes a boundary: the mean over evenly arriving light,
+/// ∫ μ² dμ/∫ μ dμ.
+const SCATTERED: f32 = 2.0 / 3.0;
 
 /// Wavelengths of the film's interference for red, green and blue, in µm: those of Adobe's implementation.
 const WAVELENGTHS: Vec3 = Vec3::new(0.62, 0.54, 0.45);
 
 parameters! {
-    /// **OpenPBR** — the opaque part of OpenPBR Surface 1.1: fuzz over a coat over a mixture of metal and of a rough body
-    /// below a dielectric boundary, which a thin film may cover.
+    /// **OpenPBR** — OpenPBR Surface 1.1 without volumes that scatter light: fuzz over a coat over a mixture of metal and of
+    /// a dielectric, opaque with a rough body or clear, which a thin film may cover.
     ///
     /// ```text
     /// f = F_z C_f f_fuzz + (1 − F_z E_f(V)) (C f_coat + S f_base)
-    /// f_base = C_s (1 − m) f_d + m min(1, ξ F_82) D G / (4 (N·L)(N·V)) + f_ms + f_body
+    /// f_base = C_s (1 − m) f_d + m min(1, ξ F_82) D G / (4 (N·L)(N·V)) + f_ms + (1 − w_τ) f_body
     /// S = T_V T_L (1 − C E_c(V)) Δ',   T_X = 1 + C (C_c^(1/(2 μ'_X)) − 1),   μ'² = 1 − (1 − μ²)/n_c²
     /// f_ms = m min(1, ξ F̄_82) F̄_82 (1 − E_1(V))(1 − E_1(L))/(π (1 − Ē_1))
     /// f_body = EON((1 − m) w_b C_b, σ) (1 − E_d(V))(1 − E_d(L))/(1 − Ē_d)
     /// F_82 = F_S(c) − c (1 − c)⁶ (1 − C_s) F_S(1/7) / (1/7 (6/7)⁶),   F_S = w_b C_b + (1 − w_b C_b)(1 − c)⁵
     /// Δ' = 1 + C δ (Δ − 1),   Δ = (1 − K)/(1 − E_b K),   K = (1 − ρ) F̄(n_c) + ρ (1 − (1 − F̄(n_c))/n_c²)
-    /// ρ = 1 + ((1 − m) F̄(η) + m) (r' − 1) between 1 and r',   E_b = m ξ F̄_82 + (1 − m)(w_b C_b + (1 − w_b C_b) F̄(η))
+    /// ρ = 1 + ((1 − m) F̄(η) + m) (r' − 1) between 1 and r',   E_b = m ξ F̄_82 + (1 − m)(w_τ + (1 − w_τ)(w_b C_b + (1 − w_b C_b) F̄(η)))
     /// n_a = 1 + C (n_c − 1),   n_b = n_a (1 + ε)/(1 − ε),   ε² = ξ ((n_s − n_a)/(n_s + n_a))²,   η = n_b/n_a
     /// r_c' = mix(r_c, (r_c⁴ + 0.005 mean(C_f) r_f⁵)^¼, F_z),   r' = mix(r, (r⁴ + (1 − 1/n_c) r_c'⁴)^¼, C)
+    /// thin:  f_t = (1 − m) w_τ (1 − F_z E_f(V)) T_V (1 − C E_c(V)) Δ' (τ D G/(4 |N·L| (N·V)) + …),  F_d → (1 − w_τ) F_d + w_τ ρ
+    ///        τ = (1 − F_d)² a/(1 − F_d² a²),   ρ = F_d + F_d a τ,   a = C_τ^(1/cos θ_t)
+    /// solid: I_t = (1 − m) w_τ (1 − F_z E_f(V)) T_V² (1 − C E_c(V)) Δ' (1 − F_d)/(1 − F(n_b)) I_glass
+    ///        of a body of n_b with σ = −ln(C_τ)/d_τ and V_d/s_τ;  d_τ = 0: σ = 0, and C_τ² before it
     /// f_fuzz = E_f(V) a²/(π |(a x + b z, a y, z)|⁴),   L = (x, y, z) with V in the plane y = 0
     /// ```
     ///
@@ -139,6 +87,12 @@ parameters! {
     /// | `roughness` | r | – | 0–1 | 0.3 |
     /// | `specular_roughness_anisotropy` | a | – | 0–1 | 0 |
     /// | `specular_ior` | n_s | – | 0.1–6 | 1.5 |
+    /// | `transmission_weight` | w_τ | – | 0–1 | 0 |
+    /// | `transmission_colour` | C_τ | sRGB | 0–255; after the depth d_τ | white |
+    /// | `transmission_depth` | d_τ | m | 0–100 | 0 |
+    /// | `transmission_dispersion_scale` | s_τ | – | 0–1 | 0 |
+    /// | `transmission_dispersion_abbe_number` | V_d | – | 1–100 | 20 |
+    /// | `geometry_thin_walled` | – | – | yes or no | no |
     /// | `coat_weight` | C | – | 0–1 | 0 |
     /// | `coat_colour` | C_c | sRGB | 0–255 | white |
     /// | `coat_roughness` | r_c | – | 0–1 | 0 |
@@ -152,18 +106,27 @@ parameters! {
     /// | `thin_film_thickness` | d | µm | 0–10 | 0.5 |
     /// | `thin_film_ior` | n_t | – | 0.1–6 | 1.4 |
     ///
+    /// **Transmission**: in the share w_τ of the dielectric, light passes the boundary instead of being scattered in the body.
+    /// Thin-walled, the surface is a sheet with two faces, as in `thin_glass`: smooth below α = 0.001, else it transmits the
+    /// lobe that it reflects, mirrored. Otherwise the object is a body, as in `glass`: light follows its own mesh, which must
+    /// be closed. The coat, the fuzz and the film are on the outside; light that leaves inside meets none of them, but
+    /// is coloured by the coat as where it entered. A rough body has the same α in all directions. With a weight of 0 none
+    /// of this is calculated. Left out are `transmission_scatter`, its anisotropy and subsurface scattering, which need a volume
+    /// that scatters light, and emission and opacity.
+    ///
     /// Sources: Z. Andersson and others (2026), *OpenPBR Surface specification 1.1.1*, Academy Software Foundation; where
     /// the text leaves a choice, and where it differs, Adobe's program *openpbr-bsdf* (2026). P. Kutz, M. Hašan, D. Edmondson (2021),
     /// *Novel Aspects of the Adobe Standard Material* (F_82); J. Portsmouth, P. Kutz, S. Hill (2024), *EON*; T. Zeltner,
     /// B. Burley, M. Chiang (2022), *Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines* (fuzz, with
     /// the authors' table); C. Kulla, A. Conty (2017), *Revisiting Physically Based Shading at Imageworks*; C. Kelemen,
     /// L. Szirmay-Kalos (2001) (body and boundary); O. Gulbrandsen (2014), *Artist Friendly Metallic Fresnel* (film over
-    /// metal); E. d'Eon (2021), *A Hitchhiker's Guide to Multiple Scattering* (Δ).
+    /// metal); G. G. Stokes (1862) (sheet); E. d'Eon (2021), *A Hitchhiker's Guide to Multiple Scattering* (Δ).
     ///
     /// **Deviations** from Adobe's program: the strength of metal is bounded, `min(1, ξ F)` (above ξ = 1, up to the factor
     /// ξ); albedos and mean reflectances are integrated, where it reads tables and fits (up to 0.6 % of the reference values
     /// under a coat, up to 0.19 of an albedo near an index of 1 at grazing angles); α is at least 0.001, where it is 10⁻⁶
-    /// there. From the text, as Adobe's program: roughening by the coat (82 % at r_c = 0.6), masking (68 % for rough metal at
+    /// there; all reflections in a sheet absorb, at the angle of the facet, as in the text, where it tints the sum for clear glass at N·V;
+    /// boundaries of bodies do not give back what is reflected several times. From the text, as Adobe's program: roughening by the coat (82 % at r_c = 0.6), masking (68 % for rough metal at
     /// 85°, 3 % at r = 0.3), multiple scattering of metal (25 % at r = 1), films below 30 nm (22 %), absorption by a partial
     /// coat (18 %), darkening (17 %), coupling of body and boundary (16 %), weights within EON (11 %), the index of the base
     /// under a partial coat (10 %), three wavelengths in films (0.03 over glass, 0.1 over copper), and fuzz that lifts the
@@ -171,7 +134,8 @@ parameters! {
     ///
     /// **Laws**: non-negative. Not reciprocal under a coat or fuzz, whose albedo is that for the viewer alone. Energy is not
     /// conserved: the albedo E_d of the boundary ignores a film, which may reflect far more (1.3 times what arrives), E_1
-    /// ignores anisotropy (1.05), and the coupling of a rough body gains (1.004).
+    /// ignores anisotropy (1.05), and the coupling of a rough body gains (1.004). Clear glass without a film loses and
+    /// gains nothing, neither as a sheet nor, if smooth, as a body.
     pub struct OpenPbr {
         /// `w_b`.
         base_weight: number = BASE_WEIGHT,
@@ -191,6 +155,18 @@ parameters! {
         specular_roughness_anisotropy: number = SPECULAR_ANISOTROPY,
         /// `n_s`.
         specular_ior: number = SPECULAR_IOR,
+        /// `w_τ`.
+        transmission_weight: number = TRANSMISSION_WEIGHT,
+        /// `C_τ`, linear.
+        transmission_colour: colour = TRANSMISSION_COLOUR,
+        /// `d_τ`, in m.
+        transmission_depth: number = TRANSMISSION_DEPTH,
+        /// `s_τ`.
+        transmission_dispersion_scale: number = DISPERSION_SCALE,
+        /// `V_d`.
+        transmission_dispersion_abbe_number: number = ABBE_NUMBER,
+        /// True for a sheet without an inside.
+        geometry_thin_walled: flag = THIN_WALLED,
         /// `C`.
         coat_weight: number = COAT_WEIGHT,
         /// `C_c`, linear.
@@ -256,6 +232,8 @@ pub struct Prepared {
     film: f32,
     /// n and k of metal under a film, from its colours at normal and grazing incidence.
     metal_index: [Vec3; 2],
+    /// The part of the dielectric base that is a thin sheet.
+    sheet: f32,
 }
 
 /// `a` to `b` for `t` from 0 to 1, exact at both ends.
@@ -324,7 +302,8 @@ impl Prepared {
         let mean = (f0 + (Vec3::ONE - f0) / 21.0 - tint / 126.0).clamp(Vec3::ZERO, Vec3::ONE);
 
         let (reflected, coat_reflected) = (mean_fresnel(ratio), mean_fresnel(m.coat_ior));
-        let dielectric_part = f0 + (Vec3::ONE - f0) * reflected;
+        // Light that passes counts as returned: what it meets inside is not known.
+        let dielectric_part = (f0 + (Vec3::ONE - f0) * reflected).lerp(Vec3::ONE, m.transmission_weight);
         let albedo =
             (m.metallic * m.specular_strength * mean + (1.0 - m.metallic) * dielectric_part).min(Vec3::ONE);
         let from_inside = 1.0 - (1.0 - coat_reflected) / (m.coat_ior * m.coat_ior);
@@ -345,6 +324,7 @@ impl Prepared {
             darkening: Vec3::ONE + (darkening - Vec3::ONE) * (c * m.coat_darkening),
             film: m.thin_film_weight * t * t * (3.0 - 2.0 * t),
             metal_index: metal_index(f0, m.specular_colour),
+            sheet: if m.geometry_thin_walled { m.transmission_weight } else { 0.0 },
         }
     }
 
@@ -359,6 +339,16 @@ impl Prepared {
             self.metal_index[0].extend(0.0),
             self.metal_index[1].extend(0.0),
         ]
+    }
+
+    /// True if the boundary does not spread the light that passes.
+    fn is_smooth(&self) -> bool {
+        self.alpha <= MINIMUM_ALPHA
+    }
+
+    /// The refractive index of a solid body, within the limits of arithmetic.
+    fn ior(&self) -> f32 {
+        self.indices.y.clamp(0.1, 10.0)
     }
 
     /// `F_82` without a film.
@@ -416,25 +406,37 @@ impl OpenPbr {
         Albedos::of([all, base, coat, LobeAlbedo::default()])
     }
 
+    /// A reflectance of the base with its film, over a refractive index n + i k.
+    fn filmed(&self, bare: Vec3, [n, k]: [Vec3; 2], cos_d: f32) -> Vec3 {
+        let p = &self.prepared;
+        let covered = |i: usize| {
+            let turns = self.thin_film_thickness / WAVELENGTHS[i];
+            thin_film(p.indices.x, self.thin_film_ior, n[i], k[i], turns, cos_d)
+        };
+        if p.film > 0.0 { bare.lerp(Vec3::from_array([0, 1, 2].map(covered)), p.film) } else { bare }
+    }
+
+    /// The reflectance of the dielectric boundary with its film.
+    fn boundary(&self, cos_d: f32) -> Vec3 {
+        let p = &self.prepared;
+        let bare = Vec3::splat(dielectric(p.ratio, cos_d));
+        self.filmed(bare, [Vec3::splat(p.indices.y), Vec3::ZERO], cos_d)
+    }
+
     /// The reflectance of the base, a mixture of a dielectric boundary and metal, both with their film.
     fn fresnel(&self, cos_d: f32) -> Vec3 {
         let p = &self.prepared;
-        let film = |bare: Vec3, [n, k]: [Vec3; 2]| {
-            let covered = |i: usize| {
-                let turns = self.thin_film_thickness / WAVELENGTHS[i];
-                thin_film(p.indices.x, self.thin_film_ior, n[i], k[i], turns, cos_d)
-            };
-            if p.film > 0.0 { bare.lerp(Vec3::from_array([0, 1, 2].map(covered)), p.film) } else { bare }
-        };
         let mut reflected = Vec3::ZERO;
         // Films are expensive, and most materials have only one of the two.
         if self.metallic < 1.0 {
-            let bare = Vec3::splat(dielectric(p.ratio, cos_d));
-            let covered = film(bare, [Vec3::splat(p.indices.y), Vec3::ZERO]);
+            let mut covered = self.boundary(cos_d);
+            if p.sheet > 0.0 {
+                covered = covered.lerp(self.sheet(covered, cos_d).reflectance, p.sheet);
+            }
             reflected += (1.0 - self.metallic) * self.specular_colour * covered;
         }
         if self.metallic > 0.0 {
-            let covered = film(p.metal(cos_d), p.metal_index);
+            let covered = self.filmed(p.metal(cos_d), p.metal_index, cos_d);
             reflected += self.metallic * (self.specular_strength * covered).min(Vec3::ONE);
         }
         reflected
@@ -446,11 +448,134 @@ impl OpenPbr {
         let passed = self.coat_colour.max(Vec3::splat(1e-9)).powf(0.5 / inside);
         Vec3::ONE.lerp(passed, self.coat_weight)
     }
+
+    /// What a thin sheet between two such boundaries reflects and transmits.
+    fn sheet(&self, boundary: Vec3, cos_d: f32) -> Slab {
+        let inside = refracted_cosine(cos_d, self.prepared.indices.y);
+        slab(boundary, oblique(self.transmission_colour, inside))
+    }
+
+    /// The sheet for light that meets several facets.
+    fn scattering_sheet(&self) -> Slab {
+        self.sheet(self.boundary(SCATTERED), SCATTERED)
+    }
+
+    /// The part of the light from below the base that passes the layers above it, towards a viewer at a cosine.
+    fn above(&self, mu: f32) -> Vec3 {
+        let mut above = Vec3::ONE;
+        if self.coat_weight > 0.0 {
+            let passes = missing(self.coat_weight * self.boundaries.at(mu).z);
+            above = self.through_coat(mu) * self.prepared.darkening * passes;
+        }
+        if self.fuzz_weight > 0.0 {
+            above *= missing(self.fuzz_weight * self.fuzz.at(mu).z);
+        }
+        above
+    }
+
+    /// The light that bounces between facets, `π f cos θ_l`, before it is coloured: what single reflection loses.
+    fn bounced(&self, l: Vec3, v: Vec3) -> f32 {
+        let [of_l, of_v] = [l, v].map(|d| missing(self.boundaries.at(d.z).x));
+        let shape = of_v * of_l * l.z / missing(self.boundaries.mean().x).max(1e-6);
+        shape.min(1.0)
+    }
+
+    /// The response to light behind a thin sheet, for its direction mirrored to the side of the viewer.
+    fn through_sheet(&self, l: Vec3, v: Vec3) -> Vec3 {
+        let p = &self.prepared;
+        let cos_d = 0.5 * (l + v).length();
+        let mut passed = Vec3::ZERO;
+        if !p.is_smooth() {
+            let once = self.sheet(self.boundary(cos_d), cos_d).transmittance;
+            passed += PI * l.z * facets(l, v, p.base) * once;
+        }
+        if p.alpha >= BOUNCES {
+            passed += self.bounced(l, v) * self.scattering_sheet().transmittance;
+        }
+        (1.0 - self.metallic) * p.sheet * self.above(v.z) * passed
+    }
+
+    /// The light that a smooth sheet lets straight through to a viewer at a cosine.
+    fn straight_through(&self, v: Vec3, mu: f32) -> Option<Sharp> {
+        let p = &self.prepared;
+        if p.sheet <= 0.0 || !p.is_smooth() || mu <= 0.0 {
+            return None;
+        }
+        let passed = (1.0 - self.metallic) * p.sheet * self.sheet(self.boundary(mu), mu).transmittance;
+        Some(Sharp::transmitted(-v, self.above(mu) * passed))
+    }
+
+    /// The inside of a body.
+    fn inside(&self) -> Interior {
+        let (p, scale) = (&self.prepared, self.transmission_dispersion_scale);
+        Interior {
+            ior: p.ior(),
+            cauchy_b: if scale > 0.0 {
+                cauchy_of_abbe(p.ior(), self.transmission_dispersion_abbe_number / scale)
+            } else {
+                0.0
+            },
+            alpha: if p.is_smooth() { 0.0 } else { p.alpha },
+            absorption: absorption::coefficient(self.transmission_colour, self.transmission_depth),
+        }
+    }
+
+    /// The part of the light from within a body that enters it at a cosine and leaves it elsewhere, over that of a body
+    /// without coat, film and tint.
+    fn entered(&self, mu: f32) -> Vec3 {
+        let p = &self.prepared;
+        // The way inside begins at the boundary of the body to air: what the coat and the film change about that.
+        let at = if p.is_smooth() { mu } else { SCATTERED };
+        let bare = (1.0 - dielectric(p.ior(), at)).max(1e-6);
+        let entered = (Vec3::ONE - self.boundary(at)) / bare;
+        // The coat colours the light once more where it leaves, as at this angle.
+        let left = if self.coat_weight > 0.0 { self.through_coat(mu) } else { Vec3::ONE };
+        let tint = if self.transmission_depth > 0.0 { Vec3::ONE } else { self.transmission_colour };
+        (1.0 - self.metallic) * self.transmission_weight * self.above(mu) * entered * left * tint * tint
+    }
+
+    /// The lobes of reflection, with that of a rough sheet: as many as there is room for.
+    fn lobes_beside(&self, reflected: Lobes) -> Lobes {
+        let p = &self.prepared;
+        if p.sheet <= 0.0 || p.is_smooth() {
+            return reflected;
+        }
+        let through = ((1.0 - self.metallic) * p.sheet).clamp(0.1, 0.6);
+        let mut all = *reflected.all();
+        all.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+        all[MAX_LOBES - 1] = (Lobe::refracted(p.base, 1.0), through / (1.0 - through));
+        Lobes::new(&all)
+    }
+}
+
+/// How light passes through surfaces with these parameters.
+fn passage_with(values: &Values) -> Passage {
+    passage(values.number(&TRANSMISSION_WEIGHT), values.choice(&THIN_WALLED) != 0)
+}
+
+/// The same, from the two parameters that decide it.
+fn passage(weight: f32, thin: bool) -> Passage {
+    match (weight > 0.0, thin) {
+        (false, _) => Passage::NONE,
+        (true, true) => Passage::SHEET,
+        (true, false) => Passage::BODY,
+    }
+}
+
+/// What an albedo leaves.
+fn missing(albedo: f32) -> f32 {
+    (1.0 - albedo).max(0.0)
 }
 
 impl ReflectionModel for OpenPbr {
-    const DECLARATION: Declaration =
-        built_in!("openpbr", "OpenPBR", Standard).ambient_by_albedo().anisotropic();
+    const DECLARATION: Declaration = built_in!("openpbr", "OpenPBR", Standard)
+        .ambient_by_albedo()
+        .anisotropic()
+        .transmitting()
+        .sharp()
+        .solid();
+
+    const PASSAGE: Option<fn(&Values) -> Passage> = Some(passage_with);
 
     const GROUPS: &'static [Group] = &[
         Group::new("Base", &["base_weight", "base_colour", "metallic", "base_diffuse_roughness"]),
@@ -462,6 +587,17 @@ impl ReflectionModel for OpenPbr {
                 "roughness",
                 "specular_roughness_anisotropy",
                 "specular_ior",
+            ],
+        ),
+        Group::new(
+            "Transmission",
+            &[
+                "transmission_weight",
+                "transmission_colour",
+                "transmission_depth",
+                "transmission_dispersion_scale",
+                "transmission_dispersion_abbe_number",
+                "geometry_thin_walled",
             ],
         ),
         Group::new(
@@ -490,36 +626,50 @@ impl ReflectionModel for OpenPbr {
         table: || FUZZ.iter().flat_map(|v| v.to_array()).collect(),
     });
 
+    const INTERIOR_ON_PAGES: Option<&'static str> = Some(include_str!("openpbr/interior.js"));
+
     fn curves(&self) -> Vec<Vec4> {
         let mut all = [self.boundaries.values(), self.fuzz.values()].concat();
         all.extend(self.prepared.values());
         all
     }
 
-    // The body is diffuse, everything else specular.
+    fn passage(&self) -> Passage {
+        passage(self.transmission_weight, self.geometry_thin_walled)
+    }
+
+    // The body is diffuse, everything else on its side specular.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let (l, v) = (frame.to_local(l), frame.to_local(v));
-        if l.z.min(v.z) <= 0.0 {
+        let p = &self.prepared;
+        let behind = l.z < 0.0 && p.sheet > 0.0;
+        if v.z <= 0.0 || l.z <= 0.0 && !behind {
             return Terms::default();
         }
         // At more grazing angles the quotients would leave the range of f32.
-        let (l, v) = (l.with_z(l.z.max(GRAZING)), v.with_z(v.z.max(GRAZING)));
-        let p = &self.prepared;
+        let (l, v) = (l.with_z(l.z.abs().max(GRAZING)), v.with_z(v.z.max(GRAZING)));
+        if behind {
+            return Terms::through(self.through_sheet(l, v));
+        }
         let cos_d = 0.5 * (l + v).length();
         let (of_l, of_v, mean) = (self.boundaries.at(l.z), self.boundaries.at(v.z), self.boundaries.mean());
-        let missing = |x: f32| (1.0 - x).max(0.0);
 
         let strength = self.specular_strength;
         let mut specular = PI * l.z * facets(l, v, p.base) * self.fresnel(cos_d);
-        if p.alpha >= 0.0016 {
+        if p.alpha >= BOUNCES {
             let shape = missing(of_v.x) * missing(of_l.x) * l.z / missing(mean.x).max(1e-6);
             let again = (strength * p.mean).min(Vec3::ONE) * p.mean;
             specular += self.metallic * shape.min(1.0) * again;
+            if p.sheet > 0.0 {
+                let part = (1.0 - self.metallic) * p.sheet * self.specular_colour;
+                specular += part * shape.min(1.0) * self.scattering_sheet().reflectance;
+            }
         }
 
         let rho = (1.0 - self.metallic) * p.f0;
         let coupled = missing(of_v.y) * missing(of_l.y) / missing(mean.y).max(1e-6);
         let mut diffuse = rho * eon(l.z, v.z, l.dot(v), self.base_diffuse_roughness, rho) * (coupled * l.z);
+        diffuse *= 1.0 - self.transmission_weight;
 
         if self.coat_weight > 0.0 {
             let coat = self.coat_weight;
@@ -543,22 +693,40 @@ impl ReflectionModel for OpenPbr {
         Terms::of(diffuse, specular)
     }
 
+    fn sharp(&self, v: Vec3, frame: &Frame) -> Sharps {
+        self.straight_through(v, frame.n.dot(v)).into_iter().collect()
+    }
+
+    fn interior(&self) -> Option<Interior> {
+        self.passage().solid.then(|| self.inside())
+    }
+
+    fn entering(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        self.entered(frame.n.dot(v).max(GRAZING))
+    }
+
     fn lobes(&self) -> Lobes {
         let p = &self.prepared;
         let coat = self.coat_weight * dielectric(self.coat_ior, lobes::OBLIQUE);
-        let body = (1.0 - self.metallic) * p.f0 + self.fuzz_weight * self.fuzz_colour;
+        let body = (1.0 - self.metallic) * (1.0 - self.transmission_weight) * p.f0
+            + self.fuzz_weight * self.fuzz_colour;
         let base = self.fresnel(lobes::OBLIQUE);
-        Lobes::coated(
+        let reflected = Lobes::coated(
             (Lobe::wide(p.coat), coat),
             Lobe::wide(p.base),
             (1.0 - coat) * body,
             (1.0 - coat) * base,
-        )
+        );
+        self.lobes_beside(reflected)
     }
 
     fn quantity(&self, symbol: &str, arguments: &[f32]) -> Option<Vec3> {
         let x = arguments.first().copied();
-        let missing = |albedo: f32| (1.0 - albedo).max(0.0);
+        match symbol {
+            "ρ_n" => return Some(self.scattering_sheet().reflectance),
+            "τ_n" => return Some(self.scattering_sheet().transmittance),
+            _ => {}
+        }
         Some(Vec3::splat(match symbol {
             "U" => missing(self.boundaries.at(x?).x),
             "U_m" => missing(self.boundaries.mean().x),

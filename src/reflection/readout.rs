@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::optics::equivalence;
+use crate::optics::{equivalence, fresnel::normal_reflectance, refraction::critical_angle};
 
 /// A number or colour derived from the parameters of a surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +27,20 @@ impl Readout {
             help: "The fraction of light that the surface reflects at normal incidence, in red, green and blue.",
             value: ReadoutValue::Reflectance(f0),
         }
+    }
+
+    /// The reflectance at normal incidence and the critical angle of a clear body's refractive index.
+    #[must_use]
+    pub fn of_boundary(ior: f32) -> Vec<Self> {
+        vec![
+            Self::of_f0(Vec3::splat(normal_reflectance(ior, 0.0))),
+            Self {
+                symbol: "θ_c",
+                label: "critical angle in degrees",
+                help: "The largest angle from the inner normal at which light can leave the body, asin 1/n. Beyond it, all light is reflected back inside.",
+                value: ReadoutValue::Number(critical_angle(ior).to_degrees()),
+            },
+        ]
     }
 
     /// The width of the distribution of microfacets.

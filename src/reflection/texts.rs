@@ -125,6 +125,7 @@ pub(super) const fn equation<const N: usize>(text: &'static str) -> ([EquationPa
             b"ambient" => Some(Term::Ambient),
             b"diffuse" => Some(Term::Diffuse),
             b"specular" => Some(Term::Specular),
+            b"transmitted" => Some(Term::Transmitted),
             _ => None,
         };
         if let Some(term) = term {
@@ -177,7 +178,7 @@ impl Declaration {
                 b"source" => all.source = text,
                 b"summary" => all.summary = text,
                 b"laws" => all.laws = laws(text),
-                b"synonyms" | b"total" | b"ambient" | b"diffuse" | b"specular" => {}
+                b"synonyms" | b"total" | b"ambient" | b"diffuse" | b"specular" | b"transmitted" => {}
                 b"where" | b"is" | b"by" | b"when" => {}
                 _ => panic!("a line of the texts begins with another word"),
             }
@@ -234,7 +235,7 @@ mod tests {
 
     const TEXT: &str = "author: A. Author 2000\nsource: A. Author (2000): Title\nsummary: It shines.\n\
         synonyms: metal, brushed metal\nlaws: reciprocal, energy conserving\n\n# The equation.\n\
-        total: I = I_d\ndiffuse: I_d = c F\n\n\
+        total: I = I_d + I_t\ndiffuse: I_d = c F\ntransmitted: I_t = c\n\n\
         where: c = 1\nis: first: one\nby: B. Author 2001\nwhen: form = a, b\nwhen: shape = d\n\n\
         where: c = 2\nis: second\n\nwhere: F\nis: third\nwhen: form = e\n";
 
@@ -247,10 +248,10 @@ mod tests {
         assert_eq!((d.author, d.source), ("A. Author 2000", "A. Author (2000): Title"));
         assert_eq!((d.summary, d.synonyms), ("It shines.", &["metal", "brushed metal"][..]));
         assert_eq!(d.laws, Laws { reciprocal: true, energy_conserving: true, non_negative: false });
-        let (parts, _) = equation::<2>(TEXT);
+        let (parts, _) = equation::<3>(TEXT);
         assert_eq!(
             parts.map(|part| (part.term, part.text)),
-            [(Term::Total, "I = I_d"), (Term::Diffuse, "I_d = c F")]
+            [(Term::Total, "I = I_d + I_t"), (Term::Diffuse, "I_d = c F"), (Term::Transmitted, "I_t = c")]
         );
         let (all, count) = quantities::<3>(TEXT, LISTS);
         assert_eq!(count, 3);

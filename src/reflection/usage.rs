@@ -118,10 +118,17 @@ mod tests {
         for l in &directions {
             for v in &directions {
                 let terms = surface.response(*l, *v, &Frame::LOCAL);
-                let parts = [terms.ambient, terms.diffuse, terms.specular];
+                let parts = terms.each();
                 out.extend(parts.iter().flat_map(|t| t.to_array()).map(f32::to_bits));
             }
         }
+        // What is behind the surface.
+        for l in &directions {
+            let terms = surface.response(-*l, directions[0], &Frame::LOCAL);
+            out.extend(terms.transmitted.to_array().map(f32::to_bits));
+        }
+        let inside = surface.interior().map(|inside| format!("{inside:?}"));
+        out.extend(inside.into_iter().flat_map(String::into_bytes).map(u32::from));
         out
     }
 

@@ -14,15 +14,18 @@ use crate::{
     optics::{
         albedo::{NODES, Spacing},
         lobes::MAX_LOBES,
+        sharp,
     },
     parameter::{Parameter, Values, lanes},
-    reflection::{Ambient, Family, ModelEntry},
+    reflection::{Ambient, Family, ModelEntry, Passage},
     shader::{
         Source,
         compose::{
-            ALBEDO, CHANNELS, Composed, Composer, DISPLAY, EVALUATE, EXTENDED, LIGHT_ALONE, LIGHTS, LOOP,
-            OPTICS, PANORAMA, SAMPLING, SEEN, SHADING, SHADING_ALONE, Sources, WRAPPER, parameter_struct,
+            ABSORPTION, ALBEDO, BODY, CHANNELS, Composed, Composer, DISPERSION, DISPLAY, EVALUATE, EXTENDED,
+            HIERARCHY, INSIDE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING,
+            SHADING_ALONE, Sources, THROUGH, TRANSMISSION, WRAPPER, parameter_struct,
         },
+        definitions::definition,
     },
     shading::{self, ShadingEntry},
     text::template::{chosen, filled},
@@ -71,14 +74,35 @@ pub fn named_curves(model: &ModelEntry) -> String {
     text
 }
 
+/// The constant that tells a model whose parameters decide it, or one from a file, whether light passes through the surfaces that are drawn. What
+/// only such light needs is then no part of the shaders of other surfaces.
+#[must_use]
+pub(crate) fn passes(model: &ModelEntry, passage: Passage, text: &str) -> String {
+    if model.passage_varies() || text.contains("LIGHT_PASSES") {
+        part("passes", &[("passes", &passage.transmits)])
+    } else {
+        String::new()
+    }
+}
+
 /// Adds the row of a model, and the model.
-fn push_model(c: &mut Composer, model: &ModelEntry, more: &str) {
+fn push_model(c: &mut Composer, model: &ModelEntry, passage: Passage, more: &str) {
     c.push("(row)", &row_struct(model, more));
     if model.has_curve() {
         c.source(&ALBEDO);
     }
     if !model.curves().is_empty() {
         c.push("(curves)", &named_curves(model));
+    }
+    if model.declaration.transmits {
+        TRANSMISSION.iter().for_each(|s| c.source(s));
+    }
+    if model.declaration.sharp {
+        c.push("(sharp directions)", &part("sharp", &[]));
+    }
+    let passes = passes(model, passage, c.text(&model.declaration.wgsl));
+    if !passes.is_empty() {
+        c.push("(passage)", &passes);
     }
     c.source(&model.declaration.wgsl);
     if model.declaration.ambient == Ambient::Albedo {
@@ -182,8 +206,10 @@ pub fn light_dispatch(lights: &[LightEntry]) -> String {
 }
 
 /// The files that every source for drawing needs besides the vocabulary, and those for other uses.
-pub(crate) const SHARED: [Source; 12] =
-    [ALBEDO, PANORAMA, LIGHTS, SAMPLING, SHADING, LOOP, EXTENDED, CHANNELS, DISPLAY, WRAPPER, SEEN, EVALUATE];
+pub(crate) const SHARED: [Source; 17] = [
+    ALBEDO, PANORAMA, DISPERSION, ABSORPTION, LIGHTS, SAMPLING, SHADING, HIERARCHY, INSIDE, THROUGH, LOOP,
+    EXTENDED, CHANNELS, DISPLAY, WRAPPER, SEEN, EVALUATE,
+];
 
 /// The table from which a single light type reads the numbers of its files: one row, see [`compose_light`].
 pub const FILE_TABLE: &str = "file_table";
@@ -231,31 +257,67 @@ pub fn compose_shading(sources: &Sources, shading: &ShadingEntry) -> Composed {
     c.composed
 }
 
-/// The complete source for drawing with a model and a shading model under the given light types, those of the
-/// scene: an error in another type does not affect the picture.
+/// Adds the way of light through a solid body of a model, or that there is none.
+fn push_body(c: &mut Composer, model: &str, solid: bool, extent: bool) {
+    if !solid {
+        c.push("(no body)", &part("opaque", &[]));
+        return;
+    }
+    if !extent {
+        c.push("(no light with extent)", &part("no_extent", &[]));
+    }
+    c.push(BODY, &part("solid", &[]));
+    if definition(model, "entering").is_none() {
+        c.push("(all enters)", &part("entering", &[]));
+    }
+    [DISPERSION, ABSORPTION, HIERARCHY, INSIDE, THROUGH].iter().for_each(|source| c.source(source));
+}
+
+/// The parts of the light loop that depend on whether light passes through a surface, and on whether it does so without
+/// spreading.
+#[must_use]
+pub(crate) fn sides(passage: Passage, extent: bool) -> String {
+    let side = if passage.transmits { "transmits" } else { "reflects" };
+    let names = match (extent || passage.solid, passage.sharp) {
+        (false, _) => side.to_owned(),
+        (true, false) if passage.solid => format!("{side} spread radiance"),
+        (true, false) => format!("{side} spread"),
+        (true, true) => format!("{side} unspread radiance"),
+    };
+    part(&names, &[("most", &sharp::MOST)])
+}
+
+/// The complete source for drawing surfaces of a model through which light passes in some way, with a shading model under
+/// the given light types, those of the scene: an error in another type does not affect the picture.
 #[must_use]
 pub fn compose(
     sources: &Sources,
-    model: &ModelEntry,
+    (model, passage): (&ModelEntry, Passage),
     shading: &ShadingEntry,
     lights: &[LightEntry],
 ) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().chain([&LIGHTS, &SHADING]).for_each(|s| c.source(s));
     let extent = any_extent(lights);
-    if extent {
+    let solid = passage.solid;
+    if extent || solid {
         c.source(&SAMPLING);
     }
-    let words = format!(
+    let mut words = format!(
         "    shading: array<vec4<u32>, {}>,\n    lobes: array<vec4<f32>, {MAX_LOBES}>,\n",
         shading::PARAMETER_WORDS / 4
     );
-    push_model(&mut c, model, &words);
-    if extent {
+    if solid {
+        words.push_str("    interior: array<vec4<f32>, 2>,\n");
+    }
+    push_model(&mut c, model, passage, &words);
+    if extent || solid {
         c.push("(lobes)", &part("lobes", &[]));
     }
     lights.iter().for_each(|light| push_light(&mut c, light));
     c.push("(light types)", &light_dispatch(lights));
+    c.push("(sides of the surface)", &sides(passage, extent));
+    push_body(&mut c, sources.text(&model.declaration.wgsl), solid, extent);
     c.source(&LOOP);
     if extent {
         c.source(&EXTENDED);
@@ -267,6 +329,10 @@ pub fn compose(
     c.push("(channels)", &debug::wgsl());
     c.source(&DISPLAY);
     c.source(&WRAPPER);
+    if solid {
+        // Only what follows the wrapper knows what it imports.
+        c.push("(the place of the body)", &part("placement", &[]));
+    }
     c.composed
 }
 
@@ -339,13 +405,14 @@ pub struct File {
 #[must_use]
 pub fn files(
     sources: &Sources,
-    model: &ModelEntry,
+    (model, passage): (&ModelEntry, Passage),
     shading: &ShadingEntry,
     lights: &[LightEntry],
 ) -> Vec<File> {
     let known = OPTICS
         .iter()
-        .chain([&ALBEDO, &PANORAMA])
+        .chain(TRANSMISSION)
+        .chain([&ALBEDO, &PANORAMA, &DISPERSION, &ABSORPTION])
         .map(|s| (Part::Vocabulary, s))
         .chain(lights.iter().map(|l| (Part::LightType, &l.declaration.wgsl)))
         .chain([
@@ -355,6 +422,9 @@ pub fn files(
             (Part::Vocabulary, &SAMPLING),
             (Part::Loop, &LOOP),
             (Part::Loop, &EXTENDED),
+            (Part::Loop, &HIERARCHY),
+            (Part::Loop, &INSIDE),
+            (Part::Loop, &THROUGH),
             (Part::ShadingModel, &shading.declaration.wgsl),
             (Part::Channels, &CHANNELS),
             (Part::Wrapper, &DISPLAY),
@@ -368,18 +438,19 @@ pub fn files(
         let edited = !custom && source.is_some_and(|(_, s)| differs(s));
         File { part: source.map_or(Part::Import, |(part, _)| *part), path: path.to_owned(), edited }
     };
-    let composed = compose(sources, model, shading, lights);
+    let composed = compose(sources, (model, passage), shading, lights);
     let mut all: Vec<_> = composed.map.files().filter(|path| !path.starts_with('(')).map(file).collect();
     all.sort_by_key(|file| file.part);
     all
 }
 
-/// The source for evaluating a single model in a compute pass: directions in, terms out.
+/// The source for evaluating a single model in a compute pass: directions in, terms out. It has all that any surface of the
+/// model needs.
 #[must_use]
 pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().for_each(|s| c.source(s));
-    push_model(&mut c, model, "");
+    push_model(&mut c, model, model.declaration.passage(), "");
     c.source(&EVALUATE);
     c.composed
 }
@@ -389,12 +460,39 @@ mod tests {
     use super::*;
     use crate::registry::Registry;
 
+    /// The first model, which is opaque.
+    fn first(registry: &Registry) -> (&ModelEntry, Passage) {
+        (&registry.models()[0], Passage::NONE)
+    }
+
+    #[test]
+    fn what_lets_light_through_is_only_where_light_passes() {
+        let registry = Registry::builtin();
+        let model = registry.model("openpbr").expect("built in");
+        let shading = &registry.shading_models()[0];
+        let of = |passage| compose(&Sources::default(), (model, passage), shading, registry.lights()).text;
+        let [opaque, sheet, body] = [Passage::NONE, Passage::SHEET, Passage::BODY].map(of);
+        let has = |text: &str| {
+            ["const LIGHT_PASSES: bool = true;", "sharp(i, v,", "fn follow_inside"]
+                .map(|what| text.contains(what))
+        };
+        assert_eq!(has(&opaque), [false; 3]);
+        assert_eq!(has(&sheet), [true, true, false]);
+        assert_eq!(has(&body), [true, false, true]);
+        // Others have no such constant.
+        let glass = registry.model("glass").expect("built in");
+        let drawn = (glass, glass.declaration.passage());
+        let text = compose(&Sources::default(), drawn, shading, registry.lights()).text;
+        assert_eq!(has(&text), [false, true, true]);
+    }
+
     #[test]
     fn every_line_leads_back_to_its_file() {
         let registry = Registry::builtin();
         for model in registry.models() {
             for shading in registry.shading_models() {
-                let composed = compose(&Sources::default(), model, shading, registry.lights());
+                let drawn = (model, model.passage(&Values::default()));
+                let composed = compose(&Sources::default(), drawn, shading, registry.lights());
                 let pieces =
                     [OPTICS[0], OPTICS[1], LOOP, WRAPPER, model.declaration.wgsl, shading.declaration.wgsl];
                 for (i, line) in composed.text.lines().enumerate() {
@@ -412,8 +510,7 @@ mod tests {
         let registry = Registry::builtin();
         let mut sources = Sources::default();
         sources.edit("loop.wgsl", "// edited");
-        let composed =
-            compose(&sources, &registry.models()[0], &registry.shading_models()[0], registry.lights());
+        let composed = compose(&sources, first(&registry), &registry.shading_models()[0], registry.lights());
         assert!(composed.text.contains("// edited"));
         assert!(!composed.text.contains("fn illuminate"));
     }
@@ -428,8 +525,9 @@ mod tests {
         sources.edit("shading/noise.wgsl", "fn noise() {}");
         let (model, shading) =
             (registry.model("phong").expect("there"), registry.shading_model("gouraud").expect("there"));
-        let all = files(&sources, model, shading, registry.lights());
-        let composed = compose(&sources, model, shading, registry.lights());
+        let drawn = (model, Passage::NONE);
+        let all = files(&sources, drawn, shading, registry.lights());
+        let composed = compose(&sources, drawn, shading, registry.lights());
         let real = composed.map.files().filter(|path| !path.starts_with('(')).count();
         assert_eq!(all.len(), real);
         let of = |part: Part| {
@@ -517,11 +615,10 @@ mod tests {
     fn a_source_holds_the_light_types_that_are_asked_for_and_no_other() {
         let registry = Registry::builtin();
         let lights = registry.lights_in(registry.light_set(["spot"]));
-        let composed =
-            compose(&Sources::default(), &registry.models()[0], &registry.shading_models()[0], &lights);
+        let composed = compose(&Sources::default(), first(&registry), &registry.shading_models()[0], &lights);
         let types: Vec<_> = composed.map.files().filter(|path| path.starts_with("light/")).collect();
         assert_eq!(types, ["light/spot.wgsl"]);
-        let unlit = compose(&Sources::default(), &registry.models()[0], &registry.shading_models()[0], &[]);
+        let unlit = compose(&Sources::default(), first(&registry), &registry.shading_models()[0], &[]);
         assert_eq!(
             crate::shader::whole::validate_drawing(&unlit, true),
             Ok(()),

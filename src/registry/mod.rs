@@ -22,7 +22,7 @@ mod light_set;
 
 use std::{collections::HashSet, path::PathBuf, sync::Arc};
 
-use bevy::ecs::resource::Resource;
+use bevy_ecs::resource::Resource;
 
 use error::Mistake;
 pub use error::RegistrationError;

@@ -15,6 +15,7 @@ use bevy::{
 use super::converge::Part;
 use crate::{
     channel::Setting,
+    debug,
     light::{LightRecord, MAX_LIGHTS},
     optics::{TermSelection, colour::Encoding, tone::exposure_factor},
     parameter::Table,
@@ -37,6 +38,10 @@ const LOOK_NUMBERS: u32 = 2;
 pub const LIGHT_BYTES: usize = 48;
 /// Initial capacity of the parameter buffer, in words: four for each light.
 const WORDS: usize = 4 * MAX_LIGHTS;
+
+/// Maximum number of ways through a rough body for the channel of the light that remains, whose colours are no mean of
+/// others, so that one frame takes them all.
+pub const REMAINING_SAMPLES: u32 = 32;
 
 /// The displayed terms of the equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Resource)]
@@ -198,6 +203,8 @@ pub fn illumination_bytes(
     let lights = &lights[..lights.len().min(MAX_LIGHTS)];
     let places = Places::of(lights);
     let mut bytes = vec![0u8; HEADER_BYTES + MAX_LIGHTS * LIGHT_BYTES];
+    let of_remaining = channel.is_some_and(|setting| setting.channel.is_of_remaining());
+    let samples = if of_remaining { samples.min(REMAINING_SAMPLES) } else { samples };
     bytes[SAMPLES_AT..][..SAMPLE_BYTES].copy_from_slice(&sample_bytes(Err(samples)));
     let mut put = |at: usize, value: [u8; 4]| bytes[at..at + 4].copy_from_slice(&value);
     put(0, (lights.len() as u32).to_le_bytes());
@@ -210,6 +217,9 @@ pub fn illumination_bytes(
             put(SAMPLES_AT + 8, LOOK_NUMBERS.to_le_bytes());
         }
         put(16, channel.code().to_le_bytes());
+        if channel.is_of_remaining() {
+            put(4, debug::REMAINING.to_le_bytes());
+        }
         put(20, light.map_or(u32::MAX, |light| light as u32).to_le_bytes());
         let directed = channel.has_light() && !channel.is_picture();
         let low = if directed { f32::from(u8::from(*from_position)) } else { *low };
@@ -267,7 +277,13 @@ pub(crate) mod layout {
 
 #[cfg(test)]
 mod tests {
+    use naga::front::wgsl;
+
     use super::*;
+    use crate::shader::{
+        check::struct_layout,
+        compose::{LIGHTS, OPTICS},
+    };
 
     #[test]
     fn more_lights_than_fit_are_left_out() {
@@ -286,5 +302,20 @@ mod tests {
         let (bytes, _) =
             illumination_bytes(&[], TermSelection::All, &Display::default(), None, LightSamples::DEFAULT);
         assert!(smallest.is_some_and(|most| bytes.len() as u64 <= most), "{} of {smallest:?}", bytes.len());
+    }
+
+    #[test]
+    fn lights_lie_where_rust_puts_them() {
+        let module = wgsl::parse_str(&format!("{}{}", OPTICS[0].text, LIGHTS.text)).expect("valid WGSL");
+        let members = |module, name| struct_layout(module, name).map(|(members, _)| members);
+        let owned = |layout: &[(&str, usize)]| {
+            layout.iter().map(|(n, at)| ((*n).to_owned(), *at)).collect::<Vec<_>>()
+        };
+        assert_eq!(members(&module, "Light"), Some(owned(&layout::LIGHT)));
+        assert_eq!(members(&module, "Illumination"), Some(owned(&layout::ILLUMINATION)));
+        // The wrong twin: without the padding required by vec3, the layouts differ.
+        let packed = wgsl::parse_str("struct Light { position: vec3<f32>, light_type: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, first_word: u32 }")
+            .expect("valid WGSL");
+        assert_ne!(members(&packed, "Light"), Some(owned(&layout::LIGHT)));
     }
 }

@@ -1,11 +1,14 @@
-//! The Material implementation, generic over the model: one Material type per model.
+//! The Material implementation, of one type for all models.
 //!
 //! A material contains the parameter table of all objects with its model, whose layout follows from the
 //! declaration, the shared light buffer, and the composed shader of its model and shading model, which is
 //! part of the pipeline key. Each object has the index of its table row as its mesh tag, so all objects with
 //! the same model and shading model share one material and are drawn together.
+//!
+//! A type for each model would differ in nothing but its name, and Bevy compiles and runs its systems of materials once
+//! for each type.
 
-use std::{collections::HashMap, marker::PhantomData};
+use std::collections::HashMap;
 
 use bevy::{
     ecs::system::{SystemParamItem, lifetimeless::SRes},
@@ -24,7 +27,6 @@ use bevy::{
 };
 
 use super::{illumination::LightBuffers, trial::MARK};
-use crate::{custom::CustomFile, reflection::ReflectionModel};
 
 /// The tangent of the vertex. Three numbers instead of Bevy's four: the bitangent is always `n × t`.
 pub const TANGENT: MeshVertexAttribute =
@@ -48,11 +50,13 @@ pub(super) enum Vertices {
     Apart,
 }
 
-/// The contents of a material, equal for all model types.
+/// The contents of a material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialInputs {
     /// The parameters of all objects with the model.
     pub parameters: Handle<ShaderBuffer>,
+    /// The hierarchy of the object's mesh, for models of solid bodies; for others any buffer.
+    pub solid: Handle<ShaderBuffer>,
     /// The lights of the scene, shared by all materials.
     pub illumination: LightBuffers,
     /// The composed shader of model and shading model.
@@ -63,14 +67,13 @@ pub struct MaterialInputs {
     pub gamma_naive: bool,
 }
 
-/// The material of objects with the model `M`; custom models share [`CustomFile`].
-#[derive(Asset, Clone, Debug)]
-pub struct ModelMaterial<M: Clone + 'static> {
+/// The material of objects with some reflection model and shading model, whose shader it has.
+#[derive(Asset, Clone, Debug, TypePath)]
+pub struct ModelMaterial {
     inputs: MaterialInputs,
-    model: PhantomData<fn() -> M>,
 }
 
-/// The key of the pipelines of one model type.
+/// The key of the pipelines.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct PipelineKey {
     shader: Handle<Shader>,
@@ -79,7 +82,7 @@ pub struct PipelineKey {
 }
 
 // Written by hand, because a uniform buffer shared between materials cannot be derived.
-impl<M: Clone + 'static> AsBindGroup for ModelMaterial<M> {
+impl AsBindGroup for ModelMaterial {
     type Data = PipelineKey;
     type Param = SRes<RenderAssets<GpuShaderBuffer>>;
 
@@ -100,14 +103,15 @@ impl<M: Clone + 'static> AsBindGroup for ModelMaterial<M> {
         _: bool,
     ) -> Result<UnpreparedBindGroup, AsBindGroupError> {
         let LightBuffers { lights, words } = &self.inputs.illumination;
-        bound(buffers, [(0, &self.inputs.parameters), (1, lights), (2, words)])
+        let MaterialInputs { parameters, solid, .. } = &self.inputs;
+        bound(buffers, [(0, parameters), (1, lights), (2, words), (3, solid)])
     }
 
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
         let storage = || storage_buffer_read_only_sized(false, None);
         BindGroupLayoutEntries::sequential(
             ShaderStages::VERTEX_FRAGMENT,
-            (storage(), uniform_buffer_sized(false, None), storage()),
+            (storage(), uniform_buffer_sized(false, None), storage(), storage()),
         )
         .to_vec()
     }
@@ -143,24 +147,7 @@ pub(super) fn set_shader(
     }
 }
 
-impl<M: Clone + 'static> From<MaterialInputs> for ModelMaterial<M> {
-    fn from(inputs: MaterialInputs) -> Self {
-        Self { inputs, model: PhantomData }
-    }
-}
-
-// Written by hand, so that authors of models need not know Bevy's reflection.
-impl<M: Clone + 'static> TypePath for ModelMaterial<M> {
-    fn type_path() -> &'static str {
-        std::any::type_name::<Self>()
-    }
-
-    fn short_type_path() -> &'static str {
-        std::any::type_name::<Self>()
-    }
-}
-
-impl<M: Clone + 'static> Material for ModelMaterial<M> {
+impl Material for ModelMaterial {
     // The Commonality Analysis assumes that objects neither shadow nor light each other (AB5, AB6), so no depth-only passes.
     fn enable_prepass() -> bool {
         false
@@ -188,97 +175,66 @@ impl<M: Clone + 'static> Material for ModelMaterial<M> {
     }
 }
 
-/// Adds a material of some model type to an entity, or removes it: the same two functions for every model,
-/// looked up by id.
-#[derive(Clone, Copy)]
-pub struct Attachment {
-    /// Adds the material.
-    pub attach: fn(&mut EntityWorldMut, MaterialInputs),
-    /// Removes the material.
-    pub detach: fn(&mut EntityWorldMut),
-    /// Drops the materials that use a light buffer.
-    pub(super) forget: fn(&mut World, AssetId<ShaderBuffer>),
+/// Registers the material with the renderer.
+pub(super) fn plugin(app: &mut App) {
+    app.add_plugins(MaterialPlugin::<ModelMaterial>::default()).init_resource::<SharedMaterials>();
 }
 
-/// The [`Attachment`] of every registered model.
-#[derive(Default, Resource)]
-pub struct Attachments {
-    by_id: HashMap<&'static str, Attachment>,
-    /// The attachment of all custom models, whose ids may change.
-    own: Option<Attachment>,
-}
-
-impl Attachments {
-    /// The attachment of a model that is or was registered.
-    #[must_use]
-    pub fn get(&self, id: &str) -> Option<Attachment> {
-        self.by_id.get(id).copied().or(self.own)
-    }
-
-    pub(super) fn all(&self) -> Vec<Attachment> {
-        self.by_id.values().copied().chain(self.own).collect()
-    }
-}
-
-/// Registers the Material type of the model `M` with the renderer.
-pub(super) fn add_model_material<M: ReflectionModel>(app: &mut App) {
-    let attachment = attachment::<M>(app);
-    app.world_mut().resource_mut::<Attachments>().by_id.insert(M::DECLARATION.id, attachment);
-}
-
-/// Registers the Material type of all custom models.
-pub(super) fn add_custom_material(app: &mut App) {
-    let attachment = attachment::<CustomFile>(app);
-    app.world_mut().resource_mut::<Attachments>().own = Some(attachment);
-}
-
-/// The attachment of a material type, which is registered with the renderer.
-fn attachment<M: Clone + 'static>(app: &mut App) -> Attachment {
-    if !app.is_plugin_added::<MaterialPlugin<ModelMaterial<M>>>() {
-        app.add_plugins(MaterialPlugin::<ModelMaterial<M>>::default());
-    }
-    app.init_resource::<Attachments>();
-    Attachment { attach: attach::<M>, detach: detach::<M>, forget: forget::<M> }
-}
-
-/// The materials of one model by shader and light buffer: one for each shading model in use, shared by the
+/// The materials by shader, light buffer and, for solid bodies, hierarchy: one for each pair of models in use, shared by the
 /// views without overrides, and separate for each view with overrides.
-#[derive(Resource)]
-struct SharedMaterials<M: Clone + 'static>(
-    HashMap<(AssetId<Shader>, AssetId<ShaderBuffer>), Handle<ModelMaterial<M>>>,
-);
+#[derive(Default, Resource)]
+struct SharedMaterials(HashMap<[bevy::asset::UntypedAssetId; 3], SharedMaterial>);
 
-fn attach<M: Clone + 'static>(entity: &mut EntityWorldMut, inputs: MaterialInputs) {
+struct SharedMaterial {
+    material: Handle<ModelMaterial>,
+    /// True if it holds the hierarchy of a mesh.
+    is_body: bool,
+}
+
+/// True if there are other handles of an asset.
+pub(super) fn is_held_elsewhere<A: Asset>(handle: &Handle<A>) -> bool {
+    matches!(handle, Handle::Strong(held) if std::sync::Arc::strong_count(held) > 1)
+}
+
+/// Adds the material with these contents to an entity, or replaces its material with that one.
+pub(super) fn attach(entity: &mut EntityWorldMut, inputs: MaterialInputs) {
     let handle = entity.world_scope(|world: &mut World| {
-        let key = (inputs.shader.id(), inputs.illumination.lights.id());
-        world.get_resource_or_insert_with(|| SharedMaterials::<M>(HashMap::new()));
-        world.resource_scope(|world, mut shared: Mut<SharedMaterials<M>>| {
-            let mut materials = world.resource_mut::<Assets<ModelMaterial<M>>>();
-            let Some(handle) = shared.0.get(&key) else {
-                let handle = materials.add(ModelMaterial::<M>::from(inputs));
-                shared.0.insert(key, handle.clone());
-                return handle;
+        let key = [
+            inputs.shader.id().untyped(),
+            inputs.illumination.lights.id().untyped(),
+            inputs.solid.id().untyped(),
+        ];
+        world.resource_scope(|world, mut shared: Mut<SharedMaterials>| {
+            let mut materials = world.resource_mut::<Assets<ModelMaterial>>();
+            let Some(SharedMaterial { material: handle, .. }) = shared.0.get(&key) else {
+                // A slider makes a body of each of its positions: those that nobody sees go, with their hierarchies.
+                shared.0.retain(|_, shared| !shared.is_body || is_held_elsewhere(&shared.material));
+                let is_body = inputs.solid != inputs.illumination.words;
+                let material = materials.add(ModelMaterial { inputs });
+                shared.0.insert(key, SharedMaterial { material: material.clone(), is_body });
+                return material;
             };
             // A table that was rebuilt for more objects, or another encoding.
             if let Some(material) = materials.get(handle)
                 && material.inputs != inputs
             {
-                let _ = materials.insert(handle.id(), ModelMaterial::<M>::from(inputs));
+                let _ = materials.insert(handle.id(), ModelMaterial { inputs });
             }
             handle.clone()
         })
     });
-    if entity.get::<MeshMaterial3d<ModelMaterial<M>>>().map(|m| &m.0) != Some(&handle) {
+    if entity.get::<MeshMaterial3d<ModelMaterial>>().map(|m| &m.0) != Some(&handle) {
         entity.insert(MeshMaterial3d(handle));
     }
 }
 
-fn detach<M: Clone + 'static>(entity: &mut EntityWorldMut) {
-    entity.remove::<MeshMaterial3d<ModelMaterial<M>>>();
+/// Removes the material of an entity.
+pub(super) fn detach(entity: &mut EntityWorldMut) {
+    entity.remove::<MeshMaterial3d<ModelMaterial>>();
 }
 
-fn forget<M: Clone + 'static>(world: &mut World, illumination: AssetId<ShaderBuffer>) {
-    if let Some(mut shared) = world.get_resource_mut::<SharedMaterials<M>>() {
-        shared.0.retain(|(_, lit_by), _| *lit_by != illumination);
-    }
+/// Drops the materials that use a light buffer.
+pub(super) fn forget(world: &mut World, illumination: AssetId<ShaderBuffer>) {
+    let mut shared = world.resource_mut::<SharedMaterials>();
+    shared.0.retain(|[_, lit_by, _], _| *lit_by != illumination.untyped());
 }

@@ -107,7 +107,7 @@ type Views<'w, 's> =
 fn extract(
     views: Extract<Views>,
     shared: Extract<Res<IlluminationBuffer>>,
-    known: Query<(), With<Joins>>,
+    known: Query<Entity, With<Joins>>,
     mut samples: ResMut<Samples>,
     noise: Res<Noise>,
     convergence: Extract<Res<Convergence>>,
@@ -115,18 +115,19 @@ fn extract(
 ) {
     samples.all = convergence.target;
     noise.keep(|view| views.contains(view));
+    let mut joining = HashSet::new();
     for (view, entity, drawing, stage) in &views {
-        let Some(part) = drawing.part else {
-            if known.contains(entity) {
-                commands.entity(entity).remove::<(Joins, Mean)>();
-            }
-            continue;
-        };
+        let Some(part) = drawing.part else { continue };
+        joining.insert(entity);
         let illumination = stage.map_or(&shared.buffers, |stage| &stage.illumination).lights.id();
         samples.wanted.insert(illumination, part);
         let (number, converged) = (drawing.drawn(), drawing.converged());
         let frame = Frame { view, number, converged, count: part.count };
         commands.entity(entity).insert(Joins { frame, illumination });
+    }
+    // Views that have converged, and cameras that are views no more.
+    for entity in known.iter().filter(|entity| !joining.contains(entity)) {
+        commands.entity(entity).remove::<(Joins, Mean)>();
     }
 }
 

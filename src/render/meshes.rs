@@ -7,7 +7,7 @@ use std::{
 
 use bevy::{
     asset::RenderAssetUsages,
-    mesh::{Indices, PrimitiveTopology},
+    mesh::{Indices, MeshVertexAttribute, PrimitiveTopology},
     prelude::*,
 };
 
@@ -16,14 +16,14 @@ use rayon::prelude::*;
 use super::{
     drawn::Drawn,
     facing,
-    material::{Attachments, FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT, Vertices},
+    material::{FACE_CENTRE, FACE_NORMAL, FACE_TANGENT, TANGENT, Vertices, detach},
     shown::ShownObject,
 };
 use crate::{
     declared::with_defaults,
     registry::Registry,
     scene::Object,
-    shape::{MeshKey, PolygonMesh},
+    shape::{self, MeshKey, PolygonMesh, Says},
     text::plural,
 };
 
@@ -234,13 +234,9 @@ impl ShapeMeshes {
 /// Removes an object from the picture. The material is removed with the mesh: the renderer would not treat an
 /// object with a new mesh and the previous material as new, and would not draw it again.
 pub(super) fn take_off(world: &mut World, drawable: Entity) {
-    let model = world.get::<Drawn>(drawable).map(Drawn::model);
-    let attachment = model.and_then(|model| world.get_resource::<Attachments>()?.get(model));
     let Ok(mut entity) = world.get_entity_mut(drawable) else { return };
     entity.remove::<Mesh3d>();
-    if let Some(attachment) = attachment {
-        (attachment.detach)(&mut entity);
-    }
+    detach(&mut entity);
 }
 
 /// The size of a mesh on the GPU, in bytes.
@@ -251,41 +247,31 @@ fn size(mesh: &Mesh) -> u64 {
 /// The mesh for shading models that interpolate over shared vertices.
 #[must_use]
 pub fn shared_mesh(mesh: &PolygonMesh) -> Mesh {
-    let indices = mesh.triangles().flat_map(|(_, corners)| corners).collect();
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(&mesh.positions))
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, arrays(&mesh.vertex_normals()))
-        .with_inserted_attribute(TANGENT, arrays(&mesh.vertex_tangents()))
-        .with_inserted_indices(Indices::U32(indices))
+    drawn(shape::Vertices::shared(mesh))
 }
 
 /// The mesh for shading models that calculate per polygon: no vertex is shared, and each has the data of its
 /// polygon.
 #[must_use]
 pub fn face_mesh(mesh: &PolygonMesh) -> Mesh {
-    let corners = || {
-        let all = mesh.polygons.iter().enumerate();
-        all.flat_map(|(i, polygon)| polygon.corners().iter().map(move |corner| (i, *corner as usize)))
-    };
-    let of_vertices = |of: &[Vec3]| corners().map(|(_, vertex)| of[vertex].to_array()).collect::<Vec<_>>();
-    let of_polygons = |of: &[Vec3]| corners().map(|(i, _)| of[i].to_array()).collect::<Vec<_>>();
-    let (mut first, mut indices) = (0, Vec::new());
-    for polygon in &mesh.polygons {
-        indices.extend(polygon.triangles().iter().flatten().map(|&i| first + i as u32));
-        first += polygon.corners().len() as u32;
-    }
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, of_vertices(&mesh.positions))
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, of_vertices(&mesh.vertex_normals()))
-        .with_inserted_attribute(TANGENT, of_vertices(&mesh.vertex_tangents()))
-        .with_inserted_attribute(FACE_NORMAL, of_polygons(&mesh.polygon_normals()))
-        .with_inserted_attribute(FACE_TANGENT, of_polygons(&mesh.polygon_tangents()))
-        .with_inserted_attribute(FACE_CENTRE, of_polygons(&mesh.polygon_centres()))
-        .with_inserted_indices(Indices::U32(indices))
+    drawn(shape::Vertices::apart(mesh))
 }
 
-fn arrays(vectors: &[Vec3]) -> Vec<[f32; 3]> {
-    vectors.iter().map(|v| v.to_array()).collect()
+fn drawn(vertices: shape::Vertices) -> Mesh {
+    let mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD);
+    let with = |mesh: Mesh, (says, values)| mesh.with_inserted_attribute(attribute(says), values);
+    vertices.attributes.into_iter().fold(mesh, with).with_inserted_indices(Indices::U32(vertices.indices))
+}
+
+fn attribute(says: Says) -> MeshVertexAttribute {
+    match says {
+        Says::Position => Mesh::ATTRIBUTE_POSITION,
+        Says::Normal => Mesh::ATTRIBUTE_NORMAL,
+        Says::Tangent => TANGENT,
+        Says::FaceNormal => FACE_NORMAL,
+        Says::FaceTangent => FACE_TANGENT,
+        Says::FaceCentre => FACE_CENTRE,
+    }
 }
 
 /// Drops unused meshes: dragging the slider of a parameter makes hundreds. Some are kept in case they are

@@ -29,6 +29,7 @@ pub mod schedule;
 mod seen;
 pub mod show;
 mod shown;
+mod solids;
 pub mod stage;
 pub mod straight;
 pub mod swap;

@@ -10,8 +10,7 @@ use super::{
     entities::{CurrentScene, SceneEntities},
     illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
     live::{self, exchange},
-    material::add_custom_material,
-    mean,
+    material, mean,
     meshes::ShapeMeshes,
     noise,
     overrides::Overrides,
@@ -20,6 +19,7 @@ use super::{
     schedule::{LabFrame, LabSystems, detect},
     seen,
     shown::{Shown, show_lights},
+    solids::Solids,
     stage::{Stage, set_stages},
     straight::StraightPlugin,
     swap::swap,
@@ -46,7 +46,6 @@ impl Plugin for ScenePlugin {
             set_stages,
         );
         register_builtin(app);
-        add_custom_material(app);
         app.world_mut().resource_mut::<MainScheduleOrder>().insert_after(Update, LabFrame);
         app.init_resource::<CurrentScene>()
             .init_resource::<SceneEntities>()
@@ -59,6 +58,7 @@ impl Plugin for ScenePlugin {
             .register_type::<parts::SceneObserver>()
             .register_type::<parts::Animated>()
             .init_resource::<ShapeMeshes>()
+            .init_resource::<Solids>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
             .init_schedule(LabFrame)
@@ -68,7 +68,7 @@ impl Plugin for ScenePlugin {
             .add_systems(LabFrame, (show_lights.before(exchange), swap.after(exchange)).in_set(Swap))
             .add_systems(LabFrame, (upload_lights, follow_scene).in_set(Upload))
             .add_plugins((live::plugin, view::plugin, tables::plugin, StraightPlugin))
-            .add_plugins((seen::plugin, mean::plugin, noise::plugin, backdrop::plugin));
+            .add_plugins((material::plugin, seen::plugin, mean::plugin, noise::plugin, backdrop::plugin));
         // Systems that access the same data must have a defined order.
         detect(app, LogLevel::Warn);
     }

@@ -1,11 +1,10 @@
-//! Registration in an app: adds types to the registry, a material for each reflection model to the renderer,
-//! and a component for each type.
+//! Registration in an app: adds types to the registry, and a component for each light type and object type.
 
 use std::path::PathBuf;
 
 use bevy::prelude::*;
 
-use super::{material::add_model_material, typed::know_types};
+use super::typed::know_types;
 use crate::{
     light::LightType,
     reflection::ReflectionModel,
@@ -38,9 +37,7 @@ impl Register for App {
         &mut self,
         admission: Admission,
     ) -> Result<(), RegistrationError> {
-        registry(self).admit_reflection_model::<M>(admission)?;
-        add_model_material::<M>(self);
-        Ok(())
+        registry(self).admit_reflection_model::<M>(admission)
     }
 
     fn admit_shading_model<S: ShadingModel>(

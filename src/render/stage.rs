@@ -12,7 +12,7 @@ use bevy::{
 use super::{
     entities::SceneEntities,
     illumination::{IlluminationBuffer, LightBuffers},
-    material::Attachments,
+    material::forget,
     overrides::Overrides,
     tables::ParameterTables,
 };
@@ -86,9 +86,7 @@ fn strike(mut world: DeferredWorld, context: HookContext) {
             let _ = world.try_despawn(copy);
         }
         world.resource_mut::<ParameterTables>().forget(view);
-        for attachment in world.resource::<Attachments>().all() {
-            (attachment.forget)(world, illumination);
-        }
+        forget(world, illumination);
     });
 }
 

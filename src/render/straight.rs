@@ -30,6 +30,7 @@ use bevy::{
 
 use super::{
     camera::{ForDisplay, PictureCamera, follow_scene},
+    drawn::ByChance,
     schedule::{LabFrame, LabSystems},
     shown::Shown,
     view::View,
@@ -88,12 +89,13 @@ fn choose(
     >,
     shown: Res<Shown>,
     registry: Res<Registry>,
+    by_chance: Query<(), With<ByChance>>,
     mut commands: Commands,
 ) {
-    let extent = registry.has_extent(shown.types);
+    let sampled = registry.has_extent(shown.types) || !by_chance.is_empty();
     for (camera, known, tone, samples, hdr, view) in &cameras {
         // Means are of half floats.
-        let converges = view && extent;
+        let converges = view && sampled;
         let straight = *tone == Tonemapping::None && *samples == Msaa::Off && !converges;
         if known.is_some_and(|known| known.straight == straight) && hdr != straight {
             continue;

@@ -7,15 +7,16 @@ use bevy::{mesh::MeshTag, prelude::*, render::storage::ShaderBuffer};
 use rayon::prelude::*;
 
 use super::{
-    drawn::Drawn,
+    drawn::{ByChance, Drawn},
     entities::{CurrentScene, SceneEntities},
     illumination::{IlluminationBuffer, Lit, word_count},
     live::LiveShaders,
-    material::{Attachments, MaterialInputs, Vertices},
+    material::{MaterialInputs, Vertices, attach, forget},
     meshes::{ShapeMeshes, forget_unused_meshes, take_off},
     nearest,
     overrides::Overrides,
     shown::{Shown, ShownObject},
+    solids::Solids,
     stage::{Stage, ViewCopy, copies},
     tables::{ParameterTables, Row, row},
 };
@@ -23,7 +24,7 @@ use crate::{
     light::MAX_LIGHTS,
     optics::colour::Encoding,
     parameter::{Value, file_changes},
-    reflection::ModelEntry,
+    reflection::{ModelEntry, Passage},
     registry::Registry,
     scene::{MAX_OBJECTS, Object, Scene, shines_from_everywhere},
     shading,
@@ -121,7 +122,7 @@ pub fn swap(
         .map(|Pending { shown, now, .. }| {
             let (model, shading) = (registry.model(&now.model)?, registry.shading_model(&now.shading)?);
             let extent = registry.has_extent(now.lights);
-            Some(row(model, shading, &shown.material, now.encoding, now.everywhere, extent))
+            Some(row((model, now.passage), shading, &shown.material, now.encoding, now.everywhere, extent))
         })
         .collect();
     let eyes = nearest::eyes(world);
@@ -178,9 +179,7 @@ fn hold_lights(world: &mut World, views: &[Entity]) -> bool {
                 old.push(std::mem::replace(&mut stage.illumination, another).lights.id());
             }
         }
-        for attachment in world.resource::<Attachments>().all() {
-            old.iter().for_each(|buffer| (attachment.forget)(world, *buffer));
-        }
+        old.into_iter().for_each(|buffer| forget(world, buffer));
         true
     })
 }
@@ -190,6 +189,7 @@ fn common(scene: &Scene, shown: &Shown, registry: &Registry) -> Drawn {
     Drawn {
         model: scene.reflection_model.clone(),
         shading: scene.shading_model.clone(),
+        passage: Passage::NONE,
         encoding: scene.display.encoding,
         everywhere: shines_from_everywhere(shown.shining(), scene.display.encoding, registry),
         lights: shown.types,
@@ -235,21 +235,25 @@ fn find(
             || (scene.model_of(&object.0), scene.shading_model_of(&object.0)),
             |o| (o.model_of(scene, &object.0), o.shading_model_of(scene, &object.0)),
         );
+        let mut shown = None;
+        if let Some(overrides) = overrides {
+            overrides.dress(shown.get_or_insert_with(|| object.0.clone()), registry);
+        }
+        let entry = registry.model(model);
+        let material = &shown.as_ref().unwrap_or(&object.0).material;
         let now = Drawn {
             model: model.to_owned(),
             shading: shading.to_owned(),
+            passage: entry.map(|entry| entry.passage(material)).unwrap_or_default(),
             encoding,
             everywhere: common.everywhere,
             lights: common.lights,
-            version: registry.model(model).map_or(0, ModelEntry::version),
+            version: entry.map_or(0, ModelEntry::version),
         };
         if only_different && !waits && !object.is_changed() && drawn == Some(&now) {
             continue;
         }
-        let mut shown = object.0.clone();
-        if let Some(overrides) = overrides {
-            overrides.dress(&mut shown, registry);
-        }
+        let shown = shown.unwrap_or_else(|| object.0.clone());
         pending.push(Pending { view, object: entity, drawable: drawable.id(), shown, now });
     }
     world.resource_mut::<SceneEntities>().bypass_change_detection().visits += visits;
@@ -284,7 +288,7 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         return;
     };
     let shader = world.resource_scope(|world, mut shaders: Mut<LiveShaders>| {
-        shaders.get(world, (model, shading, now.lights), registry)
+        shaders.get(world, (model, now.passage, shading, now.lights), registry)
     });
     let Some(shader) = shader else {
         world.entity_mut(drawable).insert(AwaitsShader);
@@ -293,27 +297,31 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     let Some(row) = row_of(world, object) else { return };
     let faces = vertices == Vertices::Apart;
     let parameters = world.resource_scope(|world, mut tables: Mut<ParameterTables>| {
-        tables.set(view, model, row, bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
+        tables.set(view, (model, now.passage), row, bytes, &mut world.resource_mut::<Assets<ShaderBuffer>>())
     });
     let illumination = view.and_then(|view| world.get::<Stage>(view)).map_or_else(
         || world.resource::<IlluminationBuffer>().buffers.clone(),
         |stage| stage.illumination.clone(),
     );
     let gamma_naive = now.encoding == Encoding::Off;
-    let inputs = MaterialInputs { parameters, illumination, shader, faces, gamma_naive };
-    let attachments = world.resource::<Attachments>();
-    let old = world
-        .get::<Drawn>(drawable)
-        .filter(|d| d.model != now.model)
-        .and_then(|d| attachments.get(d.model.as_str()));
-    let Some(new) = attachments.get(now.model.as_str()) else { return };
+    let solid = if now.passage.solid {
+        world.resource_scope(|world, mut solids: Mut<Solids>| {
+            solids.get(shape, &shown, &mut world.resource_mut::<Assets<ShaderBuffer>>())
+        })
+    } else {
+        // Not read.
+        illumination.words.clone()
+    };
+    let inputs = MaterialInputs { parameters, solid, illumination, shader, faces, gamma_naive };
     let Ok(mut entity) = world.get_entity_mut(drawable) else { return };
-    if let Some(old) = old {
-        (old.detach)(&mut entity);
-    }
-    (new.attach)(&mut entity, inputs);
+    attach(&mut entity, inputs);
     if entity.get::<Mesh3d>().map(|m| &m.0) != Some(&mesh) {
         entity.insert(Mesh3d(mesh));
+    }
+    if model.leads_by_chance(&shown.material) {
+        entity.insert(ByChance);
+    } else {
+        entity.remove::<ByChance>();
     }
     entity.insert((now, MeshTag(row.0))).remove::<AwaitsShader>();
 }

@@ -15,17 +15,17 @@ use bevy::{
 };
 
 use crate::{
-    optics::{colour::Encoding, lobes::MAX_LOBES},
+    optics::{colour::Encoding, interior::Interior, lobes::MAX_LOBES},
     parameter::Values,
-    reflection::ModelEntry,
+    reflection::{ModelEntry, Passage},
     scene::MAX_OBJECTS,
     shading::ShadingEntry,
 };
 
 /// The parameters of an object as bytes of its row: those of its model, those of its shading model, and the
-/// lobes of its model, which are zero unless there is light with `extent`.
+/// lobes of its model, which are zero unless there is light with `extent`; of a solid body also its inside.
 pub(super) fn row(
-    model: &ModelEntry,
+    (model, passage): (&ModelEntry, Passage),
     shading: &ShadingEntry,
     values: &Values,
     encoding: Encoding,
@@ -40,6 +40,11 @@ pub(super) fn row(
         row.extend(model.instantiate(values, encoding).lobes().bytes());
     }
     row.resize(end, 0);
+    if passage.solid {
+        let inside = model.instantiate(values, encoding).interior().unwrap_or(Interior::AIR);
+        let rows = inside.rows(shading.declaration.faceted);
+        row.extend(rows.into_iter().flat_map(|row| row.to_array()).flat_map(f32::to_le_bytes));
+    }
     row
 }
 
@@ -57,8 +62,9 @@ fn free(mut world: DeferredWorld, context: HookContext) {
     }
 }
 
-/// The model of a table, and its [declaration](ModelEntry::declared), which determines the layout.
-type TableKey = (&'static str, u64);
+/// The model of a table, its [declaration](ModelEntry::declared), and whether its objects are solid, which determine the
+/// layout.
+type TableKey = (&'static str, u64, bool);
 
 /// The parameters of all objects, one table for each model in use, and for each view with overrides. Changed
 /// rows are written into the buffer without affecting materials. The capacity is the next power of two above
@@ -167,14 +173,14 @@ impl ParameterTables {
     pub(super) fn set(
         &mut self,
         view: Option<Entity>,
-        model: &ModelEntry,
+        (model, passage): (&ModelEntry, Passage),
         row: Row,
         parameters: &[u8],
         buffers: &mut Assets<ShaderBuffer>,
     ) -> Handle<ShaderBuffer> {
         let (id, declared) = (model.declaration.id, model.declared());
         self.tables.retain(|(_, known), _| known.0 != id || known.1 == declared);
-        let table = self.tables.entry((view, (id, declared))).or_insert_with(|| {
+        let table = self.tables.entry((view, (id, declared, passage.solid))).or_insert_with(|| {
             let bytes = vec![0; parameters.len() * self.rows];
             let buffer = buffers.add(ShaderBuffer::new(&bytes, RenderAssetUsages::default()));
             Table { buffer, row_bytes: parameters.len(), new: true, changed: Vec::new() }

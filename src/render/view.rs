@@ -22,7 +22,7 @@ use std::collections::HashSet;
 
 use super::{
     converge::{Converged, Convergence, Part},
-    drawn::Drawn,
+    drawn::{ByChance, Drawn},
     entities::CurrentScene,
     illumination::{IlluminationBuffer, ShownTerms},
     overrides::Overrides,
@@ -256,10 +256,11 @@ fn rest(
         Option<&Overrides>,
         Has<Hdr>,
     )>,
+    by_chance: Query<Option<&ViewCopy>, With<ByChance>>,
 ) {
     let (all, some) = changes.find();
     let extent = changes.registry.has_extent(shown.types);
-    let target = if extent { convergence.target.max(1) } else { 0 };
+    let target = convergence.target.max(1);
     // True if a picture begins, and the minimum number of samples missing in another.
     let (mut begins, mut missing) = (false, None::<u32>);
     for (entity, view, mut drawing, mut camera, transform, lens, tone, overrides, hdr) in &mut views {
@@ -274,9 +275,12 @@ fn rest(
             tone: *tone,
             overrides: overrides.cloned(),
         };
-        let total = if hdr { target } else { 0 };
-        let changed =
-            all || some.contains(&overrides.map(|_| entity)) || drawing.last.as_ref() != Some(&look);
+        let own = overrides.map(|_| entity);
+        let at_once =
+            overrides.and_then(|o| o.channel.as_ref()).is_some_and(|own| own.channel.is_of_remaining());
+        let sampled = !at_once && (extent || by_chance.iter().any(|copy| copy.map(|copy| copy.view) == own));
+        let total = if hdr && sampled { target } else { 0 };
+        let changed = all || some.contains(&own) || drawing.last.as_ref() != Some(&look);
         if changed || drawing.converged.total != total {
             drawing.last = Some(look);
             drawing.recent = 0;
@@ -325,7 +329,11 @@ mod tests {
     };
 
     use super::*;
-    use crate::scene::{Object, Scene};
+    use crate::{
+        optics::TermSelection,
+        reference::LightSamples,
+        scene::{Object, Scene},
+    };
 
     const SIZE: UVec2 = UVec2::new(64, 48);
 
@@ -420,6 +428,31 @@ mod tests {
     fn one<C: Component<Mutability = bevy::ecs::component::Mutable>>(world: &mut World) -> Mut<'_, C> {
         let mut views = world.query_filtered::<&mut C, With<View>>();
         views.iter_mut(world).next().expect("there is a view")
+    }
+
+    #[test]
+    fn a_view_of_light_that_goes_by_chance_converges_and_others_do_not() {
+        let mut app = app(2);
+        let world = app.world_mut();
+        let mut cameras = world.query_filtered::<Entity, With<View>>();
+        let views: Vec<_> = cameras.iter(world).collect();
+        views.iter().for_each(|view| _ = world.entity_mut(*view).insert(Hdr));
+        world
+            .entity_mut(views[1])
+            .insert(Overrides { terms: Some(TermSelection::All), ..Overrides::default() });
+        let totals = |app: &mut App| {
+            app.update();
+            views.iter().map(|v| app.world().get::<Drawing>(*v).expect("a view").converged.total).collect()
+        };
+        let none: Vec<u32> = totals(&mut app);
+        assert_eq!(none, [0, 0]);
+        let body = app.world_mut().spawn((ByChance, ViewCopy { view: views[1] })).id();
+        let target = LightSamples::DEFAULT;
+        let own: Vec<u32> = totals(&mut app);
+        assert_eq!(own, [0, target]);
+        app.world_mut().entity_mut(body).remove::<ViewCopy>();
+        let common: Vec<u32> = totals(&mut app);
+        assert_eq!(common, [target, 0]);
     }
 
     #[test]

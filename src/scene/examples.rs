@@ -29,7 +29,7 @@ macro_rules! texts {
 }
 
 /// The scenes, from the simplest to those that measure something.
-const TEXTS: [(&str, &str); 27] = texts![
+const TEXTS: [(&str, &str); 34] = texts![
     "default.json",
     "shapes_and_lights.json",
     "superellipsoids.json",
@@ -47,6 +47,13 @@ const TEXTS: [(&str, &str); 27] = texts![
     "softbox_and_lamps.json",
     "studio.json",
     "under_the_sky.json",
+    "glass_thin_and_solid.json",
+    "glass_ball.json",
+    "broken_straw.json",
+    "gem.json",
+    "lampshade.json",
+    "coloured_glass.json",
+    "invisible_ball.json",
     "model_matrix.json",
     "many_lights.json",
     "compare_gouraud_phong.json",

@@ -7,7 +7,8 @@
 use std::collections::BTreeSet;
 
 use crate::{
-    parameter::{NamedFile, Value},
+    parameter::{NamedFile, Value, Values},
+    reflection::{ModelEntry, Passage},
     registry::{LightSet, Registry},
 };
 
@@ -112,10 +113,28 @@ impl Scene {
         self.lights.iter().filter(|light| light.enabled)
     }
 
+    /// True if a picture of the scene is a mean of samples: of lights with extent, or of ways through rough bodies.
+    #[must_use]
+    pub fn rests_on_samples(&self, registry: &Registry) -> bool {
+        let by_chance = |object: &Object| {
+            let model = registry.model(self.model_of(object));
+            model.is_some_and(|model| model.leads_by_chance(&object.material))
+        };
+        has_extent(self.shining(), registry) || self.shown().any(by_chance)
+    }
+
     /// The light types of all lights, including those switched off: the light types in the scene's shader.
     #[must_use]
     pub fn light_types(&self, registry: &Registry) -> LightSet {
         registry.light_set(self.lights.iter().map(|light| light.light_type.as_str()))
+    }
+
+    /// How light passes through the surfaces of the scene's objects with a model, all together.
+    #[must_use]
+    pub fn passage_of(&self, model: &ModelEntry) -> Passage {
+        let own = self.objects.iter().filter(|object| self.model_of(object) == model.declaration.id);
+        let passages = own.map(|object| model.passage(&object.material));
+        passages.reduce(|all, one| all | one).unwrap_or_else(|| model.passage(&Values::default()))
     }
 
     /// The files named by lights and objects, with repetitions.

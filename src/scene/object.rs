@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
 use super::{
     Field, Repeat,
     field::{Ids, Kind},
     part::{self, Fields, Key, part},
+    rotation::rotation,
 };
 use crate::{
     parameter::{ABOVE_ZERO, Value, Values},
@@ -60,6 +61,12 @@ impl part::Held for Repetition {
 }
 
 impl Object {
+    /// The transformation from the object's own coordinates to the room: unit mesh → size → rotation → position.
+    #[must_use]
+    pub fn room_from_object(&self) -> Mat4 {
+        Mat4::from_scale_rotation_translation(Vec3::splat(self.size), rotation(self.rotation), self.position)
+    }
+
     /// Changes the type. Parameters of both types are kept, but not the tessellation, which has a different
     /// meaning for each type.
     pub fn set_type(&mut self, to: &ShapeEntry) {

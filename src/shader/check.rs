@@ -84,8 +84,7 @@ mod tests {
             Registry,
             compose::{compose, compose_evaluation},
         },
-        render::illumination::layout,
-        shader::compose::{LIGHTS, OPTICS, Sources},
+        shader::compose::Sources,
     };
 
     fn members(module: &Module, name: &str) -> Option<Vec<(String, usize)>> {
@@ -112,24 +111,11 @@ mod tests {
     }
 
     #[test]
-    fn lights_lie_where_rust_puts_them() {
-        let module = wgsl::parse_str(&format!("{}{}", OPTICS[0].text, LIGHTS.text)).expect("valid WGSL");
-        let owned = |layout: &[(&str, usize)]| {
-            layout.iter().map(|(n, at)| ((*n).to_owned(), *at)).collect::<Vec<_>>()
-        };
-        assert_eq!(members(&module, "Light"), Some(owned(&layout::LIGHT)));
-        assert_eq!(members(&module, "Illumination"), Some(owned(&layout::ILLUMINATION)));
-        // The wrong twin: without the padding required by vec3, the layouts differ.
-        let packed = wgsl::parse_str("struct Light { position: vec3<f32>, light_type: u32, intensity: f32, direction: vec3<f32>, colour: vec3<f32>, first_word: u32 }")
-            .expect("valid WGSL");
-        assert_ne!(members(&packed, "Light"), Some(owned(&layout::LIGHT)));
-    }
-
-    #[test]
     fn the_shader_reads_as_many_words_as_a_light_has() {
         let registry = Registry::builtin();
         let (model, shading) = (&registry.models()[0], &registry.shading_models()[0]);
-        let composed = compose(&Sources::default(), model, shading, registry.lights());
+        let composed =
+            compose(&Sources::default(), (model, model.declaration.passage()), shading, registry.lights());
         for light in registry.lights() {
             for twin in Twin::all(light.declaration.extent) {
                 let call = format!("{{ return {}(", twin.of(light));

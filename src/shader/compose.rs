@@ -24,6 +24,13 @@ pub const OPTICS: &[Source] = &[
     wgsl!("optics/lobe.wgsl"),
     wgsl!("optics/film.wgsl"),
 ];
+/// More of it, for models that light passes through: other models may use these names for their own functions.
+pub const TRANSMISSION: &[Source] =
+    &[wgsl!("optics/refraction.wgsl"), wgsl!("optics/interface.wgsl"), wgsl!("optics/slab.wgsl")];
+/// The refractive index by wavelength, for solid bodies.
+pub const DISPERSION: Source = wgsl!("optics/dispersion.wgsl");
+/// Absorption along a way, for solid bodies.
+pub const ABSORPTION: Source = wgsl!("optics/absorption.wgsl");
 /// The directional albedo from the curve in a row, for models that have one.
 pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");
 /// Pictures of the surroundings, for light types that import it.
@@ -34,6 +41,12 @@ pub const LIGHTS: Source = wgsl!("lights.wgsl");
 pub const SAMPLING: Source = wgsl!("sampling.wgsl");
 /// The part of the light loop for light with extent.
 pub const EXTENDED: Source = wgsl!("extended.wgsl");
+/// Where a ray meets a mesh.
+pub const HIERARCHY: Source = wgsl!("hierarchy.wgsl");
+/// The way of light within a solid, after [`HIERARCHY`].
+pub const INSIDE: Source = wgsl!("inside.wgsl");
+/// The light that comes through a solid body, after [`INSIDE`].
+pub const THROUGH: Source = wgsl!("through.wgsl");
 /// The light loop.
 pub const LOOP: Source = wgsl!("loop.wgsl");
 /// The inputs and outputs of a shading model.
@@ -49,6 +62,9 @@ pub const WRAPPER: Source = wgsl!("wrapper.wgsl");
 
 /// The entry point that evaluates a single model.
 pub const EVALUATE: Source = wgsl!("evaluate.wgsl");
+
+/// The generated part of solid models, with the buffer of the mesh.
+pub const BODY: &str = "(the body)";
 
 /// The generated part of the source of a single light type, with the numbers of its files.
 pub const LIGHT_ALONE: &str = "(light type)";
@@ -179,6 +195,11 @@ pub(crate) struct Composer<'a> {
 impl<'a> Composer<'a> {
     pub(crate) fn new(sources: &'a Sources) -> Self {
         Self { sources, composed: Composed::default(), lines: 0, open: Vec::new(), done: HashSet::new() }
+    }
+
+    /// The text of a source.
+    pub(crate) fn text(&self, source: &'a Source) -> &'a str {
+        self.sources.text(source)
     }
 
     /// Adds a source, after its imports.

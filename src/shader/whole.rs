@@ -68,6 +68,7 @@ pub(super) fn standing_alone(text: &str, faces: bool) -> Option<String> {
 mod tests {
     use super::*;
     use crate::{
+        reflection::Passage,
         registry::{
             Registry,
             compose::{compose, compose_seen},
@@ -81,7 +82,7 @@ mod tests {
         let mut sources = Sources::default();
         sources.edit(path, text);
         let shading = registry.shading_model(shading).expect("built in");
-        let composed = compose(&sources, &registry.models()[0], shading, registry.lights());
+        let composed = compose(&sources, (&registry.models()[0], Passage::NONE), shading, registry.lights());
         let faces = shading.declaration.stage == Stage::Polygon;
         validate_drawing(&composed, faces).err().map(|p| p.to_string())
     }
@@ -90,10 +91,15 @@ mod tests {
     fn every_model_is_valid_in_every_shading_model() {
         let registry = Registry::builtin();
         for model in registry.models() {
-            for shading in registry.shading_models() {
-                let composed = compose(&Sources::default(), model, shading, registry.lights());
+            for (shading, passage) in registry
+                .shading_models()
+                .iter()
+                .flat_map(|shading| model.passages().into_iter().map(move |passage| (shading, passage)))
+            {
+                let composed = compose(&Sources::default(), (model, passage), shading, registry.lights());
                 let faces = shading.declaration.stage == Stage::Polygon;
-                assert_eq!(validate_drawing(&composed, faces), Ok(()), "{}", model.declaration.id);
+                let case = (model.declaration.id, passage);
+                assert_eq!(validate_drawing(&composed, faces), Ok(()), "{case:?}");
             }
         }
     }

@@ -17,7 +17,17 @@ impl Declaration {
     /// ```
     #[must_use]
     pub const fn new(id: &'static str, name: &'static str, stage: Stage, key: char, wgsl: Source) -> Self {
-        Self { id, name, author: "", source: "", summary: "", stage, key, wgsl }
+        Self {
+            id,
+            name,
+            author: "",
+            source: "",
+            summary: "",
+            stage,
+            faceted: matches!(stage, Stage::Polygon),
+            key,
+            wgsl,
+        }
     }
 
     setters! {
@@ -26,5 +36,8 @@ impl Declaration {
 
         /// Sets the summary: the method and what to look for, in one or two sentences.
         summary(summary: &'static str) { summary }
+
+        /// Makes normals those of polygons, also inside solid bodies, as they are with [`Stage::Polygon`] in any case.
+        faceted() { faceted: true }
     }
 }

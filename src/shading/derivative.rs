@@ -21,6 +21,7 @@ impl ShadingModel for Derivative {
         source: "CA LC3: normals from partial derivatives; dFdx and dFdy, OpenGL Shading Language 1.10 (2004)",
         summary: "Facet normals from the derivatives of position on the screen; colour calculated at every pixel.",
         stage: Stage::Pixel,
+        faceted: true,
         key: 'D',
         wgsl: wgsl!("shading/derivative.wgsl"),
     };

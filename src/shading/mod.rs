@@ -70,6 +70,8 @@ pub struct Declaration {
     pub summary: &'static str,
     /// The stage that evaluates the reflection model.
     pub stage: Stage,
+    /// True if normals are those of polygons; those inside solid bodies are then, too.
+    pub faceted: bool,
     /// Key that selects it in the window.
     pub key: char,
     /// The twin in WGSL: `fn shade_vertex` and `fn shade_pixel`. `shading_parameters()` returns the

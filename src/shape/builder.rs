@@ -22,6 +22,7 @@ impl Declaration {
             name,
             summary: "",
             glyph: "■",
+            open: "",
             tessellation_help: "It is always 1.",
             tessellation: 1..=1,
             default_tessellation: 1,
@@ -34,6 +35,9 @@ impl Declaration {
 
         /// Sets the glyph for lists.
         glyph(glyph: &'static str) { glyph }
+
+        /// Sets the reason why the mesh is not closed, for solid models: "its parts pass into each other".
+        open(open: &'static str) { open }
 
         /// Sets the range of tessellations, and the meaning of the number.
         tessellation(range: RangeInclusive<u32>, default: u32, help: &'static str) { tessellation: range, default_tessellation: default, tessellation_help: help }

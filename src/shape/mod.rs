@@ -4,12 +4,15 @@
 
 use std::ops::RangeInclusive;
 
-use bevy::{ecs::component::Component, reflect::Reflectable};
+use bevy_ecs::component::Component;
+use bevy_reflect::Reflectable;
 
 use crate::{declared::take_each, parameter::ParameterSet};
 
+pub mod closed;
 mod entry;
 mod fields;
+pub mod hierarchy;
 pub mod mesh;
 pub mod mesh_file;
 
@@ -19,16 +22,19 @@ mod sphere;
 mod superellipsoid;
 mod teapot;
 mod torus;
+mod vertices;
 
 pub use cube::Cube;
 pub use entry::{Bounds, MeshKey, ShapeEntry};
 pub(crate) use fields::fields;
+pub use hierarchy::Hierarchy;
 pub use mesh::PolygonMesh;
 pub use mesh_file::MeshFile;
 pub use sphere::Sphere;
 pub use superellipsoid::Superellipsoid;
 pub use teapot::Teapot;
 pub use torus::Torus;
+pub use vertices::{Says, Vertices};
 
 /// Receives object types one after the other.
 pub trait Take {
@@ -53,6 +59,8 @@ pub struct Declaration {
     pub summary: &'static str,
     /// A glyph for lists.
     pub glyph: &'static str,
+    /// The reason why the mesh is not closed, for solid models; empty if it is.
+    pub open: &'static str,
     /// The meaning of the tessellation number.
     pub tessellation_help: &'static str,
     /// The legal tessellations.

@@ -101,6 +101,7 @@ impl ObjectType for Teapot {
     const DECLARATION: Declaration = Declaration::new("teapot", "Teapot")
         .summary("Newell's teapot of 1975, the test object of computer graphics: round, thin and hollow parts at once.")
         .glyph("☕")
+        .open("Newell's lid, body, handle and spout are separate surfaces that pass into each other")
         .tessellation(2..=32, 10, "Polygons along each side of each of the 32 Bézier patches.");
 
     fn mesh(&self, tessellation: u32) -> PolygonMesh {

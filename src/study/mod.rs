@@ -18,10 +18,10 @@ use crate::{
     files::{self, Before, FolderDraft},
     optics::{Frame, TermSelection, Terms, albedo, colour::Encoding, geometry::direction},
     parameter::Values,
+    picture::png,
     reference::{self, Picture},
     reflection::{ModelEntry, Surface},
     registry::Registry,
-    render::capture::png,
     scene::{
         Scene,
         load::{self, Defaults},

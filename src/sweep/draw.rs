@@ -21,10 +21,10 @@ use crate::{
     caption::Sampled,
     compare::View,
     failure::Failure,
+    picture::png::{self, About},
     progress::{Cancelled, Progress},
     reference::{self, Until},
     registry::Registry,
-    render::capture::png::{self, About},
     scene::Scene,
 };
 

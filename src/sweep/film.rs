@@ -1,4 +1,4 @@
-//! Films of several pictures, as animated GIF. (Animated PNG is written like [any other PNG file](crate::render::capture::png).)
+//! Films of several pictures, as animated GIF. (Animated PNG is written like [any other PNG file](crate::picture::png).)
 
 use std::io;
 

@@ -10,9 +10,9 @@ use std::{
 use crate::{
     failure::Failure,
     files::{self, Shown as _, words},
+    picture::png::{self, About},
     reference::{Settings, Until},
     registry::Registry,
-    render::capture::png::{self, About},
     scene::{Scene, save::to_json},
 };
 

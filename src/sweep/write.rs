@@ -16,9 +16,9 @@ use crate::{
     caption,
     failure::Failure,
     files::{self, FileError, Output, PNG, Signature},
+    picture::png::{self, About},
     progress::Progress,
     reference::MAX_SIDE,
-    render::capture::png::{self, About},
     scene::Comparison,
 };
 

@@ -91,7 +91,9 @@ pub fn follows(line: &Line) -> Result<(), String> {
 
 /// Checks that every non-zero term has a line in the equation.
 fn every_term(model: &ModelEntry, lines: &[Line], response: &Terms) -> Outcome {
-    for (symbol, value) in [("I_d", response.diffuse), ("I_s", response.specular)] {
+    for (symbol, value) in
+        [("I_d", response.diffuse), ("I_s", response.specular), ("I_t", response.transmitted)]
+    {
         let said = lines.iter().any(|line| line.defines() == symbol && !line.text.is_empty());
         if value != glam::Vec3::ZERO && !said {
             return Err(format!(

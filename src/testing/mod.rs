@@ -14,11 +14,13 @@
 //! ```
 //!
 //! Each also checks the registration, and panics with the id and the first error, where it is, and how large.
-//! The functions in [`laws`], [`parity`], [`lights`], [`shadings`] and [`meshes`] perform parts of these
+//! The functions in [`laws`], [`parity`], `gpu`, [`lights`], [`shadings`] and [`meshes`] perform parts of these
 //! tests for entries of a registry.
 
 pub mod equations;
 mod extended;
+#[cfg(feature = "window")]
+pub mod gpu;
 mod lamp;
 pub mod laws;
 pub mod lights;
@@ -28,6 +30,8 @@ mod sample;
 pub mod shadings;
 mod words;
 
+#[cfg(feature = "window")]
+pub use gpu::assert_parity_on_gpu;
 pub use sample::{direction, random, random_values};
 
 use crate::{
@@ -98,20 +102,6 @@ pub fn assert_equation<M: ReflectionModel>() {
 #[track_caller]
 pub fn assert_parity<M: ReflectionModel>() {
     assert_model::<M>(|model| parity::all(model, &Sources::default()));
-}
-
-/// Asserts that a reflection model is equal in Rust and in WGSL on the GPU, including at the ends of all
-/// ranges. Needs a Vulkan driver; a software one is enough.
-///
-/// # Panics
-/// Panics if it is not, or without a driver.
-#[track_caller]
-pub fn assert_parity_on_gpu<M: ReflectionModel>() {
-    let sources = Sources::default();
-    assert_model::<M>(|model| {
-        parity::on_gpu(model, &sources)?;
-        parity::at_the_ends_on_gpu(model, &sources, &mut { parity::SEED_OF_ENDS })
-    });
 }
 
 /// Asserts that a light type is equal in Rust and in WGSL, that its light is finite, not negative,

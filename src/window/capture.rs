@@ -20,9 +20,9 @@ use crate::{
     caught::lock,
     failure::Failure,
     panel::state::Session,
+    picture::png::{self, About},
     registry::Registry,
     render::{
-        capture::png::{self, About},
         live::LiveShaders,
         schedule::{LabFrame, LabSystems},
         view::{Drawing, texture_of},

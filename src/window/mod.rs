@@ -51,6 +51,7 @@ mod requirements;
 mod shaders;
 mod sheets;
 mod shell;
+mod solids;
 mod views;
 pub mod watching;
 

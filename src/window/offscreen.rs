@@ -15,7 +15,7 @@ use crate::{
     reference::{LightSamples, Settings, Until, ignored_edits, not_on_cpu},
     registry::Registry,
     render::capture::gpu::{GpuRenderer, Output},
-    scene::{Scene, has_extent},
+    scene::Scene,
 };
 
 /// Why a view was not drawn.
@@ -109,7 +109,7 @@ impl OffScreen<'_> {
             return Err(Undrawn::of(problem));
         }
         let rgb8 = renderer.read_rgb8().map_err(Undrawn::of)?;
-        let extent = has_extent(seen.shining(), registry);
+        let extent = seen.rests_on_samples(registry);
         let sampled = extent.then_some(Sampled { samples: LightSamples::DEFAULT, noise: None });
         Ok((Shown::of_codes(width, height, rgb8).map_err(Undrawn::of)?, sampled))
     }

@@ -29,20 +29,17 @@ use crate::{
     linear::{Format, MAX_PIXELS},
     optics::TermSelection,
     panel::state::{Effect, PictureEnd, PictureOptions, Question, Session, Severity},
+    picture::{
+        linear,
+        png::{self, About},
+    },
     progress::Progress,
     reference::{Settings, Until, not_on_cpu, render_layers},
     registry::Registry,
-    render::{
-        capture::{
-            linear,
-            png::{self, About},
-        },
-        view::{Drawing, ViewSystems},
-    },
+    render::view::{Drawing, ViewSystems},
     scene::{
         Background, Comparison, Scene,
         comparison::{Compared, Layout},
-        has_extent,
         variant::LETTERS,
     },
 };
@@ -294,7 +291,7 @@ fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registr
 /// Says that a linear picture takes long, if it does.
 fn announce(file: Option<&Path>, session: &mut Session, registry: &Registry) {
     let linear = file.filter(|file| Format::of(file).is_some());
-    if let Some(file) = linear.filter(|_| has_extent(session.document.shining(), registry)) {
+    if let Some(file) = linear.filter(|_| session.document.rests_on_samples(registry)) {
         let text = format!("{} is drawn on the CPU with its layers, which takes a while.", file.shown());
         session.say(Severity::Info, text);
     }

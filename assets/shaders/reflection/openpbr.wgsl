@@ -1,5 +1,6 @@
-// OpenPBR Surface 1.1, the opaque subset. What depends on the parameters alone, and the albedos of the boundaries, are
-// calculated once per material: value_prepared(i), curve_boundaries(mu), curve_fuzz(mu).
+// OpenPBR Surface 1.1, without volumes that scatter light. What depends on the parameters alone, and the albedos of the
+// boundaries, are calculated once per material: value_prepared(i), curve_boundaries(mu), curve_fuzz(mu). Light passes through
+// surfaces that are drawn with LIGHT_PASSES alone: through a thin sheet here, through a body in inside.wgsl.
 
 // D G / (4 (N·L)(N·V)) in the local frame.
 fn openpbr_facets(h: vec3<f32>, l: vec3<f32>, v: vec3<f32>, alpha: vec2<f32>) -> f32 {
@@ -15,9 +16,76 @@ fn openpbr_through(mu: f32, m: Parameters) -> vec3<f32> {
     return mix(vec3(1.0), pow(max(m.coat_colour, vec3(1e-9)), vec3(0.5 / inside)), m.coat_weight);
 }
 
+// The part of the dielectric base that is a thin sheet.
+fn openpbr_sheet_part(m: Parameters) -> f32 {
+    return select(0.0, m.transmission_weight, m.geometry_thin_walled != 0u);
+}
+
+// The reflectance of the dielectric boundary with its film.
+fn openpbr_boundary(cosine: f32, m: Parameters) -> vec3<f32> {
+    let of_base = value_prepared(0u);
+    var reflected = vec3(dielectric(of_base.z, cosine));
+    let channels = select(0u, 3u, of_base.w > 0.0);
+    for (var i = 0u; i < channels; i += 1u) {
+        let turns = m.thin_film_thickness / vec3(0.62, 0.54, 0.45)[i];
+        let covered = thin_film(of_base.x, m.thin_film_ior, of_base.y, 0.0, turns, cosine);
+        reflected[i] = mix(reflected[i], covered, of_base.w);
+    }
+    return reflected;
+}
+
+// What a thin sheet between two boundaries reflects and transmits.
+fn openpbr_sheet(boundary: vec3<f32>, cosine: f32, m: Parameters) -> Slab {
+    let inside = refracted_cosine(cosine, value_prepared(0u).y);
+    return slab(boundary, oblique(m.transmission_colour, inside));
+}
+
+// The part of the light from below the base that passes the layers above it, towards a viewer; with the albedos of coat and
+// fuzz.
+fn openpbr_above(mu: f32, coat: f32, fuzz: f32, m: Parameters) -> vec3<f32> {
+    let passes = max(1.0 - m.fuzz_weight * fuzz, 0.0);
+    if m.coat_weight > 0.0 {
+        return openpbr_through(mu, m) * value_prepared(4u).rgb * (max(1.0 - m.coat_weight * coat, 0.0) * passes);
+    }
+    return vec3(passes);
+}
+
+// A smooth sheet lets light go straight on.
+fn sharp(i: u32, v: vec3<f32>, frame: Frame, m: Parameters) -> Sharp {
+    let mu = dot(frame.n, v);
+    let share = (1.0 - m.metallic) * openpbr_sheet_part(m);
+    if i != 1u || mu <= 0.0 || share <= 0.0 || value_prepared(2u).w > MINIMUM_ALPHA {
+        return Sharp(-v, vec3(0.0));
+    }
+    let pane = openpbr_sheet(openpbr_boundary(mu, m), mu, m);
+    return Sharp(-v, share * openpbr_above(mu, curve_boundaries(mu).z, curve_fuzz(mu).z, m) * pane.transmittance);
+}
+
+// The part of the light from within a body that enters it here and leaves it elsewhere, over that without coat and film.
+fn entering(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+    let mu = max(dot(frame.n, v), OPENPBR_GRAZING);
+    let rough = value_prepared(2u).w > MINIMUM_ALPHA;
+    let at = select(mu, 2.0 / 3.0, rough);
+    let bare = max(1.0 - dielectric(clamp(value_prepared(0u).y, 0.1, 10.0), at), 1e-6);
+    let entered = (vec3(1.0) - openpbr_boundary(at, m)) / bare;
+    var left = vec3(1.0);
+    if m.coat_weight > 0.0 {
+        left = openpbr_through(mu, m);
+    }
+    let tint = select(m.transmission_colour, vec3(1.0), m.transmission_depth > 0.0);
+    let above = openpbr_above(mu, curve_boundaries(mu).z, curve_fuzz(mu).z, m);
+    return (1.0 - m.metallic) * m.transmission_weight * above * entered * left * tint * tint;
+}
+
 fn response(light: vec3<f32>, view: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
     var l = to_local(frame, light);
     var v = to_local(frame, view);
+    var behind = false;
+    if LIGHT_PASSES {
+        // From behind a thin sheet, mirrored to the side of the viewer.
+        behind = l.z < 0.0 && openpbr_sheet_part(m) > 0.0;
+        l.z = select(l.z, -l.z, behind);
+    }
     if min(l.z, v.z) <= 0.0 {
         return Terms(vec3(0.0), vec3(0.0), vec3(0.0));
     }
@@ -59,14 +127,38 @@ fn response(light: vec3<f32>, view: vec3<f32>, frame: Frame, m: Parameters) -> T
     let rest = max(vec2(1.0) - average.xy, vec2(1e-6));
     let coupled = missing_l * missing.xy / rest;
 
+    let single = PI * l.z * openpbr_facets(h, l, v, alphas.xy);
+    var scattered = vec3(0.0);
+    if LIGHT_PASSES {
+        let part = openpbr_sheet_part(m);
+        if part > 0.0 {
+            let share = (1.0 - m.metallic) * part;
+            let pane = openpbr_sheet(glass, cos_d, m);
+            var again = Slab(vec3(0.0), vec3(0.0));
+            if tint.w >= 0.0016 {
+                again = openpbr_sheet(openpbr_boundary(2.0 / 3.0, m), 2.0 / 3.0, m);
+            }
+            let bounced = min(coupled.x * l.z, 1.0);
+            if behind {
+                let straight = select(0.0, single, tint.w > MINIMUM_ALPHA);
+                let passed = straight * pane.transmittance + bounced * again.transmittance;
+                return terms_through(share * openpbr_above(v.z, at_v.z, curve_fuzz(v.z).z, m) * passed);
+            }
+            glass = mix(glass, pane.reflectance, part);
+            scattered = share * m.specular_colour * bounced * again.reflectance;
+        }
+    }
     let once = (1.0 - m.metallic) * m.specular_colour * glass
         + m.metallic * min(m.specular_strength * metal, vec3(1.0));
-    var specular = PI * l.z * openpbr_facets(h, l, v, alphas.xy) * once;
+    var specular = single * once + scattered;
     if tint.w >= 0.0016 {
         specular += m.metallic * min(coupled.x * l.z, 1.0) * min(m.specular_strength * mean, vec3(1.0)) * mean;
     }
     let rho = (1.0 - m.metallic) * f0;
     var diffuse = rho * eon(l.z, v.z, dot(l, v), m.base_diffuse_roughness, rho) * (coupled.y * l.z);
+    if LIGHT_PASSES {
+        diffuse *= 1.0 - m.transmission_weight;
+    }
 
     if m.coat_weight > 0.0 {
         let below = openpbr_through(l.z, m) * openpbr_through(v.z, m) * value_prepared(4u).rgb

@@ -180,6 +180,8 @@ pub enum Ground {
         centre: [f64; 2],
         /// The radius at the end of the scale.
         radius: f64,
+        /// True if the half plane below the surface is shown too.
+        around: bool,
     },
     /// The pictures: left, top, right, bottom of each.
     Slices(Vec<[f64; 4]>),

@@ -7,7 +7,7 @@ use super::{
     size,
 };
 
-/// A polar plot of the half plane above a surface.
+/// A polar plot of the half plane above a surface, or of both half planes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polar {
     /// The content, for screen readers.
@@ -20,6 +20,8 @@ pub struct Polar {
     pub series: Vec<Series>,
     /// The angle between the light, at the left, and the normal, degrees.
     pub light: f64,
+    /// True if the half plane below the surface is shown too.
+    pub around: bool,
     /// Width and height.
     pub size: (u32, u32),
     /// True if the plot has a legend, at the right.
@@ -34,7 +36,9 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
     let parts = Around { size: size(plot.size), heading: &plot.heading, notes: &plot.notes, legend };
     let [left, top, right, bottom] = layout::around(pen, &parts);
     let bottom = bottom - 2.0 * FONT - 16.0;
-    let [centre, floor] = [0.5 * (left + right), bottom];
+    // Below the surface there is room for labels as above it.
+    let below = if plot.around { 0.5 * (bottom - top) + 0.2 * FONT } else { 0.0 };
+    let [centre, floor] = [0.5 * (left + right), bottom - below];
     let named = named(plot.light);
     // Labels at the sides need room outside the circle.
     let sideways = |(angle, name): &(f64, String)| {
@@ -42,7 +46,8 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
         room / angle.to_radians().sin().abs().max(0.1)
     };
     let room = named.iter().map(sideways).fold(0.5 * (right - left) - 2.0 * FONT, f64::min);
-    let full = room.min(bottom - top - 2.2 * FONT).max(20.0);
+    let full = room.min(floor - top - 2.2 * FONT).max(20.0);
+    let most = if plot.around { 180.0 } else { 90.0 };
     let at = |angle: f64, radius: f64| {
         let (sin, cos) = angle.to_radians().sin_cos();
         [centre + radius * sin, floor - radius * cos]
@@ -53,22 +58,22 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
         if label.is_empty() || r > full + 0.5 {
             continue;
         }
-        pen.stroke(&arc([centre, floor], r, -90.0, 90.0), Ink::Grid, 1.0, &[]);
+        pen.stroke(&arc([centre, floor], r, -most, most), Ink::Grid, 1.0, &[]);
         let half = 0.5 * pen.width(FONT - 2.0, &label);
         if centre + r - half > free {
             pen.text([centre + r, floor + FONT + 3.0], Anchor::Middle, FONT - 2.0, &label);
             free = centre + r + half + 5.0;
         }
     }
-    for angle in [-90.0, -60.0, -30.0, 0.0, 30.0, 60.0, 90.0f64] {
+    for angle in (-5..=6).map(|i| 30.0 * f64::from(i)).filter(|angle| angle.abs() <= most) {
         pen.stroke(&[at(angle, 0.0), at(angle, full)], Ink::Grid, 1.0, &[]);
-        if angle.abs() < 85.0 && named.iter().all(|(other, _)| (other - angle).abs() > 12.0) {
+        if (angle.abs() - 90.0).abs() > 5.0 && named.iter().all(|(other, _)| (other - angle).abs() > 12.0) {
             label(pen, at(angle, full + 0.7 * FONT), angle, &format!("{:.0}°", angle.abs()));
         }
     }
-    pen.stroke(&arc([centre, floor], full, -90.0, 90.0), Ink::Grid, 1.0, &[]);
+    pen.stroke(&arc([centre, floor], full, -most, most), Ink::Grid, 1.0, &[]);
     pen.stroke(&[[centre - full - FONT, floor], [centre + full + FONT, floor]], Ink::Text, 1.5, &[]);
-    pen.text([centre, floor + 2.0 * FONT + 13.0], Anchor::Middle, FONT, &plot.radius.label);
+    pen.text([centre, bottom + 2.0 * FONT + 13.0], Anchor::Middle, FONT, &plot.radius.label);
     for (angle, name) in &named {
         label(pen, at(*angle, full + 0.7 * FONT), *angle, name);
     }
@@ -105,7 +110,7 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
         }
     }
     pen.series(None);
-    Ground::Polar { centre: [centre, floor], radius: full }
+    Ground::Polar { centre: [centre, floor], radius: full, around: plot.around }
 }
 
 /// The labels of light and mirror direction with their angles; a single label if two would overlap.
@@ -119,9 +124,9 @@ fn named(light: f64) -> Vec<(f64, String)> {
 
 /// A label outside the circle.
 fn label(pen: &mut impl Pen, [x, y]: [f64; 2], angle: f64, text: &str) {
-    let anchor = match angle {
-        a if a < -12.0 => Anchor::End,
-        a if a > 12.0 => Anchor::Start,
+    let anchor = match angle.to_radians().sin() {
+        sine if sine < -0.2 => Anchor::End,
+        sine if sine > 0.2 => Anchor::Start,
         _ => Anchor::Middle,
     };
     pen.text([x, y + 0.2 * FONT], anchor, FONT - 2.0, text);

@@ -7,7 +7,7 @@ use base64::Engine as _;
 use super::pen::{Anchor, Ink, Pen};
 use crate::{
     lettering::Lettering,
-    render::capture::png::{About, encode},
+    picture::png::{About, encode},
     text::xml,
 };
 

@@ -36,6 +36,8 @@ pub struct Declaration {
     pub form: Form,
     /// The horizontal axis.
     pub horizontal: Horizontal,
+    /// True if the viewer goes all around surfaces that light passes through, not only above them.
+    pub is_around: bool,
     /// True if the quantity depends on the angle of the light.
     pub has_light: bool,
     /// True if it depends on the azimuth.
@@ -126,6 +128,7 @@ impl Declaration {
         symbols: |whole| if whole { &["I"] } else { &["I_d", "I_s"] },
         form: Form::Plot,
         horizontal: Horizontal::PLANE,
+        is_around: true,
         has_light: true,
         has_azimuth: true,
         is_scalar: false,
@@ -145,5 +148,6 @@ impl Declaration {
     };
 
     /// A factor of microfacet models, or an integral: it cannot be measured at single directions.
-    pub(super) const UNMEASURED: Self = Self { of_measured: None, rises: |_| false, ..Self::IN_PLANE };
+    pub(super) const UNMEASURED: Self =
+        Self { of_measured: None, is_around: false, rises: |_| false, ..Self::IN_PLANE };
 }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
     curves::{Detail, Setup, Subject, curve},
-    optics::{colour::Encoding, geometry::mirror},
+    optics::{Terms, colour::Encoding, geometry::mirror},
     parameter::{Value, Values},
     registry::Registry,
 };
@@ -59,6 +59,8 @@ fn every_length_is_the_value_of_the_curves() {
         ("blinn_phong", vec![("alpha", Value::Integer(1000))]),
         ("ward", vec![("alpha_x", Value::Number(0.1)), ("alpha_y", Value::Number(0.4))]),
         ("metallic_roughness", vec![]),
+        ("diffuse_transmission", vec![]),
+        ("rough_dielectric", vec![("alpha_x", Value::Number(0.3)), ("alpha_y", Value::Number(0.3))]),
     ] {
         let entry = Registry::builtin().model(model).expect("built in").clone();
         let subject = Subject::model(&entry, &values(&set), Encoding::Srgb);
@@ -68,7 +70,7 @@ fn every_length_is_the_value_of_the_curves() {
         let plotted = curve(&subject, &setup, Detail::Fine, &Progress::NONE).expect("exists");
         let largest = lobe.largest();
         let (mut compared, mut sum) = (0, 0.0);
-        for point in plotted.points.iter().filter(|point| point.angle.abs() < 89.0) {
+        for point in plotted.points.iter().filter(|point| (point.angle.abs() - 90.0).abs() > 1.0) {
             let (theta, phi) = if point.angle < 0.0 { (-point.angle, 20.0) } else { (point.angle, 200.0) };
             let Some(found) = drawn(&lobe, room(&frame, theta, phi)) else { continue };
             let right = Channel::Luminance.of(point.rgb);
@@ -85,12 +87,13 @@ fn every_length_is_the_value_of_the_curves() {
         assert!(sum / f64::from(compared) < 0.01, "{model}: {sum} in all");
         // At the sampled directions, it is exact.
         for (way, found) in lobe.ways.iter().zip(&lobe.values) {
-            let right = Channel::Luminance.of(brdf_of(
-                surface.response(room(&frame, 50.0, 20.0), *way, &frame),
-                room(&frame, 50.0, 20.0),
-                *way,
-                &frame,
-            ));
+            let l = room(&frame, 50.0, 20.0);
+            let right = if frame.n.dot(*way) < 0.0 {
+                surface.behind(l, *way, &frame)
+            } else {
+                brdf_of(surface.response(l, *way, &frame), l, *way, &frame)
+            };
+            let right = Channel::Luminance.of(right);
             assert_eq!(*found, right);
         }
         // A wrong twin: the response, which has the cosine of the light.
@@ -224,4 +227,33 @@ fn light_from_below_gives_nothing_and_work_can_be_stopped() {
     assert_eq!(lobe(&*phong, -frame.n, &frame).largest(), 0.0);
     let stopped = Progress { tell: &|_, _| {}, cancelled: &|| true };
     assert_eq!(Lobe::new(&*phong, frame.n, &frame, TermSelection::All, &stopped), Err(Cancelled));
+}
+
+#[test]
+fn lobes_of_models_that_light_passes_through_are_over_both_sides() {
+    let frame = tilted();
+    let below = |lobe: &Lobe| {
+        let low = lobe.ways.iter().zip(&lobe.values).filter(|(way, _)| way.dot(frame.n) < -0.1);
+        low.map(|(_, value)| *value).collect::<Vec<_>>()
+    };
+    let paper = surface("diffuse_transmission", &[]);
+    let from_above = lobe(&*paper, room(&frame, 40.0, 10.0), &frame);
+    let half = 0.5 / std::f64::consts::PI;
+    assert!(below(&from_above).iter().all(|f| (f - half).abs() < 1e-5), "{:?}", below(&from_above));
+    // No rim: every edge has two triangles.
+    let mut edges_of: Vec<_> = from_above.triangles.iter().flat_map(|corners| edges(*corners)).collect();
+    edges_of.sort_unstable();
+    assert!(edges_of.chunk_by(|a, b| a == b).all(|same| same.len() == 2));
+    // Light from below comes out above.
+    let from_below = lobe(&*paper, room(&frame, 140.0, 10.0), &frame);
+    assert!(below(&from_below).iter().all(|f| *f == 0.0) && (from_below.largest() - half).abs() < 1e-5);
+    let only = |terms| {
+        let lobe = Lobe::new(&*paper, room(&frame, 40.0, 10.0), &frame, terms, &Progress::NONE);
+        lobe.expect("not cancelled")
+    };
+    let through = only(TermSelection::Transmitted);
+    assert!(through.values.iter().zip(&through.ways).all(|(f, way)| *f == 0.0 || way.dot(frame.n) < 0.0));
+    assert!(below(&only(TermSelection::Diffuse)).iter().all(|f| *f == 0.0));
+    let lambert = lobe(&*surface("lambert", &[]), room(&frame, 40.0, 10.0), &frame);
+    assert!(lambert.ways.iter().all(|way| way.dot(frame.n) > 0.0));
 }

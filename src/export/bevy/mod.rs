@@ -1,13 +1,16 @@
 //! The form `bevy`: a Cargo project with one `main.rs`, the shaders and the meshes of the scene.
 //!
-//! `program` writes `main.rs`, `words` converts values and names to Rust.
+//! `program` writes `main.rs`, `words` converts values and names to Rust, `bodies` has the meshes that light is followed
+//! through.
 
+use self::bodies::Bodies;
 use super::{Export, ExportError, File, Form, Makes, Progress, Request, lit::Lit, shader::Host};
 use crate::{
     optics::tone::{ToneMapping, exposure_factor},
     text::template::filled,
 };
 
+mod bodies;
 mod program;
 mod words;
 
@@ -39,11 +42,14 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
             "the edited loop.wgsl reads the exposure or the encoding, which the light loop of an export does not have",
         ));
     }
+    let bodies = Bodies::of(&lit)?;
     progress.step(0.5, "writing the program")?;
     let name = words::package(request.stem);
     let manifest = filled(MANIFEST, &[("name", &name)]);
-    let mut files =
-        vec![File::new("Cargo.toml", manifest), File::new("src/main.rs", program::text(&lit, &name))];
+    let mut files = vec![
+        File::new("Cargo.toml", manifest),
+        File::new("src/main.rs", program::text(&lit, &bodies, &name)),
+    ];
     for program in &lit.programs {
         let path = format!("assets/shaders/{}.wgsl", program.name());
         files.push(File::new(path, program.shader.text.as_str()));
@@ -56,7 +62,11 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         bytes.extend(mesh.indices.iter().flat_map(|i| i.to_le_bytes()));
         files.push(File::new(format!("assets/meshes/{}.bin", mesh.name), bytes));
     }
+    for (name, bytes) in bodies.all {
+        files.push(File::new(format!("assets/meshes/{name}_body.bin"), bytes));
+    }
     let mut notes = lit.notes();
+    notes.extend(bodies.notes);
     if display.backdrop().is_some() && display.tone_mapping != ToneMapping::None {
         let tone = display.tone_mapping.id();
         notes.push(format!(

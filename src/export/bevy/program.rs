@@ -7,10 +7,12 @@ use std::{
 
 use glam::Vec3;
 
+use super::bodies::Bodies;
 use super::words::{camel, comment, field as field_name, kind, number, snake, string, value, vector};
 use crate::{
     export::{
         Request,
+        bodies::WIDTH,
         lights::LightField,
         lit::{Lit, Material, MeshData, Program},
         names::Names,
@@ -19,9 +21,9 @@ use crate::{
         albedo::NODES,
         colour::{BACKGROUND, Encoding},
         lobes::MAX_LOBES,
+        tone::ToneMapping,
     },
     parameter::{Parameter, lanes},
-    render::camera::tonemapping,
     scene::{
         Background,
         observer::{NEAR, orientation},
@@ -32,8 +34,8 @@ use crate::{
     },
 };
 
-/// The program for a scene; `package` is its name.
-pub(super) fn text(lit: &Lit, package: &str) -> String {
+/// The program for a scene with these bodies; `package` is its name.
+pub(super) fn text(lit: &Lit, bodies: &Bodies, package: &str) -> String {
     let Request { scene, stem, size: (width, height), .. } = lit.request;
     let observer = &scene.observer;
     let gradient = scene.display.background == Background::Gradient;
@@ -42,13 +44,16 @@ pub(super) fn text(lit: &Lit, package: &str) -> String {
     let title = scene.name.as_deref().unwrap_or(stem);
     let mut names = Names::default();
     let meshes: Vec<_> = lit.meshes.iter().map(|m| names.unique(snake(&m.name))).collect();
-    let spawns: String = lit.programs.iter().enumerate().map(|(i, p)| spawn(lit, i, p, &meshes)).collect();
+    let spawns: String =
+        lit.programs.iter().enumerate().map(|(i, p)| spawn(lit, i, p, &meshes, bodies)).collect();
     let polygons = lit.programs.iter().any(Program::faces);
     let main = chosen(include_str!("template/main.rs.txt"), |part| match part {
         "described" => scene.description.is_some(),
         "lamps" => lit.programs.iter().any(|p| p.shader.reads_lamps),
         "srgb" => spawns.contains("srgb("),
         "polygons" => polygons,
+        "bodies" => !bodies.all.is_empty(),
+        "no_bodies" => bodies.all.is_empty(),
         "gradient" => gradient,
         "plain" => !gradient,
         _ => lit.programs.iter().any(|p| !p.faces()),
@@ -82,15 +87,27 @@ pub(super) fn text(lit: &Lit, package: &str) -> String {
             ("package", &package),
             ("window", &string(title)),
             ("plugins", &all(&plugin)),
-            ("tone_mapping", &format!("{:?}", tonemapping(scene.display.tone_mapping))),
+            ("tone_mapping", &tonemapping(scene.display.tone_mapping)),
             ("up", &up(observer.direction)),
-            ("meshes", &meshes.iter().map(|name| format!("    {name}: Handle<Mesh>,\n")).collect::<String>()),
+            ("meshes", &handles(&meshes, "Mesh")),
             ("shaders", &shaders(lit)),
             ("mesh_files", &mesh_files(lit, &meshes)),
+            ("bodies", &handles(bodies.all.iter().map(|(name, _)| name), "Image")),
+            ("body_files", &body_files(bodies)),
+            ("body_width", &WIDTH),
             ("spawns", &spawns),
             ("all_attributes", &attributes(polygons)),
         ],
     )
+}
+
+/// Bevy's name of a tone mapping.
+fn tonemapping(tone: ToneMapping) -> String {
+    match tone {
+        ToneMapping::Aces => "AcesFitted".to_owned(),
+        // The rest are called as here.
+        other => format!("{other:?}"),
+    }
 }
 
 /// The name of the attributes of vertices.
@@ -200,6 +217,7 @@ fn with_inputs(template: &str, program: &Program) -> String {
         "curve" => shader.reads_curve,
         "shading" => shader.reads_shading,
         "lamps" => shader.reads_lamps,
+        "body" => shader.reads_body,
         _ => shader.reads_lobes,
     })
 }
@@ -296,7 +314,9 @@ fn curve_type(length: usize) -> String {
 
 /// The statements of the program for a material type.
 fn plugin(program: &Program) -> String {
-    let places: &[(&str, &dyn Display)] = &[("type", &type_name(program)), ("program", &program.name())];
+    let after = if program.shader.reads_body { "load_bodies" } else { "load" };
+    let places: &[(&str, &dyn Display)] =
+        &[("type", &type_name(program)), ("program", &program.name()), ("after", &after)];
     filled(include_str!("template/plugin.rs.txt"), places)
 }
 
@@ -319,21 +339,37 @@ fn shaders(lit: &Lit) -> String {
     }
 }
 
-/// The meshes with their files, broken into lines as rustfmt would.
+/// The fields of a struct with handles.
+fn handles<'a>(names: impl IntoIterator<Item = &'a String>, of: &str) -> String {
+    names.into_iter().map(|name| format!("    {name}: Handle<{of}>,\n")).collect()
+}
+
+/// The meshes with their files.
 fn mesh_files(lit: &Lit, meshes: &[String]) -> String {
-    let line = |(mesh, name): (&MeshData, &String)| {
-        let file = format!("\"../assets/meshes/{}.bin\"", mesh.name);
-        let line = format!("        {name}: meshes.add(mesh(include_bytes!({file}))),\n");
-        if line.len() <= 101 {
-            return line;
-        }
-        format!("        {name}: meshes.add(mesh(include_bytes!(\n            {file}\n        ))),\n")
-    };
+    let line = |(mesh, name): (&MeshData, &String)| included(name, "meshes.add(mesh", &mesh.name);
     lit.meshes.iter().zip(meshes).map(line).collect()
 }
 
+/// The bodies with their files.
+fn body_files(bodies: &Bodies) -> String {
+    let line = |(name, _): &(String, _)| included(name, "images.add(body", &format!("{name}_body"));
+    bodies.all.iter().map(line).collect()
+}
+
+/// A field with the content of a file, broken into lines as rustfmt would.
+fn included(field: &str, read: &str, file: &str) -> String {
+    let file = format!("\"../assets/meshes/{file}.bin\"");
+    let line = format!("        {field}: {read}(include_bytes!({file}))),\n");
+    // The argument of `add`: rustfmt allows calls 60 characters for theirs.
+    let argument = "mesh(include_bytes!())".len() + file.len();
+    if line.len() <= 101 && argument <= 60 {
+        return line;
+    }
+    format!("        {field}: {read}(include_bytes!(\n            {file}\n        ))),\n")
+}
+
 /// The system that spawns the objects of a material type.
-fn spawn(lit: &Lit, index: usize, program: &Program, meshes: &[String]) -> String {
+fn spawn(lit: &Lit, index: usize, program: &Program, meshes: &[String], bodies: &Bodies) -> String {
     let mut taken = Names::default();
     let mut handles = BTreeMap::new();
     let mut materials = String::new();
@@ -345,7 +381,8 @@ fn spawn(lit: &Lit, index: usize, program: &Program, meshes: &[String]) -> Strin
             .filter(|name| !name.is_empty())
             .unwrap_or_else(|| program.model.declaration.id.to_owned());
         let handle = taken.unique(format!("{base}_material"));
-        materials.push_str(&new_material(lit, program, material, &handle));
+        let body = bodies.of_materials.get(&m).map_or("", |body| bodies.all[*body].0.as_str());
+        materials.push_str(&new_material(lit, program, material, (&handle, body)));
         handles.insert(m, handle);
     }
     let mut objects = String::new();
@@ -359,7 +396,7 @@ fn spawn(lit: &Lit, index: usize, program: &Program, meshes: &[String]) -> Strin
         let _ = writeln!(objects, "        ({name}, &meshes.{mesh}, &{material}, {place}),");
     }
     filled(
-        include_str!("template/spawn.rs.txt"),
+        &with_inputs(include_str!("template/spawn.rs.txt"), program),
         &[
             ("model", &program.model.declaration.name),
             ("shading", &program.shading.declaration.name),
@@ -371,8 +408,8 @@ fn spawn(lit: &Lit, index: usize, program: &Program, meshes: &[String]) -> Strin
     )
 }
 
-/// The statement that makes a material.
-fn new_material(lit: &Lit, program: &Program, material: &Material, handle: &str) -> String {
+/// The statement that makes a material, by its name and that of its body.
+fn new_material(lit: &Lit, program: &Program, material: &Material, (handle, body): (&str, &str)) -> String {
     let encoding = lit.request.scene.display.encoding;
     let length = program.model.curve_length();
     let nodes = material.curve.get(..16 * length).unwrap_or_default();
@@ -392,6 +429,8 @@ fn new_material(lit: &Lit, program: &Program, material: &Material, handle: &str)
             ("shading", &camel(program.shading.declaration.id)),
             ("shading_parameters", &values(program.shading.parameters, material, encoding)),
             ("lobes", &rows(&material.lobes, "            ")),
+            ("interior", &rows(&material.interior, "            ")),
+            ("body", &body),
         ],
     )
 }

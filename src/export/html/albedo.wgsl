@@ -23,6 +23,12 @@ fn albedo_fragment(@builtin(position) place: vec4<f32>) -> @location(0) vec4<u32
     let frame = frame_new(vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0));
     let parts = f32(ALBEDO_RINGS * ALBEDO_TURNS);
     var sum = vec3(0.0);
+[[sharp]]
+    // Light that does not spread.
+    for (var i = 0u; i < {{most}}u; i++) {
+        sum += sharp(i, v, frame, parameters).share;
+    }
+[[]]
     for (var turn = 0u; turn < ALBEDO_TURNS; turn++) {
         let phi = (f32(turn) + 0.5) * 2.0 * ALBEDO_PI / f32(ALBEDO_TURNS);
         // Half vectors from the plane of incidence, up to those that put the light on the horizon.
@@ -47,6 +53,11 @@ fn albedo_fragment(@builtin(position) place: vec4<f32>) -> @location(0) vec4<u32
             let l_s = 2.0 * v_h * h - v;
             let stretch = 2.0 * ALBEDO_PI * sin(theta_h) * theta_max * 4.0 * t3 * 4.0 * v_h * part;
             sum += response(l_s, v, frame, parameters).specular * stretch / ALBEDO_PI;
+[[transmits]]
+            // The transmitted term over the same directions below the surface.
+            let through = response(vec3(l_s.xy, -l_s.z), v, frame, parameters);
+            sum += (through.ambient + through.diffuse + through.specular) * stretch / ALBEDO_PI;
+[[]]
         }
     }
     return vec4(bitcast<vec3<u32>>(sum), 0u);

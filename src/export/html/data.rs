@@ -1,6 +1,6 @@
 //! The scene in the form that the page reads.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, hash_map::Entry};
 
 use serde_json::{Map, Value as Json, json};
 
@@ -13,16 +13,21 @@ use super::{
 };
 use crate::{
     export::{
-        ExportError, Progress, Request, lit::Lit, object_path, shader::LIGHT_SAMPLES, shaders::alone,
+        ExportError, Progress, Request,
+        bodies::Body,
+        lit::{Lit, Program},
+        object_path,
+        shader::LIGHT_SAMPLES,
+        shaders::alone,
         view::called,
     },
     optics::{TermSelection, colour::srgb_encode},
     parameter::{Parameter, Value, json as value, layout, stride},
-    reflection::{Ambient, ModelEntry, OnPages},
+    reflection::{Ambient, ModelEntry, OnPages, Passage},
     registry::Registry,
     scene::{Scene, variant::LETTERS},
     shading::ShadingEntry,
-    shape::MeshKey,
+    shape::{MeshKey, PolygonMesh},
 };
 
 /// The scene, and its meshes.
@@ -34,7 +39,7 @@ pub struct Data {
     pub meshes: Vec<u8>,
     /// Explanations of a point's colour, by the letters of the views; empty unless requested.
     pub points: Map<String, Json>,
-    /// The curves that the models recalculate when a parameter changes.
+    /// What the models recalculate when a parameter changes: curves, and the inside of solid bodies.
     pub script: String,
     /// Sentences about differences from the picture in the lab.
     pub notes: Vec<String>,
@@ -62,7 +67,8 @@ struct Shared {
     texts: Texts,
     blocks: Blocks,
     meshes: Meshes,
-    scripts: BTreeMap<&'static str, &'static str>,
+    /// By the list of functions and the model.
+    scripts: BTreeMap<(&'static str, &'static str), &'static str>,
     /// Each note once, in the order of the views.
     notes: Vec<String>,
 }
@@ -128,7 +134,8 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
         "texts": shared.texts.json(),
         "blocks": shared.blocks.json(),
     });
-    let script = |(id, script): (&&str, &&str)| format!("CURVES[{}] = {script};\n", json!(id));
+    let script =
+        |((list, id), script): (&(&str, &str), &&str)| format!("{list}[{}] = {script};\n", json!(id));
     let script = shared.scripts.iter().map(script).collect();
     Ok(Data { scene: data, meshes: shared.meshes.bytes, notes: shared.notes, points, script })
 }
@@ -162,15 +169,24 @@ fn view(
         for lit in &lits {
             programs.push(program(lit, &lit.objects[at], &mut shared.texts, &mut shared.blocks)?);
         }
-        models.push(model((of_model.model, registry), lit, &programs, &mut shared.blocks));
-        shared.scripts.extend(twin(of_model.model, registry).map(|(id, _, twin)| (id, twin.script)));
-        let fixed = fixed(of_model.model, registry);
+        models.push(model((of_model, registry), lit, &programs, &mut shared.blocks));
+        shared
+            .scripts
+            .extend(twin(of_model.model, registry).map(|(id, _, twin)| (("CURVES", id), twin.script)));
+        let inside = of_model.model.interior_on_pages().filter(|_| of_model.shader.reads_body);
+        shared.scripts.extend(inside.map(|script| (("INTERIORS", of_model.model.declaration.id), script)));
+        let fixed = fixed(of_model, registry);
         shared.note(fixed.map(|why| format!("{}: {why}.", of_model.model.declaration.name)));
+        if of_model.passage != Passage::NONE && !deciding(of_model, scene).is_empty() {
+            let name = of_model.model.declaration.name;
+            let walls = if of_model.passage.solid { "bodies stay solid" } else { "walls stay thin" };
+            shared.note([format!("{name}: its {walls} on the page, as anything else takes another shader.")]);
+        }
     }
 
     step(0.8, "packing its meshes")?;
     let tangents = lit.programs.iter().any(|p| p.model.declaration.anisotropic);
-    let mesh_of = shared.meshes.of(lit, tangents)?;
+    let (mesh_of, open) = shared.meshes.of(lit, tangents)?;
     let objects: Vec<_> = lit
         .objects
         .iter()
@@ -191,11 +207,13 @@ fn view(
                 // As exported: parameters change the material, and the mean is right for any lobes.
                 "lobes": (!material.lobes.is_empty()).then(|| shared.blocks.add(&material.lobes)),
                 "curve": (!material.curve.is_empty()).then(|| shared.blocks.add(&material.curve)),
+                "interior": (!material.interior.is_empty()).then(|| shared.blocks.add(&material.interior)),
             })
         })
         .collect();
     shared.note(lit.notes());
     shared.note(normals(lit));
+    shared.note(open);
     let observer = &scene.observer;
     Ok(json!({
         "models": models,
@@ -206,6 +224,8 @@ fn view(
             "fieldOfView": observer.field_of_view,
         },
         "lightSamples": lit.lights.has_extent().then_some(LIGHT_SAMPLES),
+        // Much work, which is drawn in steps.
+        "slow": lit.lights.has_extent() || lit.programs.iter().any(|p| p.shader.reads_body),
         "exposure": scene.display.exposure,
         "encoding": scene.display.encoding.id(),
         "background": lit.background().map(|v| srgb_encode(v.clamp(0.0, 1.0))).to_array(),
@@ -231,46 +251,67 @@ struct Meshes {
     all: Vec<Json>,
     bytes: Vec<u8>,
     known: HashMap<(MeshKey, bool), usize>,
+    /// Those of solid bodies, by index.
+    bodies: HashMap<usize, Body>,
 }
 
 impl Meshes {
-    /// The index of the mesh of each object.
-    fn of(&mut self, lit: &Lit, tangents: bool) -> Result<Vec<usize>, ExportError> {
+    /// The index of the mesh of each object, and a sentence for each body whose mesh is not closed.
+    fn of(&mut self, lit: &Lit, tangents: bool) -> Result<(Vec<usize>, Vec<String>), ExportError> {
         let Request { scene, registry, .. } = lit.request;
-        let mut of_objects = Vec::new();
+        let (mut of_objects, mut open) = (Vec::new(), Vec::new());
         for drawn in &lit.objects {
             let object = &scene.objects[drawn.index];
             // Known, since the scene could be taken apart.
             let Some(shape) = registry.shape(&object.object_type) else { continue };
             let key = (shape.key(&object.shape, object.tessellation), tangents);
-            if let Some(index) = self.known.get(&key) {
-                of_objects.push(*index);
-                continue;
+            let polygons = || shape.mesh(&object.shape, shape.tessellation(object.tessellation));
+            let index = match self.known.get(&key) {
+                Some(index) => *index,
+                None => {
+                    let index = self.add(&polygons(), tangents)?;
+                    self.known.insert(key, index);
+                    index
+                }
+            };
+            of_objects.push(index);
+            if lit.programs[lit.materials[drawn.material].program].shader.reads_body {
+                if let Entry::Vacant(place) = self.bodies.entry(index) {
+                    let body = Body::of(&polygons());
+                    body.fits(limits::TEXTURE)?;
+                    self.all[index]["closed"] = json!(body.is_closed());
+                    place.insert(body);
+                }
+                let note =
+                    self.bodies.get(&index).and_then(|body| body.note(&object_path(scene, drawn.index)));
+                open.extend(note);
             }
-            let polygons = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
-            limits::mesh(&polygons)?;
-            let packed = mesh::pack(&polygons, tangents);
-            self.known.insert(key, self.all.len());
-            of_objects.push(self.all.len());
-            self.all.push(json!({
-                "vertices": packed.vertices,
-                "polygons": packed.polygons,
-                "step": packed.step,
-                "tangents": packed.tangents,
-                "at": self.bytes.len(),
-            }));
-            self.bytes.extend(packed.bytes);
         }
-        Ok(of_objects)
+        Ok((of_objects, open))
+    }
+
+    fn add(&mut self, polygons: &PolygonMesh, tangents: bool) -> Result<usize, ExportError> {
+        limits::mesh(polygons)?;
+        let packed = mesh::pack(polygons, tangents);
+        self.all.push(json!({
+            "vertices": packed.vertices,
+            "polygons": packed.polygons,
+            "step": packed.step,
+            "tangents": packed.tangents,
+            "at": self.bytes.len(),
+        }));
+        self.bytes.extend(packed.bytes);
+        Ok(self.all.len() - 1)
     }
 }
 
 fn model(
-    (entry, registry): (&ModelEntry, &Registry),
+    (of_model, registry): (&Program, &Registry),
     lit: &Lit,
     programs: &[Json],
     blocks: &mut Blocks,
 ) -> Json {
+    let entry = of_model.model;
     let what = entry.declaration;
     let uniform = lit.lights.uniform;
     let curves = entry.curves().iter().map(|curve| json!({ "name": curve.name, "length": curve.length() }));
@@ -298,7 +339,7 @@ fn model(
         "source": what.source,
         "summary": what.summary,
         "equation": parts,
-        "parameters": parameters(entry.parameters),
+        "parameters": without_knobs(parameters(entry.parameters), &deciding(of_model, lit.request.scene)),
         "size": stride(entry.parameters),
         "harmonics": entry.harmonics(),
         // The parts of the curve that the shaders read.
@@ -306,7 +347,7 @@ fn model(
         "lobe": lobe(entry),
         "curves": curves.collect::<Vec<_>>(),
         "twin": twin,
-        "fixed": fixed(entry, registry),
+        "fixed": fixed(of_model, registry),
         "programs": programs,
     })
 }
@@ -326,12 +367,56 @@ fn twin<'a>(entry: &ModelEntry, registry: &'a Registry) -> Option<(&'static str,
 }
 
 /// The reason why a page cannot change any parameter of a model; `None` if it can.
-fn fixed(entry: &ModelEntry, registry: &Registry) -> Option<&'static str> {
+fn fixed(of_model: &Program, registry: &Registry) -> Option<&'static str> {
+    let entry = of_model.model;
     let none = entry.lobe_of().is_none() && entry.curves().is_empty();
     let follows = none || twin(entry, registry).is_some() || lobe(entry) != Json::Null;
-    (!follows).then_some(
-        "its knobs are fixed on the page, since only the program calculates its multiple scattering",
+    if !follows {
+        return Some(
+            "its knobs are fixed on the page, since only the program calculates its multiple scattering",
+        );
+    }
+    let inside = of_model.passage.solid && entry.interior_on_pages().is_none();
+    inside.then_some(
+        "its knobs are fixed on the page, since only the program calculates the inside of its body",
     )
+}
+
+/// The parameters of a model that may change how light passes, which the shaders of a page cannot follow. Where no light
+/// passes, the others of their group have no effect either.
+fn deciding(of_model: &Program, scene: &Scene) -> Vec<&'static str> {
+    let (entry, passage) = (of_model.model, of_model.passage);
+    if !entry.passage_varies() {
+        return Vec::new();
+    }
+    let own = || {
+        let of_model = scene.objects.iter().filter(|object| scene.model_of(object) == entry.declaration.id);
+        of_model.filter(|object| entry.passage(&object.material).solid == passage.solid)
+    };
+    let decides = |p: &&Parameter| {
+        own().any(|object| {
+            p.ends().into_iter().any(|end| {
+                let mut values = object.material.clone();
+                values.set(p.name, end);
+                passage | entry.passage(&values) != passage
+            })
+        })
+    };
+    let mut names: Vec<_> = entry.parameters.iter().filter(decides).map(|p| p.name).collect();
+    if passage == Passage::NONE {
+        let groups = entry.groups.iter().filter(|group| group.parameters.iter().any(|p| names.contains(p)));
+        let others: Vec<_> = groups.flat_map(|group| group.parameters.iter().copied()).collect();
+        names.extend(others);
+    }
+    names
+}
+
+/// Parameters, those with these names without a knob.
+fn without_knobs(mut all: Vec<Json>, names: &[&str]) -> Vec<Json> {
+    for p in all.iter_mut().filter(|p| names.iter().any(|name| p["name"] == *name)) {
+        p["hidden"] = json!(true);
+    }
+    all
 }
 
 fn parameters(all: &[Parameter]) -> Vec<Json> {

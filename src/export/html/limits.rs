@@ -9,6 +9,8 @@ const UNIFORM: usize = 65_536;
 const UNIFORMS: usize = 12;
 /// Bytes in one vertex buffer.
 const VERTICES: usize = 1 << 28;
+/// Height of a texture.
+pub const TEXTURE: u32 = 2048;
 /// Bytes of a vertex with data of its polygon: six attributes of three floats.
 const STRIDE: usize = 72;
 

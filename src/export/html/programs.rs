@@ -12,7 +12,9 @@ use crate::{
         shader::module,
         translate::{ENTRY_POINTS, Glsl, glsl},
     },
+    optics::sharp,
     shading::Stage,
+    text::template::{chosen, filled},
 };
 
 /// WebGL 2.
@@ -23,8 +25,8 @@ const ALBEDO: &str = include_str!("albedo.wgsl");
 const ALBEDO_ENTRY_POINTS: [(&str, ShaderStage); 2] =
     [("albedo_vertex", ShaderStage::Vertex), ("albedo_fragment", ShaderStage::Fragment)];
 /// Uniforms that differ between objects, written by the page. The others are shared by all.
-const OF_OBJECTS: [&str; 6] =
-    ["parameters", "albedo_curve", "material_lobes", "shading_values", "view", "placement"];
+const OF_OBJECTS: [&str; 7] =
+    ["parameters", "albedo_curve", "material_lobes", "interior", "shading_values", "view", "placement"];
 
 /// A shader and its uniforms.
 ///
@@ -55,8 +57,12 @@ pub fn program(
     for entry in ENTRY_POINTS {
         stages.push(stage(&glsl(&checked, &info, WEBGL, entry)?, texts));
     }
+    let rows = checked.global_variables.iter().find(|(_, g)| g.name.as_deref() == Some("solid_rows"));
     Ok(json!({
         "faces": program.faces(),
+        "faceted": program.shading.declaration.faceted,
+        // The texture with the hierarchy of the object's mesh, for solid bodies.
+        "body": rows.and_then(|(_, global)| Some(global.binding?.binding)),
         // Lit at the corners of triangles, not at pixels.
         "corners": program.shading.declaration.stage != Stage::Pixel,
         "wgsl": texts.add(text),
@@ -71,7 +77,10 @@ fn albedo(program: &Program, texts: &mut Texts) -> Result<Json, ExportError> {
     if !program.shader.reads_curve {
         return Ok(Json::Null);
     }
-    let text = format!("{}{ALBEDO}", program.shader.text);
+    let passage = program.passage;
+    let wanted = |part: &str| if part == "sharp" { passage.sharp } else { passage.transmits };
+    let integral = filled(&chosen(ALBEDO, wanted), &[("most", &sharp::MOST)]);
+    let text = [&program.shader.text, &program.shader.beside, &*integral].concat();
     let (checked, info) = module(&text)?;
     let mut stages = Vec::new();
     for entry in ALBEDO_ENTRY_POINTS {

@@ -4,13 +4,14 @@
 //! and the exact Fresnel term of n + ik, which is that of a dielectric where k = 0. The diffuse part of
 //! `principled` is Burley's. Models that are merely similar are refused: the masking of `principled` differs
 //! from that of our metallic–roughness by up to half at grazing angles, and `roughplastic` lets light through
-//! its boundary by another law.
+//! its boundary by another law. `dielectric`, `roughdielectric` and `thindielectric` are glass, one rough boundary and
+//! thin glass, without colour.
 
 use glam::Vec3;
 
-use super::xml::Xml;
+use super::{through::Through, xml::Xml};
 use crate::{
-    optics::colour::Encoding,
+    optics::{colour::Encoding, distribution::MINIMUM_ALPHA},
     parameter::{Value, Values},
     reflection::{Ambient, ModelEntry},
 };
@@ -30,13 +31,15 @@ pub(super) struct Bsdf {
     pub(super) xml: Xml,
     /// True if it depends on the brush direction of the surface.
     pub(super) brushed: bool,
+    /// Where the light goes that is not reflected.
+    pub(super) through: Through,
     /// A remaining difference.
     pub(super) note: Option<&'static str>,
 }
 
 impl Bsdf {
     fn of(xml: Xml) -> Self {
-        Self { xml, brushed: false, note: None }
+        Self { xml, brushed: false, through: Through::Nowhere, note: None }
     }
 }
 
@@ -57,7 +60,14 @@ const COUNTERPARTS: &[(&str, Counterpart)] = &[
     ("oren_nayar", |m| matte(m, "sigma")),
     ("cook_torrance", |m| matte(m, "specular_weight")),
     ("torrance_sparrow", |m| matte(m, "specular_weight")),
+    ("glass", glass),
+    ("rough_dielectric", rough_dielectric),
+    ("thin_glass", thin_glass),
 ];
+
+/// The difference of rough facets.
+const BECKMANN: &str =
+    "Mitsuba approximates the masking of Beckmann's distribution; it differs by up to 0.6 %";
 
 impl Material<'_> {
     /// The counterpart of the material.
@@ -149,12 +159,56 @@ fn microfacet(m: &Material) -> Result<Bsdf, String> {
         let absorbs = if fresnel == "conductor" { m.colour("extinction") } else { Vec3::ZERO };
         xml.rgb("eta", m.colour("ior")).rgb("k", absorbs)
     };
-    let note = "Mitsuba approximates the masking of Beckmann's distribution; it differs by up to 0.6 %";
     Ok(Bsdf {
-        xml: xml.set("string", "distribution", &distribution).float("alpha_u", x).float("alpha_v", y),
         brushed: x != y,
-        note: (distribution == "beckmann").then_some(note),
+        note: (distribution == "beckmann").then_some(BECKMANN),
+        ..Bsdf::of(xml.set("string", "distribution", &distribution).float("alpha_u", x).float("alpha_v", y))
     })
+}
+
+/// A boundary or plate of the model's refractive index in a vacuum.
+fn dielectric(m: &Material, plugin: &str) -> Xml {
+    Xml::plugin("bsdf", plugin).float("int_ior", m.number("refractive_index")).float("ext_ior", 1.0)
+}
+
+/// The roughness on the scale of GGX; smooth below the smallest.
+fn alpha(m: &Material) -> Option<f32> {
+    Some(m.number("roughness").powi(2)).filter(|alpha| *alpha >= MINIMUM_ALPHA)
+}
+
+fn glass(m: &Material) -> Result<Bsdf, String> {
+    if m.number("dispersion") != 0.0 || m.colour("transmittance_colour") != Vec3::ONE {
+        let what = "without dispersion, where transmittance_colour is white";
+        return Err(format!("Mitsuba has a counterpart only {what}"));
+    }
+    let xml = match alpha(m) {
+        Some(alpha) => {
+            dielectric(m, "roughdielectric").set("string", "distribution", "ggx").float("alpha", alpha)
+        }
+        None => dielectric(m, "dielectric"),
+    };
+    let note = "Mitsuba follows light that has left the body and meets it again, the lab does not";
+    Ok(Bsdf { through: Through::Body, note: Some(note), ..Bsdf::of(xml) })
+}
+
+fn rough_dielectric(m: &Material) -> Result<Bsdf, String> {
+    let facets = m.choice("facets");
+    let [x, y] = ["alpha_x", "alpha_y"].map(|name| m.number(name));
+    let xml = dielectric(m, "roughdielectric").set("string", "distribution", &facets);
+    Ok(Bsdf {
+        brushed: x != y,
+        through: Through::Sheet,
+        note: (facets == "beckmann").then_some(BECKMANN),
+        ..Bsdf::of(xml.float("alpha_u", x).float("alpha_v", y))
+    })
+}
+
+fn thin_glass(m: &Material) -> Result<Bsdf, String> {
+    if alpha(m).is_some() || m.colour("transmittance_colour") != Vec3::ONE {
+        let what = "where it is smooth and transmittance_colour is white";
+        return Err(format!("Mitsuba has a counterpart only {what}"));
+    }
+    Ok(Bsdf { through: Through::Sheet, ..Bsdf::of(dielectric(m, "thindielectric")) })
 }
 
 #[cfg(test)]
@@ -175,10 +229,12 @@ mod tests {
 
     #[test]
     fn every_model_has_a_counterpart_or_a_reason() {
+        const BY_DEFAULT: [&str; 5] =
+            ["lambert", "burley_diffuse", "glass", "rough_dielectric", "thin_glass"];
         for model in Registry::builtin().models() {
             let id = model.declaration.id;
             match of(id, &[], false) {
-                Ok(_) => assert!(["lambert", "burley_diffuse"].contains(&id), "{id}"),
+                Ok(_) => assert!(BY_DEFAULT.contains(&id), "{id}"),
                 Err(why) => assert!(why.contains(id) && why.contains("counterpart"), "{why}"),
             }
         }
@@ -203,6 +259,32 @@ mod tests {
         assert!(of("microfacet", &metal, true).is_ok_and(|bsdf| bsdf.brushed));
         metal.push(("multiple_scattering", choice("turquin")));
         assert!(of("microfacet", &metal, true).is_err());
+    }
+
+    #[test]
+    fn glass_has_a_counterpart_where_it_is_clear() {
+        let rough = |r: f32| ("roughness", Value::Number(r));
+        let written =
+            |id, values: &[(&'static str, Value)]| of(id, values, false).map(|bsdf| bsdf.xml.file(""));
+        assert!(written("glass", &[]).is_ok_and(|xml| xml.contains("\"dielectric\"")));
+        assert!(
+            written("glass", &[rough(0.5)])
+                .is_ok_and(|xml| xml.contains("\"roughdielectric\"") && xml.contains("\"0.25\""))
+        );
+        assert!(written("thin_glass", &[]).is_ok_and(|xml| xml.contains("\"thindielectric\"")));
+        let tinted = ("transmittance_colour", Value::Colour([200, 255, 220]));
+        for (id, value) in [
+            ("glass", tinted.clone()),
+            ("glass", ("dispersion", Value::Number(0.02))),
+            ("thin_glass", tinted),
+            ("thin_glass", rough(0.5)),
+        ] {
+            let name = value.0;
+            assert!(
+                of(id, &[value], false).is_err_and(|why| why.contains("counterpart only")),
+                "{id} {name}"
+            );
+        }
     }
 
     /// The ambient part of Phong's model is not an albedo, and each light adds it.

@@ -12,6 +12,7 @@ use self::{
     bsdf::{Bsdf, Material},
     emitter::{Emitter, Lamp},
     mesh::{Surface, ply},
+    through::{DEPTH, Through},
     xml::{Xml, look_at, to_world},
 };
 use super::{
@@ -21,7 +22,6 @@ use crate::{
     light::Incident,
     optics::{colour::Encoding, tone::ToneMapping},
     registry::compose,
-    render::entities::object_transform,
     scene::{
         Object, emitter, has_extent,
         observer::{NEAR, orientation},
@@ -34,6 +34,7 @@ use crate::{
 mod bsdf;
 mod emitter;
 mod mesh;
+mod through;
 mod xml;
 
 /// The form.
@@ -65,10 +66,9 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         return Err(ExportError::refused("no object is visible"));
     }
 
-    let mut file = Xml::element("scene version=\"3.5.0\"")
-        .says("Light that arrives straight from a lamp, as in the lab, but with shadows. With type=\"path\", light goes on from surface to surface.")
-        .with(Xml::plugin("integrator", "direct").set("boolean", "hide_emitters", "true"))
-        .with(sensor(request));
+    let within = objects.iter().any(|object| object.bsdf.through == Through::Body);
+    let (said, integrator) = integrator(within);
+    let mut file = Xml::element("scene version=\"3.5.0\"").says(said).with(integrator).with(sensor(request));
     let mut files = Vec::new();
     for (name, Emitter { xml, file: texture, .. }) in lights {
         file = xml.into_iter().fold(file.says(&name), Xml::with);
@@ -92,8 +92,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         notes.extend(bsdf.note.map(str::to_owned));
         let shape = Xml::plugin("shape", "ply").set("string", "filename", path);
         let shape = if smooth { shape } else { shape.set("boolean", "face_normals", "true") };
-        file =
-            file.says(&name).with(shape.with(to_world(object_transform(object).to_matrix())).with(bsdf.xml));
+        file = file.says(&name).with(shape.with(to_world(object.room_from_object())).with(bsdf.xml));
     }
     notes.extend(differences(request));
     let title = scene.name.as_deref().unwrap_or(request.stem);
@@ -152,6 +151,7 @@ fn objects<'a>(request: &'a Request, refused: &mut Refusals) -> Vec<Counterpart<
     let ambient = emitters
         .map(|(_, emitter, record)| emitter.incident(&record, Vec3::ZERO))
         .any(|incident| matches!(incident, Incident::Uniform { intensity } if intensity != Vec3::ZERO));
+    let shown = scene.objects.iter().filter(|object| object.visible).count();
     let mut found = Vec::new();
     for (i, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.visible) {
         let (model, shading) = (scene.model_of(object), scene.shading_model_of(object));
@@ -160,12 +160,17 @@ fn objects<'a>(request: &'a Request, refused: &mut Refusals) -> Vec<Counterpart<
         };
         let name = object_path(scene, i);
         let mut wrong = Vec::new();
-        let changed = compose::files(registry.sources(), model, shading, &[]);
+        let drawn = (model, model.passage(&object.material));
+        let changed = compose::files(registry.sources(), drawn, shading, &[]);
         let changed: Vec<_> = changed.into_iter().filter(|file| file.edited).map(|file| file.path).collect();
         if !changed.is_empty() {
             wrong.push(format!("the edited {} has no counterpart in Mitsuba", listed(&changed, "and")));
         }
         let bsdf = Material { model, values: &object.material, encoding, ambient }.bsdf();
+        let bsdf = bsdf.and_then(|bsdf| {
+            through::check(bsdf.through, object, registry, shown - 1)?;
+            Ok(bsdf)
+        });
         let id = shading.declaration.id;
         let smooth = SHADING.iter().find(|(known, _)| *known == id).map(|(_, smooth)| *smooth);
         if smooth.is_none() {
@@ -182,6 +187,22 @@ fn objects<'a>(request: &'a Request, refused: &mut Refusals) -> Vec<Counterpart<
         }
     }
     found
+}
+
+/// How light is followed, in words and for Mitsuba: from the lamps to the observer, or through the inside of a body.
+fn integrator(within: bool) -> (&'static str, Xml) {
+    let (said, xml) = if within {
+        let xml = Xml::plugin("integrator", "path").set("integer", "max_depth", &DEPTH.to_string());
+        // Nothing ends by chance before.
+        (
+            "Light goes through the body, with up to 16 reflections inside.",
+            xml.set("integer", "rr_depth", "1000"),
+        )
+    } else {
+        let said = "Light that arrives straight from a lamp, as in the lab, but with shadows. With type=\"path\", light goes on from surface to surface.";
+        (said, Xml::plugin("integrator", "direct"))
+    };
+    (said, xml.set("boolean", "hide_emitters", "true"))
 }
 
 fn sensor(request: &Request) -> Xml {

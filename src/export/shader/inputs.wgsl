@@ -31,17 +31,31 @@ fn lobe_mean() -> f32 {
 fn shading_parameters() -> ShadingParameters {
     return shading_values;
 }
-[[extent]]
-// The samples of light with extent. They are the same in every picture, and so is their noise.
+[[samples]]
+// The samples of light for each pixel. They are the same in every picture, and so is their noise.
 const LIGHT_SAMPLES: u32 = {{samples}}u;
+[[extent]]
 // The directions from which the material reflects most light. They guide the samples: any others give the same mean, with
 // another noise.
 @group({{group}}) @binding(7) var<uniform> material_lobes: array<vec4<f32>, {{lobes}}>;
 fn lobe_row(i: u32) -> vec4<f32> {
     return material_lobes[i];
 }
+[[samples]]
 // The seed of the samples: that of the pixel; 0 for all vertices, so that interpolation is smooth.
 var<private> sample_seed: u32;
+[[solid]]
+// The boundary of the body, and its inside: the refractive index, the coefficient of its dispersion, the width of facets, and
+// 1 if polygons have normals of their own; the absorption per metre.
+@group({{group}}) @binding(8) var<uniform> interior: array<vec4<f32>, 2>;
+fn interior_row(i: u32) -> vec4<f32> {
+    return interior[i];
+}
+// The triangles of the body and the boxes around them, in rows of four words; the first row is zero if its mesh is not closed.
+@group({{group}}) @binding(9) var solid_rows: texture_2d<u32>;
+fn hierarchy_row(i: u32) -> vec4<u32> {
+    return textureLoad(solid_rows, vec2(i % {{width}}u, i / {{width}}u), 0);
+}
 [[lamps]]
 // The numbers of the files of lamps.
 @group({{group}}) @binding(4) var<uniform> lamp_numbers: array<vec4<f32>, {{rows}}>;

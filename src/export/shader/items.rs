@@ -150,7 +150,7 @@ pub fn retain_used(sections: &mut [Vec<Item>], roots: &[&str]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::compose::{LIGHTS, OPTICS};
+    use crate::shader::compose::{LIGHTS, OPTICS, TRANSMISSION};
 
     #[test]
     fn a_text_is_cut_into_its_declarations() {
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn shipped_files_lose_nothing_but_their_headers() {
-        for source in OPTICS.iter().chain([&LIGHTS]) {
+        for source in OPTICS.iter().chain(TRANSMISSION).chain([&LIGHTS]) {
             let whole: String = items(source.text).into_iter().map(|item| item.text + "\n\n").collect();
             let count = |text: &str| text.matches("\nfn ").count() + text.matches("\nstruct ").count();
             assert_eq!(count(&format!("\n{whole}")), count(&format!("\n{}", source.text)), "{}", source.path);

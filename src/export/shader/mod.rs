@@ -13,23 +13,25 @@ use naga::{
 
 use self::items::{Item, fields, items, retain_used};
 use super::{
-    ExportError,
+    ExportError, bodies,
     lights::{LightField, Lights, call, stride},
 };
 use crate::{
     light::Twin,
     optics::{colour::Encoding, lobes::MAX_LOBES, tone::ToneMapping},
-    reflection::{Ambient, ModelEntry},
+    reflection::{Ambient, ModelEntry, Passage},
     registry::{
         Registry,
-        compose::{named_curves, part},
+        compose::{named_curves, part, passes, sides},
     },
     shader::{
         Source,
         check::reason,
         compose::{
-            ALBEDO, Composer, EXTENDED, LIGHTS, LOOP, OPTICS, SAMPLING, SHADING, Sources, parameter_struct,
+            ABSORPTION, ALBEDO, Composer, DISPERSION, EXTENDED, HIERARCHY, INSIDE, LIGHTS, LOOP, OPTICS,
+            SAMPLING, SHADING, Sources, THROUGH, TRANSMISSION, parameter_struct,
         },
+        definitions::definition,
     },
     shading::{self, ShadingEntry, Stage},
     text::{
@@ -75,8 +77,12 @@ pub struct Shader {
     pub reads_lamps: bool,
     /// True if the shader reads `material_lobes`, the lobes of the material.
     pub reads_lobes: bool,
+    /// True if the shader reads `interior`, the inside of a solid body, and `solid_rows`, the hierarchy of its mesh.
+    pub reads_body: bool,
     /// True if an edited light loop reads more of `illumination` than the lights.
     pub reads_header: bool,
+    /// Declarations that the picture does not need: with them, the text has all that the albedo of the model takes.
+    pub beside: String,
 }
 
 /// Number of samples of light with extent that a shader takes for each pixel, or for each vertex or polygon.
@@ -99,7 +105,7 @@ struct Section {
 pub fn compose(
     lights: &Lights,
     registry: &Registry,
-    model: &ModelEntry,
+    (model, passage): (&ModelEntry, Passage),
     shading: &ShadingEntry,
     host: Host,
 ) -> Result<Shader, ExportError> {
@@ -109,15 +115,15 @@ pub fn compose(
     let faces = shading.declaration.stage == Stage::Polygon;
     let (own, standing) = (model.declaration, shading.declaration);
     let mut sections = vec![
-        Section { heading: String::new(), items: items(&wrapper::text(host, faces, lights.has_extent())) },
-        Section { heading: String::new(), items: items(&inputs(lights, model, shading, host)) },
+        Section { heading: String::new(), items: items(&wrapper::text(host, faces, lights, passage)) },
+        Section { heading: String::new(), items: items(&inputs(lights, (model, passage), shading, host)) },
         Section {
             heading: credit(standing.name, "shading", standing.source, standing.summary),
             items: items(&text(sources, &standing.wgsl)?),
         },
         Section {
             heading: "The light that leaves a point: the sum over the lights.".to_owned(),
-            items: items(&(light_loop(sources, lights)? + &dispatch(lights))),
+            items: items(&(light_loop(sources, lights, passage)? + &dispatch(lights))),
         },
     ];
     for entry in &lights.types {
@@ -134,19 +140,27 @@ pub fn compose(
     for part in own.equation {
         let _ = write!(heading, "\n    {}", part.text);
     }
-    let mut response = text(sources, &own.wgsl)?;
+    let mut response = if own.sharp { part("sharp", &[]) } else { String::new() };
+    let own_text = text(sources, &own.wgsl)?;
+    response.push_str(&passes(model, passage, &own_text));
+    response.push_str(&own_text);
     if own.ambient == Ambient::Albedo {
         response.push_str(&part("ambient", &[]));
     }
     sections.push(Section { heading, items: items(&response) });
+    if passage.solid {
+        let heading = "The way of light through the body, along the triangles of its mesh.".to_owned();
+        sections.push(Section { heading, items: items(&body(sources, lights, &response)?) });
+    }
     let mut vocabulary = Vec::new();
-    for source in OPTICS.iter().chain([&SHADING, &LIGHTS, &ALBEDO]) {
+    let transmission = if own.transmits { TRANSMISSION } else { &[] };
+    for source in OPTICS.iter().chain(transmission).chain([&SHADING, &LIGHTS, &ALBEDO]) {
         // The record of a light is generated for the scene.
         let all = items(&text(sources, source)?);
         vocabulary.extend(all.into_iter().filter(|item| !MADE.contains(&item.name.as_str())));
     }
     vocabulary.extend(items(&named_curves(model)));
-    if lights.has_extent() {
+    if lights.has_extent() || passage.solid {
         // GLSL for WebGL 2 lacks a function that reverses bits.
         let sampling = text(sources, &SAMPLING)?.replace("reverseBits(", "bits_reversed(");
         vocabulary.extend(items(&(sampling + include_str!("bits_reversed.wgsl"))));
@@ -209,25 +223,64 @@ fn text(sources: &Sources, source: &Source) -> Result<String, ExportError> {
 }
 
 /// The light loop, with a known number of lights and all terms. Of the built-in one, what the scene does not need goes.
-fn light_loop(sources: &Sources, lights: &Lights) -> Result<String, ExportError> {
+fn light_loop(sources: &Sources, lights: &Lights, passage: Passage) -> Result<String, ExportError> {
     let extent = lights.has_extent();
-    let (mut joined, mut simpler) = (String::new(), SIMPLER);
-    for source in [LOOP, EXTENDED].iter().take(if extent { 2 } else { 1 }) {
+    let all = if extent { &[LOOP, EXTENDED][..] } else { &[LOOP] };
+    let mut joined = String::new();
+    for source in all {
         joined.push_str(&text(sources, source)?);
-        if sources.text(source) != source.text {
-            simpler = &[];
-        }
     }
+    joined.push_str(&sides(passage, extent));
     if !extent {
         joined = joined.replace(" + extended(position, v, frame)", "");
     }
-    for (general, special) in simpler.iter().chain(KNOWN) {
-        joined = joined.replace(general, special);
+    if !passage.solid {
+        joined = joined.replace(" + through(position, v, frame, selection)", "");
     }
+    joined = specialised(joined, lights, is_edited(sources, all));
     if !lights.uniform {
         joined = joined.replace(EITHER, DIRECTED);
     }
+    if !passage.transmits {
+        joined = joined.replace("counts(local.z)", "local.z > 0.0");
+    }
+    if !passage.sharp {
+        joined = joined.replace(UNSPREAD, "");
+    }
     Ok(joined)
+}
+
+/// The way of light through a solid body of a model with this source, for the lights of the scene.
+fn body(sources: &Sources, lights: &Lights, model: &str) -> Result<String, ExportError> {
+    let all = [DISPERSION, ABSORPTION, HIERARCHY, INSIDE, THROUGH];
+    let mut joined = String::new();
+    for source in &all {
+        joined.push_str(&text(sources, source)?);
+    }
+    if !lights.has_extent() {
+        joined.push_str(&part("no_extent", &[]));
+    }
+    if definition(model, "entering").is_none() {
+        joined.push_str(&part("entering", &[]));
+    }
+    Ok(specialised(joined, lights, is_edited(sources, &all)))
+}
+
+fn is_edited(sources: &Sources, all: &[Source]) -> bool {
+    all.iter().any(|source| sources.text(source) != source.text)
+}
+
+/// A part of the light loop with what is known for the scene; simpler, unless it is edited.
+fn specialised(mut text: String, lights: &Lights, edited: bool) -> String {
+    let simpler = if edited { &[] } else { SIMPLER };
+    for (general, special) in simpler.iter().chain(KNOWN) {
+        text = text.replace(general, special);
+    }
+    if !lights.has_extent() {
+        // So the type of a light is read where other models of the scene read it.
+        text = text.replace("has_extent(light.light_type)", "false");
+    }
+    text
 }
 
 /// Parts of the built-in light loop, and their replacements if all terms are shown.
@@ -241,7 +294,30 @@ const SIMPLER: &[(&str, &str)] = &[
         "    for (var i = 0u; i < LIGHT_COUNT; i++) {\n",
     ),
     ("    let selection = illumination.terms;\n", ""),
-    ("select_terms(terms, selection)", "(terms.ambient + terms.diffuse + terms.specular)"),
+    (
+        "select_terms(terms, on_side(selection, dot(frame.n, arriving.l)))",
+        "(terms.ambient + terms.diffuse + terms.specular)",
+    ),
+    (
+        "select_terms(terms, on_side(selection, dot(frame.n, chosen.l)))",
+        "(terms.ambient + terms.diffuse + terms.specular)",
+    ),
+    (
+        "            let shown = on_side(selection, dot(frame.n, way.l));
+            let terms = Terms(vec3(0.0), vec3(0.0), PI * way.share);
+            colour += select_terms(terms, shown) * radiance_from(position, way.l);
+",
+        "            colour += PI * way.share * radiance_from(position, way.l);\n",
+    ),
+    (
+        "    let remains = selection == TERM_REMAINING;
+    if selection != TERM_ALL && selection != TERM_TRANSMITTED && !remains {
+        return vec3(0.0);
+    }
+",
+        "    let remains = false;\n",
+    ),
+    (", frame, selection)", ", frame, TERM_ALL)"),
 ];
 /// Expressions known for the scene, in any light loop.
 const KNOWN: &[(&str, &str)] = &[
@@ -263,6 +339,9 @@ const EITHER: &str = "        var terms: Terms;
 ";
 /// The replacement of that part without uniform light.
 const DIRECTED: &str = "        let terms = response(arriving.l, v, frame, parameters);\n";
+
+/// The part of the light loop for light that does not spread.
+const UNSPREAD: &str = " + unspread(position, view_direction, frame, TERM_ALL)";
 
 /// The functions that dispatch a light to its type.
 fn dispatch(lights: &Lights) -> String {
@@ -304,12 +383,19 @@ fn function(text: &mut String, lights: &Lights, twin: &Twin, name: &str, extent:
 }
 
 /// The inputs of the shader: their types, bindings, and the functions that read them.
-fn inputs(lights: &Lights, model: &ModelEntry, shading: &ShadingEntry, host: Host) -> String {
+fn inputs(
+    lights: &Lights,
+    (model, passage): (&ModelEntry, Passage),
+    shading: &ShadingEntry,
+    host: Host,
+) -> String {
     let wanted = |part: &str| match part {
         "curve" => model.has_curve(),
         "shading" => !shading.parameters.is_empty(),
         "extent" => lights.has_extent(),
         "lamps" => !lights.numbers.is_empty(),
+        "solid" => passage.solid,
+        "samples" => lights.has_extent() || passage.solid,
         // Surroundings may have a picture.
         _ => lights.numbers.is_empty() && lights.has_extent(),
     };
@@ -323,6 +409,7 @@ fn inputs(lights: &Lights, model: &ModelEntry, shading: &ShadingEntry, host: Hos
         ("shading", &parameter_struct(shading::PARAMETERS, shading.parameters)),
         ("samples", &LIGHT_SAMPLES),
         ("lobes", &MAX_LOBES),
+        ("width", &bodies::WIDTH),
         ("rows", &lights.numbers.len().div_ceil(4)),
     ];
     filled(&chosen(include_str!("inputs.wgsl"), wanted), places)
@@ -331,7 +418,12 @@ fn inputs(lights: &Lights, model: &ModelEntry, shading: &ShadingEntry, host: Hos
 /// Drops unused parts, then builds the record of a light from the fields that are left.
 fn finish(sections: Vec<Section>, lights: &Lights, host: Host) -> Shader {
     let (headings, mut all): (Vec<_>, Vec<_>) = sections.into_iter().map(|s| (s.heading, s.items)).unzip();
+    let mut more = all.clone();
     retain_used(&mut all, &["vertex", "fragment"]);
+    retain_used(&mut more, &["vertex", "fragment", "sharp"]);
+    let has = |name: &str| all.iter().flatten().any(|item| item.name == name);
+    let beside = more.iter().flatten().filter(|item| !has(&item.name));
+    let beside = beside.fold(String::new(), |text, item| text + "\n" + &item.text + "\n");
     // In the light loop and the light types, a field name refers to a light, or equals the name of a light's
     // field. Both are the same for all models of a scene, and so is the record.
     let handling = LIGHT_LOOP..LIGHT_LOOP + 1 + lights.types.len();
@@ -355,7 +447,7 @@ fn finish(sections: Vec<Section>, lights: &Lights, host: Host) -> Shader {
     let has = |name: &str| all.iter().flatten().any(|item| item.name == name);
     let (reads_curve, reads_shading, reads_lamps) =
         (has("albedo_curve"), has("shading_values"), has("lamp_numbers"));
-    let reads_lobes = has("material_lobes");
+    let (reads_lobes, reads_body) = (has("material_lobes"), has("solid_rows"));
     let mut text = wrapper::prelude(host).to_owned();
     // Inputs come first.
     for section in [1, 0].into_iter().chain(2..all.len()) {
@@ -375,7 +467,17 @@ fn finish(sections: Vec<Section>, lights: &Lights, host: Host) -> Shader {
         }
     }
     let reads_header = illumination.is_some_and(|text| text.matches(':').count() > 1);
-    Shader { text, light_fields, reads_curve, reads_shading, reads_lamps, reads_lobes, reads_header }
+    Shader {
+        text,
+        light_fields,
+        reads_curve,
+        reads_shading,
+        reads_lamps,
+        reads_lobes,
+        reads_body,
+        reads_header,
+        beside,
+    }
 }
 
 /// A line for a comment, wrapped at spaces to the line width of the files.

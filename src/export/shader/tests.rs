@@ -1,5 +1,7 @@
 use super::*;
 use crate::{
+    optics::sharp,
+    parameter::Values,
     scene::{Light, Scene},
     shader::compose::LOOP,
 };
@@ -12,6 +14,11 @@ fn with_lights(types: &[&str], registry: &Registry) -> Scene {
         scene.lights.push(light);
     }
     scene
+}
+
+/// A model with its defaults.
+fn of(model: &ModelEntry) -> (&ModelEntry, Passage) {
+    (model, model.passage(&Values::default()))
 }
 
 const ALONE: Host = Host::Alone { tone: ToneMapping::None, encoding: Encoding::Srgb };
@@ -27,9 +34,13 @@ fn every_model_is_valid_by_itself_in_every_shading_model() {
     ] {
         let scene = with_lights(types, &registry);
         let lights = Lights::of(&scene, &registry);
-        for model in registry.models() {
+        let all =
+            registry.models().iter().flat_map(|m| m.passages().into_iter().map(move |passage| (m, passage)));
+        for (model, passage) in all {
             for shading in registry.shading_models() {
-                let shader = compose(&lights, &registry, model, shading, ALONE).expect("composed");
+                let shader = compose(&lights, &registry, (model, passage), shading, ALONE).expect("composed");
+                assert_eq!(shader.reads_body, passage.solid);
+                assert!(!shader.reads_header, "{}", shader.text);
                 let (checked, _) = module(&shader.text)
                     .unwrap_or_else(|error| panic!("{}: {error}\n{}", model.declaration.id, shader.text));
                 let light = checked.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Light"));
@@ -46,8 +57,9 @@ fn parts_that_a_scene_does_not_need_are_left_out() {
     let scene = with_lights(&["point"], &registry);
     let (lambert, gouraud) =
         (registry.model("lambert").expect("is"), registry.shading_model("gouraud").expect("is"));
-    let text =
-        compose(&Lights::of(&scene, &registry), &registry, lambert, gouraud, ALONE).expect("composed").text;
+    let text = compose(&Lights::of(&scene, &registry), &registry, of(lambert), gouraud, ALONE)
+        .expect("composed")
+        .text;
     for absent in [
         "incident_spot",
         "ambient_response",
@@ -66,8 +78,9 @@ fn parts_that_a_scene_does_not_need_are_left_out() {
         assert!(text.contains(present), "{present} not in\n{text}");
     }
     let scene = with_lights(&["point", "ambient"], &registry);
-    let text =
-        compose(&Lights::of(&scene, &registry), &registry, lambert, gouraud, ALONE).expect("composed").text;
+    let text = compose(&Lights::of(&scene, &registry), &registry, of(lambert), gouraud, ALONE)
+        .expect("composed")
+        .text;
     assert!(text.contains("ambient_response") && text.contains("light_type"), "{text}");
 }
 
@@ -80,7 +93,7 @@ fn light_with_extent_is_sampled_where_there_is_some() {
         (registry.model("lambert").expect("is"), registry.shading_model("phong").expect("is"));
     let of = |types: &[&str]| {
         let scene = with_lights(types, &registry);
-        compose(&Lights::of(&scene, &registry), &registry, model, shading, ALONE).expect("composed")
+        compose(&Lights::of(&scene, &registry), &registry, of(model), shading, ALONE).expect("composed")
     };
     let without = of(&["point"]);
     for part in ["extended", "sample_seed", "LIGHT_SAMPLES", "material_lobes"] {
@@ -102,11 +115,45 @@ fn light_with_extent_is_sampled_where_there_is_some() {
     assert!(with.reads_lobes && !with.reads_header && !with.text.contains("reverseBits"));
 }
 
+/// A solid body is followed where the lights with extent and uniform light are; the record of a light stays that of the
+/// other models.
+#[test]
+fn light_goes_through_solid_bodies_alone() {
+    let registry = Registry::builtin();
+    let shading = registry.shading_model("phong").expect("is");
+    for types in [&["rectangle"][..], &["point"], &["environment", "point"], &["ambient"], &[]] {
+        let scene = with_lights(types, &registry);
+        let lights = Lights::of(&scene, &registry);
+        let with = |id: &str| {
+            let drawn = of(registry.model(id).expect("is"));
+            compose(&lights, &registry, drawn, shading, ALONE).expect("composed")
+        };
+        let (solid, thin) = (with("glass"), with("thin_glass"));
+        for part in
+            ["solid_rows: texture_2d<u32>", "fn follow_inside", "fn walk_inside", "LIGHT_SAMPLES: u32"]
+        {
+            assert!(solid.text.contains(part), "{part} not in\n{}", solid.text);
+        }
+        for part in ["solid_rows", "interior", "through(", "mesh_functions", "first_sample"] {
+            assert!(!thin.text.contains(part), "{part} in\n{}", thin.text);
+        }
+        for part in
+            ["object_instance", "mesh_functions", "first_sample", "illumination.terms", "select_terms"]
+        {
+            assert!(!solid.text.contains(part), "{part} in\n{}", solid.text);
+        }
+        assert_eq!(solid.light_fields, thin.light_fields, "{types:?}");
+    }
+}
+
 #[test]
 fn the_light_loop_has_the_parts_that_are_simplified() {
+    let unspread = part("unspread", &[("most", &sharp::MOST)]);
     for part in SIMPLER.iter().map(|(general, _)| *general).chain([EITHER]) {
-        assert!(LOOP.text.contains(part), "{part}");
+        let texts = [LOOP.text, EXTENDED.text, THROUGH.text, &unspread];
+        assert!(texts.iter().any(|text| text.contains(part)), "{part}");
     }
+    assert!(THROUGH.text.contains("has_extent(light.light_type)"));
 }
 
 #[test]
@@ -117,7 +164,8 @@ fn an_edited_light_loop_stays_as_it_is_and_stands_alone() {
     let scene = with_lights(&["point", "spot"], &registry);
     let (model, shading) =
         (registry.model("phong").expect("is"), registry.shading_model("phong").expect("is"));
-    let shader = compose(&Lights::of(&scene, &registry), &registry, model, shading, ALONE).expect("composed");
+    let shader =
+        compose(&Lights::of(&scene, &registry), &registry, of(model), shading, ALONE).expect("composed");
     assert!(shader.text.contains("let strange = LIGHT_COUNT") && !shader.reads_header, "{}", shader.text);
     module(&shader.text).expect("valid");
 }
@@ -131,7 +179,7 @@ fn names_that_exports_have_themselves_are_refused_in_models() {
     let (model, shading) =
         (registry.model("phong").expect("is"), registry.shading_model("phong").expect("is"));
     let refused =
-        compose(&Lights::of(&scene, &registry), &registry, model, shading, ALONE).expect_err("twice");
+        compose(&Lights::of(&scene, &registry), &registry, of(model), shading, ALONE).expect_err("twice");
     assert!(refused.to_string().starts_with("a shader declares `srgb_encode`, a name"), "{refused}");
 }
 
@@ -142,13 +190,13 @@ fn the_files_of_lamps_and_the_lights_must_fit_into_a_uniform() {
     let (model, shading) =
         (registry.model("phong").expect("is"), registry.shading_model("phong").expect("is"));
     let mut lights = Lights::of(&scene, &registry);
-    assert!(compose(&lights, &registry, model, shading, ALONE).is_ok());
+    assert!(compose(&lights, &registry, of(model), shading, ALONE).is_ok());
     lights.numbers.resize(20_000, 0.0);
-    let refused = compose(&lights, &registry, model, shading, ALONE).expect_err("too much");
+    let refused = compose(&lights, &registry, of(model), shading, ALONE).expect_err("too much");
     assert!(refused.to_string().contains("80000 bytes in total, but a uniform holds 65536"), "{refused}");
     lights.numbers.clear();
     lights.rows = vec![lights.rows[0].clone(); 2000];
-    let refused = compose(&lights, &registry, model, shading, ALONE).expect_err("too much").to_string();
+    let refused = compose(&lights, &registry, of(model), shading, ALONE).expect_err("too much").to_string();
     assert!(
         refused.starts_with("the lights take ") && refused.contains("a uniform holds 65536"),
         "{refused}"
@@ -168,7 +216,7 @@ fn the_record_of_a_light_is_the_same_for_all_models_of_a_scene() {
     let lights = Lights::of(&scene, &registry);
     let shading = registry.shading_model("phong").expect("is");
     let fields = |id: &str| {
-        compose(&lights, &registry, registry.model(id).expect("is"), shading, ALONE)
+        compose(&lights, &registry, of(registry.model(id).expect("is")), shading, ALONE)
             .expect("composed")
             .light_fields
     };

@@ -1,8 +1,9 @@
 //! The entry points of an exported shader: the twins of `assets/shaders/wrapper.wgsl` for one object at a time.
 
-use super::Host;
+use super::{Host, Lights};
 use crate::{
     optics::{colour::Encoding, tone::ToneMapping},
+    reflection::Passage,
     text::template::{chosen, filled},
 };
 
@@ -22,9 +23,9 @@ pub(super) fn group(host: Host) -> &'static str {
     }
 }
 
-/// The entry points and the bindings used only by them; with `faces`, vertices contain data of their polygon;
-/// with `samples`, pixels have a seed.
-pub(super) fn text(host: Host, faces: bool, samples: bool) -> String {
+/// The entry points and the bindings used only by them; with `faces`, vertices contain data of their polygon.
+/// With samples, pixels have a seed, and bodies know their place.
+pub(super) fn text(host: Host, faces: bool, lights: &Lights, passage: Passage) -> String {
     let (name, tone, exposure) = match host {
         Host::Alone { tone, .. } => ("alone", format!("tone_{}", tone.id()), 1.0),
         Host::Bevy { exposure, .. } => ("bevy", String::new(), exposure),
@@ -39,7 +40,9 @@ pub(super) fn text(host: Host, faces: bool, samples: bool) -> String {
     };
     let wanted = |part: &str| match part {
         "faces" => faces,
-        "samples" => samples,
+        "samples" => lights.has_extent() || passage.solid,
+        "place" => passage.solid && name == "alone",
+        "instance" => passage.solid && name == "bevy",
         part => part == name || part == display,
     };
     let text = chosen(include_str!("wrapper.wgsl"), wanted);

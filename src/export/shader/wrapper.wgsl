@@ -12,6 +12,16 @@ struct Placement {
     room_from_object: mat4x4<f32>,
 }
 @group(0) @binding(6) var<uniform> placement: Placement;
+[[place]]
+fn solid_placement() -> mat4x4<f32> {
+    return placement.room_from_object;
+}
+[[instance]]
+// Where the object is found among all that are drawn.
+var<private> object_instance: u32;
+fn solid_placement() -> mat4x4<f32> {
+    return mesh_functions::get_world_from_local(object_instance);
+}
 [[]]
 struct VertexIn {
 [[bevy]]
@@ -33,6 +43,9 @@ struct Stages {
     @location(2) tangent: vec3<f32>,
     @location(3) colour: vec3<f32>,
     @location(4) offset: vec3<f32>,
+[[instance]]
+    @location(5) @interpolate(flat) instance: u32,
+[[]]
 }
 fn observer_position() -> vec3<f32> {
 [[alone]]
@@ -47,6 +60,9 @@ fn vertex(in: VertexIn) -> Stages {
     let room_from_object = placement.room_from_object;
 [[bevy]]
     let room_from_object = mesh_functions::get_world_from_local(in.instance_index);
+[[]]
+[[instance]]
+    object_instance = in.instance_index;
 [[]]
     var corner: Corner;
     corner.position = (room_from_object * vec4(in.position, 1.0)).xyz;
@@ -71,6 +87,9 @@ fn vertex(in: VertexIn) -> Stages {
     out.colour = passed.colour;
     // Small numbers, whose derivatives stay exact far from the origin.
     out.offset = (room_from_object * vec4(in.position, 0.0)).xyz;
+[[instance]]
+    out.instance = in.instance_index;
+[[]]
     return out;
 }
 @fragment
@@ -78,6 +97,8 @@ fn fragment(in: Stages) -> @location(0) vec4<f32> {
 [[samples]]
     let pixel = vec2<u32>(in.clip_position.xy);
     sample_seed = pixel.x | (pixel.y << 16u);
+[[instance]]
+    object_instance = in.instance;
 [[]]
     let passed = Varying(in.position, in.normal, in.tangent, in.colour, in.offset);
 [[clip]]

@@ -50,6 +50,11 @@ pub(super) fn spline(mu: f32) -> (usize, [f32; 4]) {
     }
 }
 
+/// The coefficients a₀, a₂, a₄ of the values at φ = 0°, 45° and 90°.
+fn harmonics_of([e0, e45, e90]: [Vec3; 3]) -> [Vec3; 3] {
+    [0.25 * (e0 + 2.0 * e45 + e90), 0.5 * (e0 - e90), 0.25 * (e0 - 2.0 * e45 + e90)]
+}
+
 /// The directional albedo of a surface as a function of the view, from values at [`NODES`] nodes, cubic between them.
 /// For anisotropic models, also of the azimuth of the view from the tangent: `E(μ, φ) ≈ a₀(μ) + a₂(μ) cos 2φ + a₄(μ)
 /// cos 4φ`, from φ = 0°, 45° and 90°: to 0.001 for GGX lobes of widths 3:2, 0.01 for 5:2; for widths 10:1 it smooths
@@ -78,6 +83,23 @@ impl AlbedoCurve {
             harmonics[0] = nodes(&response, 0.0, &Plan::isotropic()).map(|e| e.as_vec3());
         }
         Self { harmonics }
+    }
+
+    /// The curve with `more` added to the albedo of each view, in the local frame.
+    #[must_use]
+    pub fn with(mut self, more: impl Fn(Vec3) -> Vec3, anisotropic: bool) -> Self {
+        let at = |i, azimuth| more(node(i, azimuth));
+        for i in 0..NODES {
+            let mut add = |coefficients: [Vec3; 3]| {
+                self.harmonics.iter_mut().zip(coefficients).for_each(|(harmonic, c)| harmonic[i] += c);
+            };
+            if anisotropic {
+                add(harmonics_of([0.0, PI / 4.0, PI / 2.0].map(|azimuth| at(i, azimuth))));
+            } else {
+                add([at(i, 0.0), Vec3::ZERO, Vec3::ZERO]);
+            }
+        }
+        self
     }
 
     /// The albedo for a view from above.
@@ -147,6 +169,14 @@ impl LobeAlbedo {
     pub fn at(&self, mu: f32) -> f32 {
         let (i, weights) = spline(mu);
         let sum: f32 = weights.iter().zip(&self.nodes[i..]).map(|(weight, node)| weight * node).sum();
+        sum.clamp(0.0, 1.0)
+    }
+
+    /// `1 − E(μ)`, with all digits where E is nearly 1.
+    #[must_use]
+    pub fn loss(&self, mu: f32) -> f32 {
+        let (i, weights) = spline(mu);
+        let sum: f32 = weights.iter().zip(&self.nodes[i..]).map(|(weight, node)| weight * (1.0 - node)).sum();
         sum.clamp(0.0, 1.0)
     }
 

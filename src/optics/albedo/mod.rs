@@ -23,7 +23,7 @@ use std::convert::Infallible;
 
 use glam::{DVec3, Vec3};
 
-use super::{Frame, Terms};
+use super::{Frame, Terms, lobes::Lobes, sequence::Sequence};
 use cubature::{Plan, integrate};
 
 mod cubature;
@@ -62,6 +62,29 @@ pub fn directional(response: impl Fn(Vec3) -> Terms, v: Vec3, frame: &Frame) -> 
         Ok::<_, Infallible>(pairs.iter().map(|(l, _)| response(room(*l))).collect())
     });
     albedos[0]
+}
+
+/// The fraction of uniform light from below the surface that reaches the viewer: the mean of a transmitted response over
+/// `count` samples of the lobes below the surface.
+#[must_use]
+pub fn through(
+    transmitted: impl Fn(Vec3) -> Vec3,
+    lobes: &Lobes,
+    v: Vec3,
+    frame: &Frame,
+    count: u32,
+) -> Vec3 {
+    let (sequence, local, lobes) = (Sequence::new(0, 0), frame.to_local(v), lobes.below());
+    let response = |i| {
+        let l = lobes.sample(sequence.point(i), local);
+        let pdf = lobes.pdf(l, local);
+        if l.z >= 0.0 || pdf <= 0.0 {
+            return DVec3::ZERO;
+        }
+        (transmitted(l.x * frame.t + l.y * frame.b + l.z * frame.n) / pdf).as_dvec3()
+    };
+    let sum: DVec3 = (0..count).map(response).sum();
+    (sum / (std::f64::consts::PI * f64::from(count.max(1)))).as_vec3()
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! The equation at a point, light by light: symbolic, with numbers, and the result. One light is unfolded.
 
+use glam::Vec3;
+
 use super::{
     factors, pairs,
     probe::{self, Choice, Level, Unfolded},
@@ -133,7 +135,7 @@ fn place(ui: &mut Ui, spot: &Spot, seen: &Seen) {
 /// Shows one light: the result of the model first, since the user asked for it, then the arriving light, and the
 /// directions that both depend on.
 fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
-    if let Some(remark) = lit.remark() {
+    if let Some(remark) = lit.remark_on(&seen.model) {
         theme::note(ui, remark);
     }
     if !lit.is_dark() {
@@ -210,7 +212,11 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
             rows::inset(ui, |ui| rows::measured(ui, "=", lit.contribution, integral.error, true));
         }
         None => {
-            let product = format!("{sum} × {}", rows::formula(lit.arriving));
+            let mut product = format!("{sum} × {}", rows::formula(lit.arriving));
+            if lit.through != Vec3::ZERO {
+                theme::note(ui, "the last part comes through the body");
+                product.push_str(&format!(" + {}", rows::formula(lit.through)));
+            }
             rows::equation(ui, Term::Total, &product, true, &name);
             rows::inset(ui, |ui| drop(rows::light(ui, "=", lit.contribution, true)));
         }

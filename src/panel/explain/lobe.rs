@@ -105,10 +105,16 @@ pub fn lobes_shown_in(ctx: &Context, view: usize) -> Option<Arc<Lobes>> {
 }
 
 /// The lights whose lobes are shown, the brightest first, and the number of lobes without the limit [`MOST`].
-fn lights<'s>(ctx: &Context, spot: &'s Spot, all: bool) -> Result<(Vec<&'s Lit>, usize), String> {
+fn lights<'s>(
+    ctx: &Context,
+    seen: &Seen,
+    spot: &'s Spot,
+    all: bool,
+) -> Result<(Vec<&'s Lit>, usize), String> {
+    let transmits = seen.model.declaration.transmits;
     let reason = |lit: &Lit| match () {
         () if lit.leading().is_none() => Some("Ambient light has no direction, and so no lobe.".to_owned()),
-        () if lit.is_behind() => {
+        () if lit.is_behind() && !transmits => {
             Some("The surface faces away from the light: f is 0, and there is no lobe.".to_owned())
         }
         () => None,
@@ -194,7 +200,7 @@ pub(super) fn paint(
         None if terms == TermSelection::Ambient => {
             Err("The ambient term has no lobe: it answers light from all directions.".to_owned())
         }
-        None => lights(ui.ctx(), spot, all),
+        None => lights(ui.ctx(), seen, spot, all),
     };
     let (lights, count) = match found {
         Ok(found) => found,

@@ -27,6 +27,7 @@ mod lobe;
 mod pairs;
 mod point;
 mod probe;
+mod refraction;
 mod room;
 mod rows;
 mod side;
@@ -342,6 +343,7 @@ fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, re
         super::inspector::model::stage(ui, shading);
     }
     point::point(ui, seen, sight.is_some());
+    refraction::refraction(ui, seen);
 }
 
 fn seen_light(ui: &mut Ui, lamp: &Lamp, name: &dyn Fn(usize) -> String) {
@@ -351,6 +353,7 @@ fn seen_light(ui: &mut Ui, lamp: &Lamp, name: &dyn Fn(usize) -> String) {
     let text = "No object is at the centre of this pixel: the light itself is seen there.";
     ui.add(Label::new(text).wrap());
     rows::step(ui, "L, cd/m²", lamp.radiance, None);
+    rows::step(ui, "light = π L", lamp.light, None);
 }
 
 fn background(ui: &mut Ui, explanation: &Explanation) {

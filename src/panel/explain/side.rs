@@ -11,7 +11,7 @@ use crate::panel::{
 const APART: f32 = 0.02;
 
 /// The pinned point, and the direction that views the plane of its vectors face on: that of `N` and `L`, that of `N`
-/// and `V` if the former coincide, otherwise any plane with `N` in it.
+/// and `V` if the former coincide or light is bent, otherwise any plane with `N` in it.
 fn side(ctx: &Context, session: &Session) -> Option<Steer> {
     session.view.pinned?;
     let explained = probe::explained(ctx)?;
@@ -19,7 +19,8 @@ fn side(ctx: &Context, session: &Session) -> Option<Steer> {
     let (_, spot) = probe::shown_spot(ctx, seen)?;
     let l = probe::shown_light(ctx, spot).and_then(|lit| Some(lit.leading()?.l));
     let (up, right) = (session.facts.camera * Vec3::Y, session.facts.camera * Vec3::X);
-    let ways = l.into_iter().chain([spot.view, up, right]).map(|other| spot.normal.cross(other));
+    let bent = spot.refraction.as_ref().map(|_| spot.view);
+    let ways = bent.into_iter().chain(l).chain([spot.view, up, right]).map(|other| spot.normal.cross(other));
     let way = ways.into_iter().find(|way| way.is_finite() && way.length() > APART)?;
     Some(Steer::Along { point: seen.position, way: way.normalize() })
 }

@@ -10,11 +10,11 @@ use crate::{
 const NAME: &str = "Light in the plot: θ_i in degrees";
 const HELP: &str = "The direction of the light. Drag it; with the focus ← and → move it, with Shift by 10°.";
 
-/// Shows it, where the quantity depends on the light.
+/// Shows it, where the quantity depends on the light; the horizontal axis goes from an angle to another.
 pub(super) fn show(
     ui: &mut Ui,
     screen: &Screen,
-    ground: &Ground,
+    (ground, axis): (&Ground, [f64; 2]),
     unit: impl Fn(Pos2) -> [f64; 2],
     context: &mut PanelContext<'_>,
 ) {
@@ -22,10 +22,11 @@ pub(super) fn show(
     let (at, angle_of): (Pos2, Box<dyn Fn([f64; 2]) -> f64>) = match *ground {
         Ground::Plot(place) => {
             let [left, _, right, _] = place;
-            let at = lines(ui, screen, place, theta_i);
-            (at, Box::new(move |[x, _]| 90.0 - 180.0 * (x - left) / (right - left)))
+            let [from, to] = axis;
+            let at = lines(ui, screen, (place, axis), theta_i);
+            (at, Box::new(move |[x, _]| -(from + (to - from) * (x - left) / (right - left))))
         }
-        Ground::Polar { centre: [x, y], radius } => {
+        Ground::Polar { centre: [x, y], radius, .. } => {
             let (sin, cos) = theta_i.to_radians().sin_cos();
             // The circle has the label.
             let out = 0.88 * radius;
@@ -65,9 +66,14 @@ pub(super) fn show(
 }
 
 /// The directions of the light and of its mirror image in a plot over the angle. Returns the upper end of the light's.
-fn lines(ui: &Ui, screen: &Screen, [left, top, right, bottom]: [f64; 4], theta_i: f64) -> Pos2 {
+fn lines(
+    ui: &Ui,
+    screen: &Screen,
+    ([left, top, right, bottom], [from, to]): ([f64; 4], [f64; 2]),
+    theta_i: f64,
+) -> Pos2 {
     let palette = Palette::here(ui);
-    let x = |angle: f64| left + (angle + 90.0) / 180.0 * (right - left);
+    let x = |angle: f64| left + (angle - from) / (to - from) * (right - left);
     let line = |angle: f64| [screen.place([x(angle), top]), screen.place([x(angle), bottom])];
     ui.painter().extend(Shape::dashed_line(&line(theta_i), Stroke::new(1.0, palette.weak), 2.0, 3.0));
     ui.painter().line_segment(line(-theta_i), Stroke::new(1.0, palette.accent));

@@ -23,9 +23,9 @@ impl Reading {
                 let part = (x - left) / (right - left);
                 inside.then_some(Self::Angle(from + part * (to - from)))
             }
-            Ground::Polar { centre, radius } => {
+            Ground::Polar { centre, radius, around } => {
                 let [across, up] = [x - centre[0], centre[1] - y];
-                let inside = up >= 0.0 && (4.0..=radius + 8.0).contains(&across.hypot(up));
+                let inside = (up >= 0.0 || *around) && (4.0..=radius + 8.0).contains(&across.hypot(up));
                 inside.then(|| Self::Angle(across.atan2(up).to_degrees()))
             }
             Ground::Slices(places) => {
@@ -170,7 +170,7 @@ mod tests {
         assert_eq!(Reading::at([190.0, 10.0], &plot, [-90.0, 90.0]), Some(Reading::Angle(0.0)));
         assert_eq!(Reading::at([190.0, 10.0], &plot, [0.0, 90.0]), Some(Reading::Angle(45.0)));
         assert_eq!(Reading::at([99.0, 10.0], &plot, [-90.0, 90.0]), None);
-        let polar = Ground::Polar { centre: [100.0, 100.0], radius: 80.0 };
+        let polar = Ground::Polar { centre: [100.0, 100.0], radius: 80.0, around: false };
         let Some(Reading::Angle(angle)) = Reading::at([130.0, 70.0], &polar, [-90.0, 90.0]) else {
             panic!("inside")
         };

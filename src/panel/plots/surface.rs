@@ -32,6 +32,7 @@ impl PlotPanel {
         let ground = built.figure.draw(&mut screen);
         let axis = match &built.figure {
             Figure::Plot(plot) => [plot.x.from, plot.x.to],
+            Figure::Polar(polar) if polar.around => [-180.0, 180.0],
             _ => [-90.0, 90.0],
         };
         let unit = |at: Pos2| {
@@ -54,7 +55,7 @@ impl PlotPanel {
         }
         theme::says(&response, WidgetType::Image, says);
         if request.setup.kind.declaration().has_light {
-            handle::show(ui, &screen, &ground, unit, context);
+            handle::show(ui, &screen, (&ground, axis), unit, context);
         }
         match (empty, self.reading) {
             (Some(text), _) => says_instead(ui, place, text),
@@ -96,7 +97,7 @@ fn place_of(figure: &Figure, ground: &Ground, angle: f64, value: f64) -> Option<
             let y = bottom - plot.y.place(value) * (bottom - top);
             ([left + plot.x.place(angle) * (right - left), y], (*top - 0.5..=bottom + 0.5).contains(&y))
         }
-        (Figure::Polar(polar), Ground::Polar { centre: [x, y], radius }) => {
+        (Figure::Polar(polar), Ground::Polar { centre: [x, y], radius, .. }) => {
             let (sin, cos) = angle.to_radians().sin_cos();
             let part = polar.radius.place(value);
             let out = radius * part.max(0.0);
@@ -197,7 +198,7 @@ fn mark(ui: &Ui, screen: &Screen, ground: &Ground, built: &Built, reading: Readi
             painter.rect_filled(at.expand2(vec2(4.0, 1.0)), 2.0, palette.panel);
             painter.galley(at.min, label, palette.text);
         }
-        (Reading::Angle(angle), Ground::Polar { centre: [x, y], radius }, Figure::Polar(_)) => {
+        (Reading::Angle(angle), Ground::Polar { centre: [x, y], radius, .. }, Figure::Polar(_)) => {
             let (sin, cos) = angle.to_radians().sin_cos();
             let ends =
                 [0.0, 1.0].map(|part| screen.place([x + part * radius * sin, y - part * radius * cos]));

@@ -43,7 +43,8 @@ pub(super) fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
         return;
     };
     let lights = registry.lights_in(session.document.scene().light_types(registry));
-    let files = crate::registry::compose::files(registry.sources(), model, shading, &lights);
+    let passage = session.document.scene().passage_of(model);
+    let files = crate::registry::compose::files(registry.sources(), (model, passage), shading, &lights);
     let title = format!("{} · {}", model.declaration.name, shading.declaration.name);
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

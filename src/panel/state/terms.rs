@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use crate::{
     caught::lock,
-    optics::{Frame, TermSelection},
+    optics::{Frame, TERMS, TermSelection, Terms},
     parameter::Values,
     reflection::ModelEntry,
     registry::Registry,
@@ -22,8 +22,8 @@ const OBJECTS: usize = 256;
 /// Maximum number of cached results: dragging a slider adds one per value.
 const KEPT: usize = 256;
 
-/// True for each term that is not 0: ambient, diffuse, specular.
-type Present = [bool; 3];
+/// True for each term that is not 0: ambient, diffuse, specular, transmitted.
+type Present = [bool; TERMS];
 
 /// Cached results by model and material.
 #[derive(Clone, Debug, Default)]
@@ -39,7 +39,7 @@ impl KnownTerms {
 
     /// The terms that are not 0 everywhere in the picture of a scene.
     pub(super) fn present(&self, scene: &Scene, registry: &Registry) -> Vec<TermSelection> {
-        let mut present = [false; 3];
+        let mut present = [false; TERMS];
         let everywhere = shines_from_everywhere(scene.shining(), scene.display.encoding, registry);
         let mut last = None;
         for object in scene.shown().take(OBJECTS) {
@@ -51,12 +51,11 @@ impl KnownTerms {
             for (all, this) in present.iter_mut().zip(self.of(model, &object.material, scene, everywhere)) {
                 *all |= this;
             }
-            if present == [true; 3] {
+            if present == [true; TERMS] {
                 break;
             }
         }
-        let single = [TermSelection::Ambient, TermSelection::Diffuse, TermSelection::Specular];
-        single.into_iter().zip(present).filter(|(_, p)| *p).map(|(t, _)| t).collect()
+        TermSelection::ALL.into_iter().skip(1).zip(present).filter(|(_, p)| *p).map(|(t, _)| t).collect()
     }
 
     fn of(&self, model: &ModelEntry, material: &Values, scene: &Scene, everywhere: bool) -> Present {
@@ -68,16 +67,22 @@ impl KnownTerms {
             return *present;
         }
         let surface = model.instantiate(material, encoding);
-        let mut present = [false; 3];
+        let mut present = [false; TERMS];
         for (l, v) in directions() {
-            let terms = surface.response(l, v, &Frame::LOCAL);
-            let values = [terms.ambient, terms.diffuse, terms.specular];
-            for (present, value) in present.iter_mut().zip(values) {
+            let below = Vec3::new(l.x, l.y, -l.z);
+            let through = surface.response(below, v, &Frame::LOCAL).transmitted;
+            let terms = Terms { transmitted: through, ..surface.response(l, v, &Frame::LOCAL) };
+            for (present, value) in present.iter_mut().zip(terms.each()) {
                 *present |= value != Vec3::ZERO;
             }
         }
-        present[0] |=
-            everywhere && surface.ambient_response(Vec3::new(0.6, 0.0, 0.8), &Frame::LOCAL) != Vec3::ZERO;
+        let view = Vec3::new(0.6, 0.0, 0.8);
+        for sharp in surface.sharp(view, &Frame::LOCAL) {
+            let values = sharp.terms().each();
+            present.iter_mut().zip(values).for_each(|(present, value)| *present |= value != Vec3::ZERO);
+        }
+        present[3] |= surface.interior().is_some();
+        present[0] |= everywhere && surface.ambient_response(view, &Frame::LOCAL) != Vec3::ZERO;
         if known.len() >= KEPT {
             known.clear();
         }

@@ -3,7 +3,7 @@
 
 use std::{fmt, ops::Deref, path::Path};
 
-use bevy::reflect::Reflect;
+use bevy_reflect::Reflect;
 use glam::Vec3;
 use serde::{Serialize, Serializer};
 use serde_json::Value as Json;

@@ -151,7 +151,7 @@ impl<const S: usize, const E: usize> Tile<S, E> {
             for (s, seen) in shown.into_iter().enumerate() {
                 if let Some(seen) = seen.filter(|seen| nearness[s] == 0.0 || seen.nearness > nearness[s]) {
                     nearness[s] = seen.nearness.max(f32::MIN_POSITIVE);
-                    colour[s] = seen.radiance;
+                    colour[s] = seen.light;
                 }
             }
         }

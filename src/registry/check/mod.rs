@@ -11,7 +11,11 @@ use crate::{
     optics::colour::Encoding,
     parameter::{BLOCK_BYTES, Parameter, ParameterKind, Values, layout},
     reflection::{Group, ModelEntry, usage},
-    shader::{Source, definitions::allowed_in_wgsl},
+    shader::{
+        Source,
+        compose::{OPTICS, TRANSMISSION},
+        definitions::allowed_in_wgsl,
+    },
     shading::{PARAMETER_WORDS, ShadingEntry},
     shape::ShapeEntry,
     text::{
@@ -105,7 +109,7 @@ fn path(registry: &Registry, source: &Source, replaced: Option<&str>) -> Check {
         && !source.path.starts_with(MODELS)
         && source.path.split('/').all(|part| !matches!(part, "" | "." | "..") && !part.starts_with('('));
     ensure(plain, || is("but must be a path below the folder of shaders such as \"light/lamp.wgsl\""))?;
-    let others = crate::shader::compose::OPTICS.iter().copied().chain(super::compose::SHARED);
+    let others = OPTICS.iter().chain(TRANSMISSION).copied().chain(super::compose::SHARED);
     let of_parts = registry.parts().filter(|(id, _)| replaced != Some(*id)).map(|(_, source)| source);
     let differs = |other: Source| other.path == source.path && other.text != source.text;
     ensure(!others.chain(of_parts).any(differs), || {

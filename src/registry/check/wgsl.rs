@@ -3,7 +3,7 @@
 
 use std::sync::LazyLock;
 
-use naga::{Module, ScalarKind, TypeInner, VectorSize};
+use naga::{Module, Scalar, ScalarKind, TypeInner, VectorSize};
 
 use crate::{
     light::{LightEntry, Twin},
@@ -83,6 +83,9 @@ fn of_model(model: &ModelEntry) -> Vec<Function> {
     if model.declaration.ambient == Ambient::Formula {
         all.push(function("ambient_response", "(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32>"));
     }
+    if model.declaration.sharp {
+        all.push(function("sharp", "(i: u32, v: vec3<f32>, frame: Frame, m: Parameters) -> Sharp"));
+    }
     all
 }
 
@@ -114,10 +117,9 @@ pub(crate) fn model(sources: &Sources, model: &ModelEntry) -> Result<Module, Box
         let called = found.file == crate::shader::compose::EVALUATE.path;
         called.then(|| all[0].otherwise(source, sources)).flatten().unwrap_or(found)
     })?;
-    match all.get(1).filter(|_| !has_ambient_signature(&module)) {
-        Some(ambient) => ambient.otherwise(source, sources).map_or(Ok(module), Err),
-        None => Ok(module),
-    }
+    // The evaluation calls `response` alone.
+    let wrong = all.iter().skip(1).find(|function| !has_signature(&module, &function.name));
+    wrong.and_then(|function| function.otherwise(source, sources)).map_or(Ok(module), Err)
 }
 
 /// Checks the WGSL of a light type on its own.
@@ -149,7 +151,7 @@ pub(crate) fn shading(
     let source = &shading.declaration.wgsl;
     let all = of_shading();
     all.iter().try_for_each(|function| function.required(source, sources))?;
-    let composed = compose(sources, model, shading, &[]);
+    let composed = compose(sources, (model, model.declaration.passage()), shading, &[]);
     validate_drawing(&composed, shading.declaration.stage == Stage::Polygon).map_err(|found| {
         // The wrapper calls both, each in a line that names it.
         let called = found.file == crate::shader::compose::WRAPPER.path;
@@ -184,23 +186,29 @@ pub(crate) fn blamed(
     found.next().unwrap_or(problem)
 }
 
-/// True if the function for uniform light has the signature that the light loop expects.
-fn has_ambient_signature(module: &Module) -> bool {
+/// True if the function for uniform light, `ambient_response`, or that for light that does not spread, `sharp`, has the
+/// signature that the light loop expects.
+fn has_signature(module: &Module, name: &str) -> bool {
     let vector = |ty| {
         matches!(
             module.types[ty].inner,
             TypeInner::Vector { size: VectorSize::Tri, scalar } if scalar.kind == ScalarKind::Float
         )
     };
+    let whole = |ty| matches!(module.types[ty].inner, TypeInner::Scalar(Scalar::U32));
     let called = |ty, name: &str| module.types[ty].name.as_deref() == Some(name);
-    module.functions.iter().any(|(_, f)| {
-        f.name.as_deref() == Some("ambient_response")
-            && f.result.as_ref().is_some_and(|r| vector(r.ty))
-            && matches!(
-                f.arguments.as_slice(),
-                [v, frame, m] if vector(v.ty) && called(frame.ty, "Frame") && called(m.ty, "Parameters")
-            )
-    })
+    let Some((_, f)) = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(name)) else {
+        return false;
+    };
+    let result = f.result.as_ref().map(|result| result.ty);
+    let at_view = |v, frame, m| vector(v) && called(frame, "Frame") && called(m, "Parameters");
+    match f.arguments.as_slice() {
+        [v, frame, m] => result.is_some_and(vector) && at_view(v.ty, frame.ty, m.ty),
+        [i, v, frame, m] => {
+            result.is_some_and(|ty| called(ty, "Sharp")) && whole(i.ty) && at_view(v.ty, frame.ty, m.ty)
+        }
+        _ => false,
+    }
 }
 
 #[cfg(test)]

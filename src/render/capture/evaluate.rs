@@ -186,7 +186,11 @@ impl Evaluator {
         self.queue.submit([encoder.finish()]);
         Ok(read_back(device, &staging, self.patience)?
             .chunks_exact(ANSWER_BYTES)
-            .map(|terms| [0, 16, 32].map(|at| vector(&terms[at..])).into())
+            .zip(pairs)
+            .map(|(terms, (l, v))| {
+                let through = self.model.declaration.transmits && l.z * v.z < 0.0;
+                Terms::of_shader([0, 16, 32].map(|at| vector(&terms[at..])), through)
+            })
             .collect())
     }
 }

@@ -28,7 +28,7 @@ use thiserror::Error;
 use wgpu::PollError;
 
 use crate::{
-    channel::Setting,
+    channel::{DebugChannel, Setting},
     optics::TermSelection,
     reference::{Settings, draw_wires},
     reflection::ends::Endless,
@@ -61,9 +61,14 @@ pub enum GpuError {
     NoAdapter,
     /// No picture was ready in time.
     #[error(
-        "the GPU renderer gave no picture within {0:?}; run with `--verbose` to see what it was waiting for, or use `--renderer cpu`"
+        "the GPU renderer gave no picture within {limit:?}: it was waiting for {waiting}; use `--renderer cpu`"
     )]
-    TimedOut(Duration),
+    TimedOut {
+        /// The longest time.
+        limit: Duration,
+        /// What was not ready.
+        waiting: String,
+    },
     /// A shader could not be compiled.
     #[error("a shader could not be compiled: {0}")]
     Shader(String),
@@ -181,6 +186,12 @@ pub struct GpuRenderer {
     pub(super) target: Handle<Image>,
     /// The background and the render graph of the camera, if the last picture took several batches.
     pub(super) batched: Option<(ClearColorConfig, CameraRenderGraph)>,
+    /// The channel that is shown.
+    pub(super) channel: Option<DebugChannel>,
+    /// True if frames take a part of the samples each.
+    pub(super) by_parts: bool,
+    /// True if frames draw only what changed.
+    pub(super) on_demand: bool,
     staging: Option<Buffer>,
     output: Output,
     width: u32,
@@ -254,7 +265,18 @@ impl GpuRenderer {
         }
         app.world_mut().resource_mut::<ShapeMeshes>().limit(BATCH, MESH_BUDGET);
         run_on_one_thread(&mut app);
-        Ok(Self { app, target, batched: None, staging: None, output, width, height })
+        Ok(Self {
+            app,
+            target,
+            batched: None,
+            channel: None,
+            by_parts: false,
+            on_demand: false,
+            staging: None,
+            output,
+            width,
+            height,
+        })
     }
 
     /// The app, for tests and for registering more.
@@ -274,7 +296,7 @@ impl GpuRenderer {
     }
 
     /// Sets the number of samples of lights with extent, at least 1, for the pictures of scenes set from now
-    /// on. Each frame takes all of them, so large numbers need a fast GPU.
+    /// on. Each frame takes all of them, so large numbers need a fast GPU; where light goes through bodies, eight.
     pub fn set_light_samples(&mut self, count: u32) {
         self.app.world_mut().resource_mut::<Convergence>().target = count.max(1);
     }
@@ -286,6 +308,7 @@ impl GpuRenderer {
 
     /// Shows a debug channel from the next frame on, or the picture.
     pub fn set_channel(&mut self, channel: Option<Setting>) {
+        self.channel = channel.as_ref().map(|setting| setting.channel);
         let world = self.app.world_mut();
         let mut cameras = world.query_filtered::<(Entity, Option<&Overrides>), With<PictureCamera>>();
         let cameras: Vec<_> = cameras.iter(world).map(|(camera, known)| (camera, known.cloned())).collect();
@@ -301,6 +324,11 @@ impl GpuRenderer {
 
     /// Makes frames draw only what changed, as in the window.
     pub fn draw_on_demand(&mut self) {
+        self.on_demand = true;
+        self.add_views();
+    }
+
+    pub(super) fn add_views(&mut self) {
         let view =
             View { size: UVec2::new(self.width, self.height), format: self.output.format(), inset: None };
         let world = self.app.world_mut();

@@ -13,23 +13,33 @@ use bevy::{
         erased_render_asset::ErasedRenderAssets,
         mesh::RenderMesh,
         render_asset::RenderAssets,
-        render_resource::{CachedPipelineState, PipelineCache},
+        render_resource::{CachedPipeline, CachedPipelineState, PipelineCache, PipelineDescriptor},
         texture::GpuImage,
     },
     shader::ShaderCacheError,
 };
 
 use super::gpu::{GpuError, GpuRenderer, PATIENCE};
-use crate::render::{
-    camera::{ForDisplay, PictureCamera},
-    live::LiveShaders,
-    meshes::ShapeMeshes,
-    straight::Layer,
-    trial::Bench,
+use crate::{
+    channel::DebugChannel,
+    registry::Registry,
+    render::{
+        camera::{ForDisplay, PictureCamera},
+        converge::Convergence,
+        entities::CurrentScene,
+        live::LiveShaders,
+        meshes::ShapeMeshes,
+        straight::Layer,
+        trial::Bench,
+        view::{Drawing, View},
+    },
+    scene::Object,
 };
 
 /// Duration above which a frame is drawn only once, if possible.
 const SLOW: Duration = Duration::from_millis(150);
+/// The number of samples of a frame that cannot take all.
+const PART: u32 = 8;
 
 impl GpuRenderer {
     /// Draws frames until nothing is waiting to be loaded or compiled, and all shapes are in the picture: if
@@ -39,6 +49,8 @@ impl GpuRenderer {
     /// Returns [`GpuError::TimedOut`] if this does not happen, e.g. because a shader cannot be compiled;
     /// [`GpuError::Memory`] if a single shape does not fit into memory.
     pub fn settle(&mut self) -> Result<(), GpuError> {
+        let by_parts = self.takes_parts();
+        self.set_parts(by_parts);
         if let Some((background, graph)) = self.batched.take() {
             self.edit_camera(|camera| {
                 set_background(camera, background);
@@ -47,7 +59,61 @@ impl GpuRenderer {
             ShapeMeshes::restart(self.app.world_mut());
         }
         self.draw_frames()?;
-        if self.refused().is_some() { self.draw_batches() } else { Ok(()) }
+        if self.refused().is_some() {
+            // Each batch would begin the mean anew.
+            self.set_parts(false);
+            self.draw_batches()
+        } else if by_parts {
+            self.converge()
+        } else {
+            Ok(())
+        }
+    }
+
+    /// True if a frame cannot take all samples: each of them follows light through a mesh, and software Vulkan ends all
+    /// loops of a pixel after 65 536 turns together.
+    fn takes_parts(&self) -> bool {
+        let world = self.app.world();
+        let (scene, registry) = (&world.resource::<CurrentScene>().0, world.resource::<Registry>());
+        let is_body = |object: &Object| {
+            let model = registry.model(scene.model_of(object));
+            model.is_some_and(|model| model.passage(&object.material).solid)
+        };
+        let at_once = self.channel.is_some_and(DebugChannel::is_of_remaining);
+        !at_once && scene.shown().any(is_body) && scene.rests_on_samples(registry)
+    }
+
+    /// Draws frames with a part of the samples each, or all samples in each frame.
+    fn set_parts(&mut self, parts: bool) {
+        if self.by_parts == parts {
+            return;
+        }
+        self.by_parts = parts;
+        self.app.world_mut().resource_mut::<Convergence>().pace = parts.then_some(PART);
+        if parts {
+            self.add_views();
+        } else if !self.on_demand {
+            self.edit_camera(|camera| {
+                _ = camera.remove::<View>().entry::<Camera>().and_modify(|mut c| c.is_active = true)
+            });
+        }
+    }
+
+    /// Draws frames until the picture is the mean of all samples.
+    fn converge(&mut self) -> Result<(), GpuError> {
+        let (mut last, mut since) = (None, Instant::now());
+        loop {
+            let mut now = None;
+            self.edit_camera(|camera| now = camera.get::<Drawing>().map(|d| (d.is_done(), d.converged())));
+            let Some((false, converged)) = now else { return Ok(()) };
+            if last.replace(converged) != Some(converged) {
+                since = Instant::now();
+            } else if since.elapsed() > PATIENCE {
+                return Err(GpuError::TimedOut { limit: PATIENCE, waiting: self.missing() });
+            }
+            self.step();
+            self.wait();
+        }
     }
 
     /// Draws the shapes batch by batch: each over the picture and the depths of those before, with meshes
@@ -124,10 +190,26 @@ impl GpuRenderer {
                 std::thread::sleep(Duration::from_millis(2));
             }
             if start.elapsed() > PATIENCE {
-                return Err(GpuError::TimedOut(PATIENCE));
+                return Err(GpuError::TimedOut { limit: PATIENCE, waiting: self.missing() });
             }
         }
         Ok(())
+    }
+
+    /// What is not ready yet, for an error.
+    fn missing(&self) -> String {
+        if self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying) {
+            return "the trial of a shader".to_owned();
+        }
+        let Some(render_app) = self.app.get_sub_app(RenderApp) else { return "the renderer".to_owned() };
+        let cache = render_app.world().resource::<PipelineCache>();
+        let label = |pipeline: &CachedPipeline| match &pipeline.descriptor {
+            PipelineDescriptor::RenderPipelineDescriptor(of) => of.label.clone(),
+            PipelineDescriptor::ComputePipelineDescriptor(of) => of.label.clone(),
+        };
+        let waiting = cache.waiting_pipelines().filter_map(|id| cache.pipelines().nth(id));
+        let names: Vec<_> = waiting.filter_map(|p| Some(format!("`{}`", label(p)?))).take(3).collect();
+        if names.is_empty() { "shapes and pictures".to_owned() } else { names.join(", ") }
     }
 
     /// The numbers of meshes, materials and images on the GPU; `None` before the target is there.

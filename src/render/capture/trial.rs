@@ -27,7 +27,7 @@ use crate::{
     registry::Registry,
     render::{
         illumination::IlluminationBuffer,
-        material::{Attachments, MaterialInputs},
+        material::{MaterialInputs, attach},
         meshes::{face_mesh, shared_mesh},
         trial::{
             Bench, COMPOSED, Tools, Verdict,
@@ -272,15 +272,13 @@ impl Actor {
         let illumination = world.resource::<IlluminationBuffer>().buffers.clone();
         let inputs = MaterialInputs {
             parameters: parameters.clone(),
+            solid: parameters.clone(),
             illumination,
             shader: shader.clone(),
             faces,
             gamma_naive: false,
         };
-        // That of models from files.
-        if let Some(attachment) = world.resource::<Attachments>().get("") {
-            (attachment.attach)(&mut world.entity_mut(entity), inputs);
-        }
+        attach(&mut world.entity_mut(entity), inputs);
         Self { entity, shader, parameters }
     }
 

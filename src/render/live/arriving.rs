@@ -5,7 +5,7 @@ use bevy::ecs::prelude::*;
 use super::{
     super::trial::Verdict, CurrentScene, LiveShaders, Overrides, Registry, Visible, composed, lights_of,
 };
-use crate::library::model_of;
+use crate::{library::model_of, parameter::Values};
 
 /// Number of custom models tried at the same time.
 const ARRIVING: usize = 16;
@@ -43,7 +43,8 @@ impl LiveShaders {
             for shading in shadings {
                 let mut tried = Verdict::Good;
                 for sources in [&current, &lenient] {
-                    let parts = (&model.entry, shading, lights);
+                    let entry = &model.entry;
+                    let parts = (entry, entry.passage(&Values::default()), shading, lights);
                     tried = self.try_out(world, &composed(sources, parts, &registry), parts);
                     if !matches!(tried, Verdict::Bad(_)) {
                         break;

@@ -36,7 +36,7 @@ use crate::{
         problem::Problem,
         status::{Reloaded, ShaderStatus},
     },
-    reflection::ModelEntry,
+    reflection::{ModelEntry, Passage},
     registry::{LightSet, Registry, compose::compose},
     shader::{
         check::ShaderProblem,
@@ -55,18 +55,18 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(LabFrame, exchange.in_set(LabSystems::Swap));
 }
 
-/// The identity of a shader: model, shading model, and light types.
-type Key = (&'static str, &'static str, LightSet);
+/// The identity of a shader: model, shading model, light types, and how light passes through surfaces.
+type Key = (&'static str, &'static str, LightSet, Passage);
 
 /// The parts that a shader is composed of.
-pub(super) type Parts<'a> = (&'a ModelEntry, &'a ShadingEntry, LightSet);
+pub(super) type Parts<'a> = (&'a ModelEntry, Passage, &'a ShadingEntry, LightSet);
 
-fn key((model, shading, lights): Parts) -> Key {
-    (model.declaration.id, shading.declaration.id, lights)
+fn key((model, passage, shading, lights): Parts) -> Key {
+    (model.declaration.id, shading.declaration.id, lights, passage)
 }
 
-fn composed(sources: &Sources, (model, shading, lights): Parts, registry: &Registry) -> Composed {
-    compose(sources, model, shading, &registry.lights_in(lights))
+fn composed(sources: &Sources, (model, passage, shading, lights): Parts, registry: &Registry) -> Composed {
+    compose(sources, (model, passage), shading, &registry.lights_in(lights))
 }
 
 /// The light types in the scene; without a scene, all that have no extent, which compile quickly.
@@ -219,25 +219,29 @@ impl LiveShaders {
     }
 }
 
-/// The models and shading models in the picture, with the light types of their shaders.
-struct Visible(Vec<(String, String, LightSet)>);
+/// The models and shading models in the picture, with the light types of their shaders, and how light passes.
+struct Visible(Vec<(String, String, LightSet, Passage)>);
 
 impl Visible {
     fn of(world: &mut World) -> Self {
         let mut query = world.query::<&Drawn>();
-        let mut pairs: Vec<_> =
-            query.iter(world).map(|d| (d.model().to_owned(), d.shading().to_owned(), d.lights)).collect();
+        let mut pairs: Vec<_> = query
+            .iter(world)
+            .map(|d| (d.model().to_owned(), d.shading().to_owned(), d.lights, d.passage))
+            .collect();
         pairs.sort_unstable();
         pairs.dedup();
         Self(pairs)
     }
 
     fn shows(&self, model: &str, shading: &ShadingEntry) -> bool {
-        self.0.iter().any(|(m, s, _)| m == model && s == shading.declaration.id)
+        self.0.iter().any(|(m, s, ..)| m == model && s == shading.declaration.id)
     }
 
     fn has(&self, key: &Key) -> bool {
-        self.0.iter().any(|(model, shading, lights)| model == key.0 && shading == key.1 && *lights == key.2)
+        self.0.iter().any(|(model, shading, lights, passage)| {
+            model == key.0 && shading == key.1 && (*lights, *passage) == (key.2, key.3)
+        })
     }
 }
 

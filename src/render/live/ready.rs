@@ -26,7 +26,7 @@ const RESTING: &str = "
 
 /// The path by which Bevy identifies the asset of a shader.
 pub(super) fn path_of_asset(key: Key) -> String {
-    format!("{COMPOSED}{}/{}/{:x}.wgsl", key.0, key.1, key.2.bits())
+    format!("{COMPOSED}{}/{}/{:x}/{}.wgsl", key.0, key.1, key.2.bits(), key.3.bits())
 }
 
 impl LiveShaders {
@@ -94,7 +94,7 @@ impl LiveShaders {
         if let Some(handle) = self.take(&key) {
             return Some(handle);
         }
-        // Materials of custom models are of one type, so any of them may take it.
+        // Only custom models are ever removed.
         registry.custom_file(key.0)?;
         let gone = |known: &&Key| known.1 == key.1 && registry.model(known.0).is_none();
         let known = *self.shaders.keys().chain(self.resting.keys()).find(gone)?;
@@ -118,7 +118,7 @@ impl LiveShaders {
             self.shaders.iter().filter(idle).map(|(key, live)| (live.seen, *key)).collect();
         idle.sort_unstable();
         // Those of other light types rest at once, or each set of light types would have separate spare ones.
-        let lights: HashSet<_> = visible.0.iter().map(|(.., lights)| *lights).collect();
+        let lights: HashSet<_> = visible.0.iter().map(|(_, _, lights, _)| *lights).collect();
         let (spare, other): (Vec<_>, Vec<_>) =
             idle.into_iter().partition(|(_, key)| lights.is_empty() || lights.contains(&key.2));
         let many = spare.len().saturating_sub(SPARE);
@@ -147,7 +147,7 @@ impl LiveShaders {
                 return Some((composed, Vec::new()));
             }
         }
-        let (model, shading, lights) = parts;
+        let (model, _, shading, lights) = parts;
         let mut foreign = stand_in::of(model, shading, &registry.lights_in(lights));
         foreign.retain(|(path, _)| registry.is_foreign(path));
         let mut sources = Sources::default();

@@ -22,6 +22,7 @@ use crate::{
     library::problem::Problem,
     optics::colour::Encoding,
     parameter::Values,
+    reflection::Passage,
     registry::{LightSet, check::wgsl},
     shader::{
         check::ShaderProblem,
@@ -42,12 +43,12 @@ impl LiveShaders {
         &mut self,
         world: &mut World,
         composed: &Composed,
-        (model, shading, _): Parts,
+        (model, passage, shading, _): Parts,
     ) -> Verdict {
         if composed.problem.is_none() && self.approved.contains(&composed.text) {
             return Verdict::Good;
         }
-        let verdict = try_out(world, composed, model, shading);
+        let verdict = try_out(world, composed, (model, passage), shading);
         if verdict == Verdict::Good {
             self.approved.insert(composed.text.clone());
         }
@@ -69,7 +70,7 @@ impl LiveShaders {
             self.library.note_good(composed, registry);
         }
         let Verdict::Bad(problem) = verdict else { return verdict };
-        let (model, shading, lights) = parts;
+        let (model, _, shading, lights) = parts;
         let problem = self.library.blamed(problem, composed, registry);
         Verdict::Bad(wgsl::blamed(problem, registry, model, shading, &registry.lights_in(lights)))
     }
@@ -113,7 +114,7 @@ impl LiveShaders {
             }
             return;
         };
-        let parts = (model, shading, key.2);
+        let parts = (model, key.3, shading, key.2);
         let wanted = composed(registry.sources(), parts, registry);
         let shown_already = self.shaders.get(&key).is_some_and(|live| live.shown == wanted);
         let verdict = if shown_already {
@@ -160,13 +161,13 @@ impl LiveShaders {
         }
         let lights: LightSet = registry.lights_in(lights_of(world, registry)).iter().chain(light).collect();
         let shown_shading =
-            || shadings.iter().find(|m| visible.0.iter().any(|(_, id, _)| id == m.declaration.id));
+            || shadings.iter().find(|m| visible.0.iter().any(|(_, id, ..)| id == m.declaration.id));
         let Some((model, shading)) =
             model.or(models.first()).zip(shading.or_else(shown_shading).or(shadings.first()))
         else {
             return;
         };
-        let parts = (model, shading, lights);
+        let parts = (model, model.passage(&Values::default()), shading, lights);
         let composed = composed(registry.sources(), parts, registry);
         match self.judge(world, &composed, parts, registry) {
             Verdict::Good => _ = self.unused_problems.remove(path),
@@ -179,7 +180,12 @@ impl LiveShaders {
     }
 }
 
-fn try_out(world: &mut World, composed: &Composed, model: &ModelEntry, shading: &ShadingEntry) -> Verdict {
+fn try_out(
+    world: &mut World,
+    composed: &Composed,
+    of: (&ModelEntry, Passage),
+    shading: &ShadingEntry,
+) -> Verdict {
     let (Some(device), Some(adapter)) =
         (world.get_resource::<RenderDevice>().cloned(), world.get_resource::<RenderAdapter>().cloned())
     else {
@@ -187,14 +193,14 @@ fn try_out(world: &mut World, composed: &Composed, model: &ModelEntry, shading: 
     };
     world.resource_scope(|world, mut bench: Mut<Bench>| {
         let tools = Tools { device: &device, adapter: &adapter, shaders: world.resource::<Assets<Shader>>() };
-        let row = || sample(model, shading);
+        let row = || sample(of, shading);
         bench.try_out(composed, shading.declaration.stage == Stage::Polygon, row, tools)
     })
 }
 
 /// The row of the object with which a shader is tried: its parameters are the defaults.
-fn sample(model: &ModelEntry, shading: &ShadingEntry) -> Vec<u8> {
-    row(model, shading, &Values::default(), Encoding::Srgb, false, true)
+fn sample(of: (&ModelEntry, Passage), shading: &ShadingEntry) -> Vec<u8> {
+    row(of, shading, &Values::default(), Encoding::Srgb, false, true)
 }
 
 /// Restores the previous shaders if the renderer failed nevertheless. If nothing was exchanged, the cause is
@@ -235,7 +241,7 @@ mod tests {
     fn shaders_are_tried_with_the_defaults_of_model_and_shading_model() {
         let registry = Registry::builtin();
         for (model, shading) in registry.models().iter().zip(registry.shading_models().iter().cycle()) {
-            let row = sample(model, shading);
+            let row = sample((model, model.passage(&Values::default())), shading);
             let (values, encoding) = (Values::default(), Encoding::Srgb);
             let (of_model, of_shading) =
                 (model.row(&values, encoding, false), shading.row(&values, encoding));

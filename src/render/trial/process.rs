@@ -18,6 +18,8 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::verdict::Verdict;
+/// The command of the program that tries shaders.
+pub use crate::program::TRY_SHADERS as COMMAND;
 use crate::{
     caught::{lock, unpoisoned},
     declared::with_defaults,
@@ -28,8 +30,6 @@ use crate::{
     },
 };
 
-/// The command of the program that tries shaders.
-pub const COMMAND: &str = "try-shaders";
 /// Maximum time until a process is ready: software Vulkan starts within a second.
 const START: Duration = Duration::from_secs(30);
 /// Interval at which a working process is checked.

@@ -14,7 +14,7 @@ use std::thread;
 use naga::{Module, Span};
 
 use super::{
-    compose::{Composed, EVALUATE, LIGHT_ALONE, SEEN, SHADING_ALONE, WRAPPER},
+    compose::{BODY, Composed, EVALUATE, LIGHT_ALONE, SEEN, SHADING_ALONE, WRAPPER},
     place::locate,
     problem::ShaderProblem,
     token::{self, Finding, at_most},
@@ -63,7 +63,7 @@ pub fn check_text(composed: &Composed) -> Result<(), Box<ShaderProblem>> {
     let binds = |at: usize| {
         let file = composed.map.locate(line_of(at)).map(|(file, _)| file);
         file.is_none_or(|file| {
-            [WRAPPER.path, SEEN.path, EVALUATE.path, LIGHT_ALONE, SHADING_ALONE].contains(&file)
+            [WRAPPER.path, SEEN.path, EVALUATE.path, BODY, LIGHT_ALONE, SHADING_ALONE].contains(&file)
         })
     };
     text::check(text, &LIMITS, binds).map_err(|refusal| match refusal {
@@ -143,11 +143,16 @@ mod tests {
         for model in registry.models() {
             let id = model.declaration.id;
             texts.push((format!("{id}, evaluated"), compose_evaluation(registry.sources(), model)));
-            for shading in registry.shading_models() {
-                let composed = compose(registry.sources(), model, shading, registry.lights());
+            for (shading, passage) in registry
+                .shading_models()
+                .iter()
+                .flat_map(|shading| model.passages().into_iter().map(move |passage| (shading, passage)))
+            {
+                let composed = compose(registry.sources(), (model, passage), shading, registry.lights());
                 let faces = shading.declaration.stage == Stage::Polygon;
                 let text = whole::standing_alone(&composed.text, faces).expect("built in");
-                texts.push((format!("{id}, {}", shading.declaration.id), Composed { text, ..composed }));
+                let name = format!("{id} {passage:?}, {}", shading.declaration.id);
+                texts.push((name, Composed { text, ..composed }));
             }
         }
         texts

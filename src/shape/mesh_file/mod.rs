@@ -16,6 +16,13 @@ mod polygon;
 use model::{Builder, Model};
 pub use model::{MAX_CORNERS, MAX_POLYGONS, MAX_VERTICES};
 
+/// A file of the folder `scenes`, with its name.
+macro_rules! shipped {
+    ($name:literal) => {
+        ($name, include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $name)).as_slice())
+    };
+}
+
 /// Models written by other programs: glTF 2.0 binary, OBJ and PLY, distinguished by their first bytes.
 /// Renderers read: the numbers of vertices, of normals and of polygons; the vertices, around the origin with
 /// a largest extent of 1; the normals; and for each polygon the number of its corners, three or four, four
@@ -25,7 +32,13 @@ pub static FORMAT: FileFormat = FileFormat {
     extensions: &["glb", "obj", "ply"],
     max_bytes: 32 << 20,
     read,
-    shipped: &[("knot.glb", include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/knot.glb")))],
+    shipped: &[
+        shipped!("knot.glb"),
+        shipped!("gem.obj"),
+        shipped!("steps.obj"),
+        shipped!("lampshade.obj"),
+        shipped!("slab.obj"),
+    ],
 };
 
 fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use bevy::platform::hash::RandomState;
+use bevy_platform::hash::RandomState;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::polygon::{doubled_area, pieces};

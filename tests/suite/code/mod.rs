@@ -4,3 +4,5 @@ mod cycles;
 mod features;
 mod lengths;
 pub(crate) mod modules;
+mod packaging;
+mod window;

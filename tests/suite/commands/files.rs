@@ -744,6 +744,7 @@ fn output_that_cannot_be_written_has_status_4() {
         "models",
         "models --json",
         "schema",
+        "completions bash",
         "check a.json",
         "check --json a.json",
         "assets export assets",

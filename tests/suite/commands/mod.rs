@@ -3,9 +3,11 @@
 mod assets;
 mod command_line;
 mod files;
+mod installed;
 mod outputs;
 mod plot;
 mod sampling;
 mod signals;
 mod study;
 mod sweep;
+mod without_window;

@@ -31,11 +31,35 @@ fn done(arguments: &[&str], input: &str) -> String {
 const LOBE: &str = "curve,angle,theta_i,phi_i,theta_o,phi_o";
 
 #[test]
+fn evaluate_answers_for_the_whole_sphere() {
+    let asked = "theta_i,phi_i,theta_o,phi_o\n0,0,60,0\n180,0,60,0\n120,90,0,0\n60,0,180,0\n120,0,120,0\n180,0,180,0\n";
+    let values = |arguments: &[&str]| {
+        let out = done(&[&["evaluate"], arguments].concat(), asked);
+        let last =
+            |line: &str| line.rsplit(',').next().and_then(|v| v.parse::<f32>().ok()).expect("a number");
+        out.lines().skip(1).map(last).collect::<Vec<_>>()
+    };
+    let half = 0.5 / std::f32::consts::PI;
+    let paper = values(&["diffuse_transmission"]);
+    for (found, right) in paper.iter().zip([half, half, half, half, 0.0, 0.0]) {
+        assert!((found - right).abs() < 1e-6, "{paper:?}");
+    }
+    assert_eq!(values(&["lambert"])[1..], [0.0; 5]);
+    let run = lcm(&["evaluate", "lambert"], "theta_i,phi_i,theta_o,phi_o\n181,0,0,0\n");
+    assert!(run.status == Some(1) && run.err.contains("theta_i") && run.err.contains("180"), "{}", run.err);
+}
+
+#[test]
 fn curves_are_what_evaluate_prints() {
     for (model, name, set) in [
         ("phong:alpha=20", "Phong, α = 20", "alpha=20"),
         ("disney:base_colour=200,80,40", "Disney, base colour = (200, 80, 40)", "base_colour=200,80,40"),
         ("ward:alpha_x=0.1", "Ward, roughness along the tangent = 0.1", "alpha_x=0.1"),
+        (
+            "rough_dielectric:alpha_x=0.2",
+            "Rough dielectric, roughness along the tangent = 0.2",
+            "alpha_x=0.2",
+        ),
     ] {
         // Another model is next to it.
         let plot = [model, "lambert", "--theta-i", "60", "--phi-i", "30"];
@@ -133,7 +157,7 @@ fn mistakes_are_explained() {
         ),
         (
             &["ward", "--kind", "d"],
-            "--kind d: Ward has no distribution D of microfacets; models with one: microfacet, torrance_sparrow, cook_torrance, metallic_roughness, disney and openpbr",
+            "--kind d: Ward has no distribution D of microfacets; models with one: microfacet, torrance_sparrow, cook_torrance, metallic_roughness, disney, openpbr, thin_glass, rough_dielectric and glass",
         ),
         (&["lambert", "--kind", "g"], "--kind g: Lambert has no masking factor G; models with one:"),
         (

@@ -115,7 +115,7 @@ fn wrong_samples_and_noise_are_refused_with_what_would_be_right() {
         (
             &["--channel", "normals", "--noise", "1"],
             "--noise cannot be used with --channel normals, which does not depend on light samples; channels that do are luminance, \
-             clipped, not_a_number and one_light",
+             clipped, not_a_number, remaining_light and one_light",
         ),
         (
             &["--channel", "wireframe", "--light-samples", "9"],
@@ -135,8 +135,7 @@ fn options_without_effect_are_told() {
     let (plain, said) = drawn(folder.path(), &["point.json"]);
     assert_eq!(said, "wrote p.png\n");
     let (same, said) = drawn(folder.path(), &["point.json", "--light-samples", "7"]);
-    let told =
-        "point.json: no light has extent, so the picture has no noise, and --light-samples changes nothing\n";
+    let told = "point.json: no light has extent and no body is rough, so the picture has no noise, and --light-samples changes nothing\n";
     assert_eq!((same == plain, said), (true, format!("{told}wrote p.png\n")));
     let (_, said) = drawn(folder.path(), &["point.json", "--light-samples", "7", "--noise", "1"]);
     assert!(said.contains("and --light-samples and --noise change nothing\n"), "{said}");

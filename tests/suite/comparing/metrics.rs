@@ -8,9 +8,9 @@ use lights_camera_models::{
     compare::{Cell, Measured, Pair, Shown, Unequal, cells, compose, size_around},
     linear::{Channels, Format, Notes},
     parameter::Value,
+    picture::png::{self, About},
     reference::{Picture, Settings},
     registry::Registry,
-    render::capture::png::{self, About},
     scene::{
         Comparison, Scene, Variant,
         comparison::{Channel, Compared, Edge, Layout, Sign},

@@ -16,11 +16,12 @@ use lights_camera_models::{
     optics::{Frame, colour::Encoding},
     panel::{Panels, command::declared, state::Session},
     parameter::{MAX_FILES_BYTES, MAX_FILES_NUMBERS, Outside, Parameter, Value, Values},
+    picture::png,
     progress::Progress,
     reference::{self, Settings, Until},
     reflection::ModelEntry,
     registry::Registry,
-    render::capture::{evaluate::evaluate, png},
+    render::capture::evaluate::evaluate,
     scene::{
         MAX_OBJECTS, Scene,
         comparison::{Channel, Compared, Layout, Sign},

@@ -456,3 +456,31 @@ fn pictures_of_a_pinned_point() -> Result<(), Box<dyn std::error::Error>> {
     }
     Ok(())
 }
+
+#[test]
+fn the_way_through_a_glass_ball_is_drawn_and_told() {
+    let mut glass = bench(scene("glass", "phong"));
+    assert!(glass.words().iter().any(|word| word == "T"), "{:?}", glass.words());
+    for told in ["Through the surface", "inside, n = 1.5", "is reflected completely", "remains inside"] {
+        assert!(glass.says(told), "{told}");
+    }
+    // From the side, the plane in which the ray bends is seen face on.
+    let spot = seen(&glass).spots[0].clone();
+    glass.key(Key::H, Modifiers::SHIFT);
+    let steered = glass.effects.iter().find_map(|effect| match effect {
+        Effect::Steer(Steer::Along { way, .. }) => Some(*way),
+        _ => None,
+    });
+    let way = steered.expect("the camera turns");
+    assert!(way.dot(spot.normal).abs() < 1e-4 && way.dot(spot.view).abs() < 1e-4, "{way}");
+    for model in ["phong", "diffuse_transmission"] {
+        let mut other = bench(scene(model, "phong"));
+        assert!(
+            !other.words().iter().any(|word| word == "T") && !other.says("Through the surface"),
+            "{model}"
+        );
+    }
+    // A boundary alone has angles, and no way behind it.
+    let mut boundary = bench(scene("rough_dielectric", "phong"));
+    assert!(!boundary.words().iter().any(|word| word == "T") && boundary.says("Through the surface"));
+}

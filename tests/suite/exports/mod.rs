@@ -1,6 +1,7 @@
 //! Exports: each form, and what they share.
 
 mod bevy;
+mod bodies;
 mod executable;
 mod forms;
 mod mitsuba;

@@ -160,7 +160,16 @@ pub fn names(folder: &Path) -> Vec<String> {
 
 /// The program in a folder.
 pub fn command_in<A: AsRef<OsStr>>(folder: &Path, arguments: impl IntoIterator<Item = A>) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lcm"));
+    command_of(Path::new(env!("CARGO_BIN_EXE_lcm")), folder, arguments)
+}
+
+/// A program in a folder.
+pub fn command_of<A: AsRef<OsStr>>(
+    program: &Path,
+    folder: &Path,
+    arguments: impl IntoIterator<Item = A>,
+) -> Command {
+    let mut command = Command::new(program);
     command
         .args(arguments)
         .current_dir(folder)
@@ -173,7 +182,12 @@ pub fn command_in<A: AsRef<OsStr>>(folder: &Path, arguments: impl IntoIterator<I
 
 /// Runs the program in a folder, with an input.
 pub fn lcm_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Run {
-    let mut child = command_in(folder, arguments)
+    run(command_in(folder, arguments), input)
+}
+
+/// Runs a command with an input.
+pub fn run(mut command: Command, input: &[u8]) -> Run {
+    let mut child = command
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

@@ -190,11 +190,11 @@ fn corpus() -> Vec<Case> {
             model(
                 &format!(
                     "var<private> a: array<vec4<f32>, 250>;\n{}",
-                    repeated(5, |i| { format!("var<private> a{i}: array<vec4<f32>, 250>;\n") })
+                    repeated(9, |i| { format!("var<private> a{i}: array<vec4<f32>, 250>;\n") })
                 ),
                 "let y = x;",
             ),
-            "bytes of variables of the module; at most 16384",
+            "bytes of variables of the module; at most 32768",
         ),
         case(
             "constants_powers",
@@ -217,7 +217,7 @@ fn corpus() -> Vec<Case> {
             "`discard` is not available",
         ),
         case("override", model("override N: f32 = 1.0;", "let y = x * N;"), "`override` is not available"),
-        case("functions_18", doubling(18), "steps with all calls inlined"),
+        case("functions_20", doubling(20), "steps with all calls inlined"),
         case("functions_26", doubling(26), "steps with all calls inlined"),
         case("switch_5000", switch(5000), "this switch has more than 256 cases"),
         case(
@@ -402,7 +402,8 @@ fn what_is_within_the_limits_needs_a_quarter_of_the_stack() {
         let mut sources = Sources::default();
         sources.edit(read.entry.declaration.wgsl.path, text.clone());
         let composed = compose_evaluation(&sources, &read.entry);
-        let drawn = compose(&sources, &read.entry, &registry.shading_models()[0], registry.lights());
+        let of = (&read.entry, read.entry.declaration.passage());
+        let drawn = compose(&sources, of, &registry.shading_models()[0], registry.lights());
         assert!(limits::check_text(&drawn).is_ok(), "{id}");
         thread::scope(|scope| {
             let small = thread::Builder::new().stack_size(STACK / 4);

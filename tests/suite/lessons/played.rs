@@ -271,6 +271,41 @@ const TASKS: &[(&str, &str, Deed, Deed)] = &[
         Deed::Set(&[("/lights/0/sky_type", || json!("12"))]),
         Deed::Set(&[("/lights/0/sky_type", || json!("11"))]),
     ),
+    (
+        "11",
+        "Snell's law",
+        Deed::Set(&[("/objects/0/material/refractive_index", || json!(1))]),
+        Deed::Set(&[("/objects/0/material/refractive_index", || json!(1.2))]),
+    ),
+    ("11", "Read the angles", Deed::Pin, Deed::Pin),
+    ("11", "Both faces reflect", Deed::Pin, Deed::Pin),
+    (
+        "11",
+        "Total reflection",
+        Deed::Set(&[("/objects/1/material/refractive_index", || json!(2.4))]),
+        Deed::Set(&[("/objects/0/material/refractive_index", || json!(2.5))]),
+    ),
+    ("11", "Two lamps behind a ball", Deed::Pin, Deed::Pin),
+    ("12", "Paper", Deed::Terms(TermSelection::Transmitted), Deed::Terms(TermSelection::Diffuse)),
+    (
+        "12",
+        "A leaf",
+        Deed::Set(&[("/objects/0/material/transmittance_colour", || json!([120, 190, 40]))]),
+        Deed::Set(&[("/objects/0/material/base_colour", || json!([120, 190, 40]))]),
+    ),
+    (
+        "12",
+        "Frosted glass",
+        Deed::Set(&[("/objects/1/material", || json!({ "roughness": 0.45 }))]),
+        Deed::Set(&[("/objects/2/material", || json!({ "roughness": 0.45 }))]),
+    ),
+    ("12", "The invisible ball", Deed::Pin, Deed::Pin),
+    (
+        "12",
+        "How to see glass",
+        Deed::Set(&[("/lights/0/source", || json!("studio"))]),
+        Deed::Set(&[("/lights/0/intensity", || json!(0.1))]),
+    ),
 ];
 
 #[test]
@@ -304,5 +339,5 @@ fn the_lessons_are_of_a_length_for_one_sitting() {
         assert!(lesson.minutes.is_some_and(|minutes| (5..=20).contains(&minutes)), "{}", lesson.id);
         assert!(lesson.summary.ends_with('.') && (5..=9).contains(&lesson.steps.len()), "{}", lesson.id);
     }
-    assert_eq!(LESSONS.len(), 10);
+    assert_eq!(LESSONS.len(), 12);
 }

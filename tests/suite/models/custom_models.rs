@@ -90,7 +90,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ("{ \"equation\": 1 }", "equation is 1, but it must be text, or a list of parts"),
         (
             "{ \"equation\": [{ \"term\": \"difuse\", \"text\": \"\" }] }",
-            "equation[0].term is \"difuse\", but a term must be \"total\", \"ambient\", \"diffuse\" or \"specular\"; did you mean \"diffuse\"?",
+            "equation[0].term is \"difuse\", but a term must be \"total\", \"ambient\", \"diffuse\", \"specular\" or \"transmitted\"; did you mean \"diffuse\"?",
         ),
         ("{ \"equation\": [{ \"term\": \"diffuse\" }] }", "equation[0].text is missing"),
         (

@@ -8,8 +8,11 @@ mod foreign;
 mod interpret;
 mod laws;
 mod mistakes;
+mod openpbr_transmission;
 mod precision;
+mod solids;
 mod swallowed;
+mod transmission;
 #[cfg(unix)]
 mod trial;
 mod usage;

@@ -10,14 +10,19 @@ use lights_camera_models::{
         DebugChannel, Setting,
         colours::{BELOW, NAN, TOWARDS},
     },
+    explain::{self, Inside},
     optics::{colour::luminance, tone::ToneMapping, viridis::viridis},
     panel::{
         state::{Action, Session, ViewChange},
         wires,
     },
-    reference::{self, render_channel},
+    parameter::Value,
+    reference::{self, LightSamples, render_channel},
     registry::Registry,
-    render::capture::gpu::{GpuRenderer, Output},
+    render::{
+        capture::gpu::{GpuRenderer, Output},
+        illumination::REMAINING_SAMPLES,
+    },
     scene::{Display, Light, Object, Observer, Scene, Variant},
 };
 
@@ -189,6 +194,61 @@ fn light_that_is_not_a_number_is_shown_by_both_renderers() {
             assert_eq!(middle(&on_cpu(&scene, channel)), NAN, "{shading}, {channel:?}");
             let gpu = on_gpu(&mut renderer, &scene, Some(channel));
             assert_eq!(middle(&gpu), NAN, "{shading}, {channel:?} on the GPU");
+        }
+    }
+}
+
+#[test]
+fn light_that_remains_in_solids_is_shown_by_both_renderers() {
+    let mut renderer = renderer();
+    let channel = DebugChannel::RemainingLight;
+    let bright = |picture: &[u8]| {
+        let shown = |p: &&[u8; 3]| **p != [0; 3] && p[0].abs_diff(p[1]) > 4;
+        picture.as_chunks::<3>().0.iter().filter(shown).count()
+    };
+    for (shape, shading, index, roughness) in [
+        ("cube", "derivative", 2.4, 0.0),
+        ("torus", "phong", 2.4, 0.0),
+        ("cube", "flat", 2.4, 0.0),
+        ("cube", "derivative", 2.4, 0.4),
+    ] {
+        let mut scene = close_up(shape, "point");
+        scene.reflection_model = "glass".to_owned();
+        scene.shading_model = shading.to_owned();
+        for (name, number) in [("refractive_index", index), ("roughness", roughness)] {
+            scene.objects[0].material.set(name, Value::Number(number));
+        }
+        // As many ways by chance as the other renderer takes.
+        let (samples, setting) = (LightSamples::of(REMAINING_SAMPLES), setting(channel, &scene));
+        let cpu = reference::render_channel_by(&scene, &Registry::builtin(), &settings(), &setting, samples);
+        let gpu = on_gpu(&mut renderer, &scene, Some(channel));
+        assert!(bright(&cpu) > 200, "{shape}, {shading}: {} pixels", bright(&cpu));
+        let off = share(&gpu, &cpu, 3);
+        assert!(off < 0.02, "{shape}, {shading}, {roughness}: {off} of the pixels differ");
+        if shading != "flat" && roughness == 0.0 {
+            // It is the number of the explanation.
+            let (mut compared, registry) = (0, Registry::builtin());
+            let pixels = cpu.as_chunks::<3>().0.iter().enumerate().filter(|(_, p)| p[0].abs_diff(p[1]) > 4);
+            for (i, pixel) in pixels.step_by(97) {
+                let at = [i as u32 % SIZE, i as u32 / SIZE];
+                let explained = explain::pixel(&scene, &registry, &settings(), at).expect("within");
+                let seen = explained.seen.expect("the object");
+                let refraction = seen.spots[0].refraction.as_ref().expect("it bends light");
+                let Some(Inside::Ways(_, remaining)) = &refraction.inside else { panic!("{refraction:?}") };
+                let right = bytes(viridis((luminance(*remaining).log10() + 4.0) / 4.0));
+                assert!((0..3).all(|c| pixel[c].abs_diff(right[c]) <= 2), "{at:?}: {pixel:?}, not {right:?}");
+                compared += 1;
+            }
+            assert!(compared > 1, "{shape}");
+        }
+    }
+    // A ball keeps nothing but at its rim, where nearly everything is reflected, and other objects nothing at all.
+    for model in ["glass", "phong", "diffuse_transmission"] {
+        let mut scene = close_up("sphere", "point");
+        scene.reflection_model = model.to_owned();
+        for picture in [on_cpu(&scene, channel), on_gpu(&mut renderer, &scene, Some(channel))] {
+            let most = if model == "glass" { 200 } else { 0 };
+            assert!(bright(&picture) <= most && middle(&picture) == [0; 3], "{model}: {}", bright(&picture));
         }
     }
 }

@@ -4,12 +4,10 @@ use glam::Vec3;
 use lights_camera_models::{
     lettering::Lettering,
     optics::TermSelection,
+    picture::png,
     reference::Settings,
     registry::Registry,
-    render::capture::{
-        gpu::{GpuRenderer, Output},
-        png,
-    },
+    render::capture::gpu::{GpuRenderer, Output},
     scene::{
         Scene,
         load::{self, Defaults},

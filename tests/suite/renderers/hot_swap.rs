@@ -3,7 +3,7 @@
 use glam::Vec3;
 use lights_camera_models::{
     optics::colour::BACKGROUND,
-    parameter::Value,
+    parameter::{Value, Values},
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
@@ -85,11 +85,15 @@ fn every_model_and_mode_follows_every_other_model_and_mode_in_one_frame() {
     let states: Vec<_> = registry
         .models()
         .iter()
+        // A smooth body shows no light without extent, whatever the shading.
+        .filter(|m| !m.passage(&Values::default()).solid)
         .flat_map(|m| registry.shading_models().iter().map(|s| (m.declaration.id, s.declaration.id)))
         .collect();
     let mut scene = close_up("torus", "point");
     scene.objects[0].tessellation = Some(16);
     scene.objects[0].material.set("k_d", Value::Number(0.6));
+    // Frosted, thin glass shows a point.
+    scene.objects[0].material.set("roughness", Value::Number(0.6));
     let mut renderer = renderer();
 
     let expected: Vec<_> = states
@@ -113,7 +117,7 @@ fn every_model_and_mode_follows_every_other_model_and_mode_in_one_frame() {
     // Every ordered pair of models, and within a model every ordered pair of shading models; the shading models of the first
     // rotate, so that all of them come and go.
     let shadings = registry.shading_models().len();
-    let models = registry.models().len();
+    let models = states.len() / shadings;
     let mut pairs = Vec::new();
     for from in 0..models {
         for to in 0..models {

@@ -11,7 +11,6 @@ use bevy::{
 };
 use glam::Vec3;
 use lights_camera_models::{
-    custom::CustomFile,
     document::{Edit, Selection},
     light,
     optics::{
@@ -62,7 +61,7 @@ fn held(renderer: &mut GpuRenderer) -> Held {
         shaders: shaders.len(),
         large: shaders.iter().filter(|(_, shader)| is_large(shader)).count(),
         tables: world.resource::<Assets<ShaderBuffer>>().len(),
-        materials: world.resource::<Assets<ModelMaterial<CustomFile>>>().len(),
+        materials: world.resource::<Assets<ModelMaterial>>().len(),
         meshes: world.resource::<Assets<Mesh>>().len(),
         pipelines: 0,
     };

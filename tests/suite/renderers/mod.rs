@@ -2,6 +2,7 @@
 
 mod background;
 mod batches;
+mod bodies;
 mod channels;
 mod contact_sheet;
 mod converging;

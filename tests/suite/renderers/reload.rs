@@ -239,7 +239,7 @@ pub const BREAKAGES: &[Breakage] = &[
         name: "mismatch between the stages",
         file: "wrapper.wgsl",
         change: |t| {
-            let t = String::from_utf8(replaced(t, "fn fragment(in: Stages)", "struct Other {\n    @builtin(position) clip_position: vec4<f32>,\n    @location(9) more: vec3<f32>,\n    @location(0) position: vec3<f32>,\n    @location(1) normal: vec3<f32>,\n    @location(2) tangent: vec3<f32>,\n    @location(3) colour: vec3<f32>,\n    @location(4) offset: vec3<f32>,\n    @location(5) @interpolate(flat) row: u32,\n}\n@fragment\nfn fragment(in: Other)"))
+            let t = String::from_utf8(replaced(t, "fn fragment(in: Stages)", "struct Other {\n    @builtin(position) clip_position: vec4<f32>,\n    @location(9) more: vec3<f32>,\n    @location(0) position: vec3<f32>,\n    @location(1) normal: vec3<f32>,\n    @location(2) tangent: vec3<f32>,\n    @location(3) colour: vec3<f32>,\n    @location(4) offset: vec3<f32>,\n    @location(5) @interpolate(flat) row: u32,\n    @location(6) @interpolate(flat) instance: u32,\n}\n@fragment\nfn fragment(in: Other)"))
                 .expect("UTF-8");
             replaced(&t, "@fragment\nstruct", "struct")
         },

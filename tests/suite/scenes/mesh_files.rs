@@ -518,12 +518,16 @@ fn the_inspector_names_the_file_and_bounds_follow_it() {
 }
 
 #[test]
-fn the_shipped_model_is_small_free_and_credited() {
-    let path = root().join("scenes/knot.glb");
-    assert!(fs::metadata(path).expect("shipped").len() <= 100_000);
+fn the_shipped_models_are_small_free_and_credited() {
     let credits = fs::read_to_string(root().join("CREDITS.md")).expect("readable");
-    assert!(credits.contains("scenes/knot.glb") && credits.contains("scripts/knot"));
-    assert_eq!(mesh_file::FORMAT.shipped[0].0, "knot.glb");
+    let shipped: Vec<_> = mesh_file::FORMAT.shipped.iter().map(|(name, _)| *name).collect();
+    assert_eq!(shipped, ["knot.glb", "gem.obj", "steps.obj", "lampshade.obj", "slab.obj"]);
+    for name in shipped {
+        let path = root().join("scenes").join(name);
+        assert!(fs::metadata(path).expect("shipped").len() <= 100_000, "{name}");
+        assert!(credits.contains(&format!("`scenes/{name}`")), "{name}");
+    }
+    assert!(credits.contains("scripts/knot") && credits.contains("scripts/solids"));
 }
 
 #[cfg(target_os = "linux")]

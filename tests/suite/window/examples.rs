@@ -110,7 +110,7 @@ fn the_wheel_scrolls_the_strip_and_titles_are_whole() {
         bench.frame(vec![Event::PointerMoved(at)]);
         let wheel = Event::MouseWheel {
             unit: egui::MouseWheelUnit::Point,
-            delta: vec2(0.0, -4000.0),
+            delta: vec2(0.0, -40_000.0),
             phase: egui::TouchPhase::Move,
             modifiers: Modifiers::NONE,
         };

@@ -612,7 +612,7 @@ fn a_material_of_artists_sets_every_parameter_of_its_model_in_one_edit() {
         assert_eq!(all, want);
     };
     has(&bench, true);
-    bench.type_into("fuzz", "0.5");
+    bench.type_into("metallic", "0.5");
     assert!(bench.says("material preset: none"));
     has(&bench, false);
     for _ in 0..2 {

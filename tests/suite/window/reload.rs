@@ -255,7 +255,7 @@ fn an_open_window_shows_what_is_edited_in_shaders_and_never_loses_the_picture() 
     save_in_place(&file, &text.replace("fn illuminate(", "fn illuminate(("));
     assert!(shows(2)(&window.until("a badge", stale)));
     let turned =
-        text.replace("return colour +", "return (colour +").replace("v, frame);\n}", "v, frame)).zyx;\n}");
+        text.replace("return colour +", "return (colour +").replace("selection);\n}", "selection)).zyx;\n}");
     assert!(turned.contains(".zyx;") && turned.contains("(colour +"), "the loop ends as the test expects");
     save_by_renaming(&file, &turned);
     let picture = window.until("a red sphere", shows(0));

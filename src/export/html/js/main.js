@@ -208,6 +208,7 @@ class Page {
       if (replaced) return;
       thing.uniforms.albedo_curve.set(curve);
       thing.uniforms.parameters.set(thing.packed(values));
+      thing.uniforms.interior.set(thing.packedInterior(values, curve));
       thing.uniforms.shading_values.set(thing.packedShading());
       this.draw();
     });

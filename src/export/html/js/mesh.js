@@ -38,6 +38,7 @@ class Mesh {
       let corner = 0;
       return Array.from({ length: count }, (_, place) => (corner += places[place][i]));
     });
+    this.closed = header.closed;
     this.tangents = header.tangents ? vectors(header.polygons, 1).map(unit) : null;
     // Not by arguments of a function: a browser takes about 100 000 of them.
     this.radius = this.positions.reduce((most, p) => Math.max(most, length(p)), 0);
@@ -82,6 +83,12 @@ class Mesh {
     });
     this.kept = { normals: normals.map(unit), tangents: agreed, faceNormals };
     return this.kept;
+  }
+
+  // The hierarchy of its triangles as words of rows; zero if it is not closed.
+  get body() {
+    this.keptBody ??= this.closed ? new Hierarchy(this).words : new Uint32Array(4 * ROWS_ACROSS);
+    return this.keptBody;
   }
 
   // The places of the corners of all triangles in the list of vertices; `first` counts the corners of polygons before.

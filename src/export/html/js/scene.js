@@ -6,6 +6,7 @@ class Thing {
     this.scene = scene;
     this.model = scene.models[data.model];
     this.initialValues = structuredClone(data.values);
+    this.initialInterior = data.interior === null ? new Uint8Array(0) : scene.blocks[data.interior];
     this.initialCurve = data.curve === null ? new Uint8Array(0) : scene.blocks[data.curve];
     this.uniforms = {
       placement: new Uniform(bytesOfFloats(data.matrix)),
@@ -13,6 +14,7 @@ class Thing {
       albedo_curve: new Uniform(this.initialCurve),
       // Knobs do not change them: any lobes give the right picture, with more noise or less.
       material_lobes: new Uniform(data.lobes === null ? new Uint8Array(0) : scene.blocks[data.lobes]),
+      interior: new Uniform(this.packedInterior(this.values, this.initialCurve)),
       shading_values: new Uniform(this.packedShading()),
     };
   }
@@ -29,7 +31,9 @@ class Thing {
   get parameters() {
     const shading = this.scene.shadings[this.shadingInUse].parameters;
     const known = new Set(this.model.parameters.map((p) => p.name));
-    return [...this.model.parameters, ...shading.filter((p) => !known.has(p.name))];
+    // Hidden ones would need another shader.
+    const own = this.model.parameters.filter((p) => !p.hidden);
+    return [...own, ...shading.filter((p) => !known.has(p.name))];
   }
 
   value(parameter) {
@@ -43,6 +47,21 @@ class Thing {
   packedShading() {
     const shading = this.scene.shadings[this.shadingInUse];
     return packed(shading.parameters, shading.size, this.values, this.scene.encoding);
+  }
+
+  // What light meets at the boundary of a solid body, and inside: the program's until a knob moves. Faceted shading
+  // has the normals of polygons.
+  packedInterior(values, curve) {
+    const { model, initialInterior, program } = this;
+    const numbers = new Float32Array(initialInterior.slice().buffer);
+    if (numbers.length === 0) return initialInterior;
+    if (this.isChanged && INTERIORS[model.id]) {
+      const parameters = numbersOf(model.parameters, this.packed(values), {});
+      const [n, b, alpha, ...absorption] = INTERIORS[model.id](parameters, curvesIn(model, curve));
+      numbers.set([n, b, alpha, 0, ...absorption]);
+    }
+    numbers[3] = program.faceted ? 1 : 0;
+    return new Uint8Array(numbers.buffer);
   }
 
   get isChanged() {
@@ -79,6 +98,7 @@ class Scene {
       // Of CSS; null for one colour.
       gradient: data.gradient,
       lightSamples: data.lightSamples,
+      slow: data.slow,
       exposure: data.exposure,
       initialExposure: data.exposure,
       observer: data.observer,
@@ -117,7 +137,10 @@ class Scene {
 
   setShading(shading) {
     this.shading = shading;
-    for (const thing of this.things) thing.uniforms.shading_values.set(thing.packedShading());
+    for (const thing of this.things) {
+      thing.uniforms.shading_values.set(thing.packedShading());
+      thing.uniforms.interior.set(thing.packedInterior(thing.values, thing.uniforms.albedo_curve.bytes));
+    }
   }
 
   // What renderers draw: a program, the vertices and the uniforms of each object.

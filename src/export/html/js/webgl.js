@@ -18,6 +18,7 @@ class WebGl {
     this.buffers = new WeakMap();
     this.meshes = new WeakMap();
     this.programs = new WeakMap();
+    this.bodies = new WeakMap();
   }
 
   // At once; `lost` comes later.
@@ -102,6 +103,24 @@ class WebGl {
     return kept[kind];
   }
 
+  // The texture of a solid body, the only one of its shader: samplers read the first unit unless they are told otherwise.
+  bindBody(mesh) {
+    const { gl } = this;
+    if (!this.bodies.has(mesh)) {
+      const texture = gl.createTexture();
+      const height = mesh.body.length / (4 * ROWS_ACROSS);
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.texImage2D(
+        gl.TEXTURE_2D, 0, gl.RGBA32UI, ROWS_ACROSS, height, 0, gl.RGBA_INTEGER, gl.UNSIGNED_INT, mesh.body,
+      );
+      for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+        gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+      }
+      this.bodies.set(mesh, texture);
+    }
+    gl.bindTexture(gl.TEXTURE_2D, this.bodies.get(mesh));
+  }
+
   targetsFor(width, height) {
     const { gl } = this;
     if (this.width === width && this.height === height) return;
@@ -149,6 +168,7 @@ class WebGl {
     for (const { drawing, first, count } of list) {
       gl.useProgram(this.programOf(drawing.program));
       for (const { binding, uniform, size } of drawing.uniforms) this.bind(binding, uniform, size);
+      if (drawing.program.body !== null) this.bindBody(drawing.mesh);
       gl.bindVertexArray(this.meshOf(drawing.mesh, drawing.kind).array);
       gl.drawElements(gl.TRIANGLES, Math.min(count, this.countOf(drawing) - first), gl.UNSIGNED_INT, 4 * first);
     }

@@ -25,6 +25,7 @@ class WebGpu {
     this.meshes = new WeakMap();
     this.pipelines = new WeakMap();
     this.albedoPipelines = new WeakMap();
+    this.bodies = new WeakMap();
     this.groups = new Map();
   }
 
@@ -32,20 +33,18 @@ class WebGpu {
     return this.device.limits.maxTextureDimension2D;
   }
 
-  layoutOf(uniforms) {
-    return this.device.createBindGroupLayout({
-      entries: uniforms.map(({ binding }) => ({
-        binding,
-        visibility: GPUShaderStage.VERTEX | GPUShaderStage.FRAGMENT,
-        buffer: { type: 'uniform' },
-      })),
-    });
+  // The layout of uniforms and, for solid bodies, of the texture at the binding `body`.
+  layoutOf(uniforms, body = null) {
+    const visibility = GPUShaderStage.VERTEX | GPUShaderStage.FRAGMENT;
+    const entries = uniforms.map(({ binding }) => ({ binding, visibility, buffer: { type: 'uniform' } }));
+    if (body !== null) entries.push({ binding: body, visibility, texture: { sampleType: 'uint' } });
+    return this.device.createBindGroupLayout({ entries });
   }
 
   pipelineOf(program) {
     if (this.pipelines.has(program)) return this.pipelines.get(program);
     const module = this.device.createShaderModule({ code: program.wgsl });
-    const layout = this.layoutOf(program.uniforms);
+    const layout = this.layoutOf(program.uniforms, program.body);
     const count = program.faces ? 6 : 3;
     const attributes = Array.from({ length: count }, (_, i) => ({
       shaderLocation: i,
@@ -102,7 +101,19 @@ class WebGpu {
     return kept[kind];
   }
 
-  groupOf({ thing, program, uniforms }, layout) {
+  // The texture of a solid body.
+  bodyOf(mesh) {
+    if (!this.bodies.has(mesh)) {
+      const size = [ROWS_ACROSS, mesh.body.length / (4 * ROWS_ACROSS)];
+      const usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST;
+      const texture = this.device.createTexture({ size, format: 'rgba32uint', usage });
+      this.device.queue.writeTexture({ texture }, mesh.body, { bytesPerRow: 16 * ROWS_ACROSS }, size);
+      this.bodies.set(mesh, texture);
+    }
+    return this.bodies.get(mesh);
+  }
+
+  groupOf({ thing, program, mesh, uniforms }, layout) {
     if (!this.groups.has(thing)) this.groups.set(thing, new Map());
     const kept = this.groups.get(thing);
     if (!kept.has(program)) {
@@ -110,6 +121,7 @@ class WebGpu {
         binding,
         resource: { buffer: this.bufferOf(uniform, size) },
       }));
+      if (program.body !== null) entries.push({ binding: program.body, resource: this.bodyOf(mesh).createView() });
       kept.set(program, this.device.createBindGroup({ layout, entries }));
     }
     return kept.get(program);

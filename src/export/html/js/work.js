@@ -1,4 +1,4 @@
-// Drawing in steps. A pixel takes many samples of each light with extent, and a driver that draws with the processor may
+// Drawing in steps. A pixel takes many samples of each light with extent, or many ways through a solid body, and a driver that draws with the processor may
 // need a minute for a picture; but systems take the graphics away from a page when one call takes some seconds. So a step
 // has as many points as the time of those before it allows: pixels, or corners of triangles where the shading model
 // lights these. The picture is the same in one step and in a thousand.
@@ -95,12 +95,15 @@ function* pieces(drawings, pace, countOf) {
   if (points > 0) yield [list, points];
 }
 
-// Neighbours that are lit alike, in lists: objects are drawn in their order.
+// The kind of work: what is lit, and whether it is a surface or a solid body, which takes longer.
+const kindOf = ({ program }) => `${program.corners ? 'corners' : 'pixels'} ${program.body === null ? 'surfaces' : 'bodies'}`;
+
+// Neighbours of one kind of work, in lists: objects are drawn in their order.
 function runs(drawings) {
   const all = [];
   for (const drawing of drawings) {
     const last = all.at(-1);
-    if (last && last[0].program.corners === drawing.program.corners) last.push(drawing);
+    if (last && kindOf(last[0]) === kindOf(drawing)) last.push(drawing);
     else all.push([drawing]);
   }
   return all;
@@ -111,15 +114,20 @@ const whole = (drawing) => ({ drawing, first: 0, count: Infinity });
 class Work {
   constructor(goal) {
     this.goal = goal;
-    this.pixels = new Pace(goal);
-    this.corners = new Pace(goal);
+    // One for each kind of work.
+    this.paces = {};
+  }
+
+  paceOf(drawing) {
+    return (this.paces[kindOf(drawing)] ??= new Pace(this.goal));
   }
 
   // How many times coarser, along each side, the pictures are that lead to the whole one.
   scales(scene, points) {
     const scales = [1];
-    const slow = scene.lightSamples && scene.drawings.some(({ program }) => !program.corners);
-    while (slow && points > 4 * this.pixels.most * scales[0] ** 2) scales.unshift(FINER * scales[0]);
+    const byPixel = scene.drawings.filter(({ program }) => scene.slow && !program.corners);
+    const most = byPixel.reduce((least, drawing) => Math.min(least, this.paceOf(drawing).most), Infinity);
+    while (points > 4 * most * scales[0] ** 2) scales.unshift(FINER * scales[0]);
     return scales;
   }
 
@@ -129,13 +137,17 @@ class Work {
     const { drawings } = scene;
     const frame = [0, 0, width, height];
     const all = { list: drawings.map(whole), tile: frame, isAll: true, done: 1, paces: [] };
-    if (!scene.lightSamples) {
+    if (!scene.slow) {
       yield all;
       return;
     }
+    const byPace = new Map();
+    for (const drawing of drawings) {
+      const pace = this.paceOf(drawing);
+      byPace.set(pace, drawing.program.corners ? (byPace.get(pace) ?? 0) + countOf(drawing) : width * height);
+    }
+    const paces = [...byPace].filter(([, points]) => points > 0);
     const corners = drawings.filter(({ program }) => program.corners).reduce((sum, d) => sum + countOf(d), 0);
-    const pixels = drawings.every(({ program }) => program.corners) ? 0 : width * height;
-    const paces = [[this.pixels, pixels], [this.corners, corners]].filter(([, points]) => points > 0);
     if (paces.every(([pace, points]) => points <= pace.most)) {
       yield { ...all, paces };
       return;
@@ -148,15 +160,16 @@ class Work {
       return { list, tile, isAll: false, done: done / total, paces: [[pace, points]] };
     };
     for (const [group, part] of groups) {
+      const pace = this.paceOf(group[0]);
       if (group[0].program.corners) {
-        for (const [list, points] of pieces(group, this.corners, countOf)) {
-          yield step(list, frame, this.corners, points);
+        for (const [list, points] of pieces(group, pace, countOf)) {
+          yield step(list, frame, pace, points);
           // All corners take about the same time.
-          this.corners.end();
+          pace.end();
         }
       } else {
         const list = group.map(whole);
-        for (const tile of tiles(part, this.pixels)) yield step(list, tile, this.pixels, tile[2] * tile[3]);
+        for (const tile of tiles(part, pace)) yield step(list, tile, pace, tile[2] * tile[3]);
       }
     }
   }
@@ -170,12 +183,10 @@ class Work {
   }
 
   begin() {
-    this.pixels.begin();
-    this.corners.begin();
+    for (const pace of Object.values(this.paces)) pace.begin();
   }
 
   end() {
-    this.pixels.end();
-    this.corners.end();
+    for (const pace of Object.values(this.paces)) pace.end();
   }
 }

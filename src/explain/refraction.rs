@@ -1,0 +1,263 @@
+//! Refraction where the view meets a clear body: Snell's angle, the critical angle, and the ways of light through a solid
+//! one.
+
+use std::f32::consts::FRAC_PI_2;
+
+use glam::Vec3;
+
+use super::{angle, number, rounded, triple};
+use crate::{
+    optics::{
+        Frame,
+        fresnel::dielectric,
+        refraction::{critical_angle, is_matched, refracted},
+    },
+    reference::probe::{Body, Inside, Turn},
+    reflection::Surface,
+    text::plural,
+};
+
+/// Part of the light below which a way out is not listed, and the maximum number of boundaries that are.
+const LEAST: f32 = 1e-3;
+const LISTED: usize = 8;
+
+/// Refraction at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refraction {
+    /// Refractive index of the body relative to the room.
+    pub index: f32,
+    /// The angle of the view to the normal outside, degrees.
+    pub incidence: f32,
+    /// The angle of the ray to the normal inside, degrees; `None` where everything is reflected.
+    pub refracted: Option<f32>,
+    /// The angle inside a dense body, or outside a thin one, beyond which everything is reflected, degrees.
+    pub critical: f32,
+    /// The part of the light that the boundary reflects where the view meets it.
+    pub reflectance: f32,
+    /// What is behind the boundary, for solid bodies.
+    pub inside: Option<Inside>,
+}
+
+impl Refraction {
+    /// The refraction at a point of a surface; `None` for models that do not bend light.
+    pub(super) fn of(
+        surface: &dyn Surface,
+        body: Option<&Body>,
+        at: Vec3,
+        view: Vec3,
+        frame: &Frame,
+    ) -> Option<Self> {
+        let given = surface.refractive_index()?;
+        let index = if is_matched(given) { 1.0 } else { given };
+        let ray = refracted(view, frame.n, index);
+        Some(Self {
+            index,
+            incidence: angle(frame.n.dot(view)),
+            refracted: ray.map(|ray| angle(-frame.n.dot(ray))),
+            critical: critical_angle(index).to_degrees(),
+            reflectance: dielectric(index, frame.n.dot(view)),
+            inside: body.map(|body| body.inside(at, view, frame.n).seen_by(surface.entering(view, frame))),
+        })
+    }
+
+    /// The explanation, a sentence or an equation each: the angle of refraction, the critical angle, and the boundaries that
+    /// the ray meets inside.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = self.angles();
+        match &self.inside {
+            None => {}
+            Some(Inside::Pane(why)) => lines.push(format!(
+                "The mesh is not a solid, so it has no inside: what is seen is a pane, through which light goes straight. The \
+                 reason: {why}."
+            )),
+            Some(Inside::Chance) => lines.push(
+                "The body is rough: each ray takes a way of its own, by chance, and the picture is their mean.".to_owned(),
+            ),
+            Some(Inside::Ways(turns, remaining)) => ways(turns, *remaining, &mut lines),
+        }
+        lines
+    }
+
+    fn angles(&self) -> Vec<String> {
+        let Self { index, incidence, refracted, critical, reflectance, .. } = self;
+        let [n, theta, reflected] = [*index, *incidence, *reflectance].map(number);
+        let mut lines = Vec::new();
+        if *index == 1.0 {
+            lines.push("n = 1: the boundary neither bends nor reflects light.".to_owned());
+            return lines;
+        }
+        lines.push(match refracted {
+            Some(angle) => format!(
+                "sin θ_r = n sin θ_t: θ_r = {theta}° outside, θ_t = {}° inside, n = {n}",
+                number(*angle)
+            ),
+            None => format!("θ_r = {theta}° is beyond the critical angle: everything is reflected, n = {n}"),
+        });
+        let side = if *index > 1.0 { "inside" } else { "outside" };
+        let quotient = if *index > 1.0 { "1/n" } else { "n" };
+        lines.push(format!(
+            "θ_c = asin {quotient} = {}°: light that meets the boundary from {side} at a larger angle is reflected completely",
+            number(*critical)
+        ));
+        lines.push(format!("F = {reflected}: the part of the light that is reflected here; the rest is seen through the surface"));
+        lines
+    }
+}
+
+/// The boundaries from inside, one by one.
+fn ways(turns: &[Turn], remaining: Vec3, lines: &mut Vec<String>) {
+    let counts = |turn: &Turn| turn.leaves.is_none_or(|(_, part)| part.max_element() >= LEAST);
+    let last =
+        turns.iter().rposition(|turn| turn.leaves.is_some() && counts(turn)).map_or(0, |last| last + 1);
+    let shown = last.clamp(1, LISTED).min(turns.len());
+    for (i, turn) in turns[..shown].iter().enumerate() {
+        lines.push(format!("{}: {}", i + 1, met(turn)));
+    }
+    let rest = turns.len() - shown;
+    if rest > 0 {
+        let further: Vec3 = turns[shown..].iter().filter_map(|turn| Some(turn.leaves?.1)).sum();
+        lines.push(format!("at {} more: {} in all", plural(rest, "turn"), part(further)));
+    }
+    lines.push(format!("remains inside, not followed any further: {}", part(remaining)));
+}
+
+/// A part of the light: one number if red, green and blue are equal.
+fn part(part: Vec3) -> String {
+    let [r, g, b] = part.to_array().map(|c| rounded(c, 3));
+    if r == g && g == b { r } else { format!("({r}, {g}, {b})") }
+}
+
+/// What happens at a boundary.
+fn met(turn: &Turn) -> String {
+    let after = format!(
+        "after {} m, at {}° from the normal inside, ",
+        rounded(turn.length, 3),
+        rounded(angle(turn.cosine), 3)
+    );
+    match turn.leaves {
+        None => format!("{after}everything is reflected"),
+        Some((direction, through)) => {
+            format!("{after}{} comes from {}, {}", part(through), triple(direction), elevation(direction))
+        }
+    }
+}
+
+/// The height of a direction: `12.3° above the horizon`.
+fn elevation(direction: Vec3) -> String {
+    let height = FRAC_PI_2.to_degrees() - angle(direction.y);
+    let side = if height < 0.0 { "below" } else { "above" };
+    format!("{}° {side} the horizon", rounded(height.abs(), 3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        explain,
+        parameter::Value,
+        reference::Settings,
+        registry::Registry,
+        scene::{Object, Observer, Scene},
+    };
+
+    const SIZE: [u32; 2] = [101, 101];
+
+    /// What is said of a pixel of an object in front of the observer.
+    fn refraction(
+        object_type: &str,
+        model: &str,
+        values: &[(&'static str, f32)],
+        pixel: [u32; 2],
+    ) -> Option<Refraction> {
+        let mut object = Object {
+            object_type: object_type.to_owned(),
+            position: Vec3::splat(5.0),
+            size: 2.0,
+            tessellation: Some(64),
+            ..Object::default()
+        };
+        values.iter().for_each(|(name, value)| object.material.set(*name, Value::Number(*value)));
+        let scene = Scene {
+            reflection_model: model.to_owned(),
+            shading_model: "phong".to_owned(),
+            objects: vec![object],
+            observer: Observer {
+                field_of_view: 30.0,
+                ..Observer::at(Vec3::new(5.0, 5.0, 10.0), Vec3::NEG_Z)
+            },
+            ..Scene::default()
+        };
+        let settings = Settings { width: SIZE[0], height: SIZE[1], ..Settings::default() };
+        let explained =
+            explain::pixel(&scene, &Registry::builtin(), &settings, pixel).expect("in the picture");
+        explained.seen.expect("the object").spots[0].refraction.clone()
+    }
+
+    #[test]
+    fn snells_angle_and_the_critical_angle_are_those_of_the_index() {
+        for (model, n) in [("glass", 1.5f32), ("rough_dielectric", 1.33), ("thin_glass", 2.4)] {
+            let found =
+                refraction("sphere", model, &[("refractive_index", n)], [70, 40]).expect("it bends light");
+            let sine = |degrees: f32| degrees.to_radians().sin();
+            let inside = found.refracted.expect("from outside");
+            assert!(
+                found.incidence > 30.0 && (sine(found.incidence) - n * sine(inside)).abs() < 1e-5,
+                "{found:?}"
+            );
+            assert!((n * sine(found.critical) - 1.0).abs() < 1e-5, "{found:?}");
+            let lines = found.lines();
+            assert!(
+                lines[0].starts_with("sin θ_r = n sin θ_t: θ_r = ") && lines[0].contains("° inside, n = "),
+                "{lines:?}"
+            );
+            assert!(lines[1].contains("from inside at a larger angle is reflected completely"), "{lines:?}");
+        }
+        assert_eq!(refraction("sphere", "phong", &[], [50, 50]), None);
+        assert_eq!(refraction("sphere", "diffuse_transmission", &[], [50, 50]), None, "it scatters");
+        let air = refraction("sphere", "glass", &[("refractive_index", 1.0)], [50, 50]).expect("it could");
+        assert_eq!(air.lines()[0], "n = 1: the boundary neither bends nor reflects light.");
+    }
+
+    #[test]
+    fn a_ball_shows_above_what_is_below_and_a_cube_face_what_is_behind_it() {
+        let way = |object_type: &str, pixel| {
+            let found = refraction(object_type, "glass", &[], pixel).expect("glass");
+            let lines = found.lines();
+            match found.inside {
+                Some(Inside::Ways(turns, remaining)) => (turns, remaining, lines),
+                other => panic!("{other:?}"),
+            }
+        };
+        let (turns, remaining, lines) = way("sphere", [50, 30]);
+        let (direction, through) = turns[0].leaves.expect("never totally reflected");
+        assert!(direction.y < -0.1 && through.x > 0.85, "{turns:?}");
+        assert!(lines[3].starts_with("1: after ") && lines[3].ends_with("° below the horizon"), "{lines:?}");
+        assert!(way("sphere", [50, 70]).2[3].ends_with("° above the horizon"));
+        assert!(
+            remaining.x < 1e-6 && lines.last().is_some_and(|last| last.starts_with("remains inside")),
+            "{lines:?}"
+        );
+        // Straight through the faces of a cube the line of sight goes on.
+        let (turns, _, _) = way("cube", [50, 45]);
+        let (direction, _) = turns[0].leaves.expect("the back");
+        assert!(direction.y > 0.0 && direction.z < -0.99, "{turns:?}");
+    }
+
+    #[test]
+    fn open_and_rough_bodies_say_why_there_is_no_single_way() {
+        let said = |object_type: &str, roughness: f32| {
+            let found =
+                refraction(object_type, "glass", &[("roughness", roughness)], [50, 50]).expect("glass");
+            (found.inside.clone(), found.lines().pop().expect("lines"))
+        };
+        let (inside, line) = said("teapot", 0.0);
+        assert!(matches!(inside, Some(Inside::Pane(_))), "{inside:?}");
+        assert!(
+            line.starts_with("The mesh is not a solid") && line.contains("The reason: it is open: "),
+            "{line}"
+        );
+        let (inside, line) = said("sphere", 0.5);
+        assert!(inside == Some(Inside::Chance) && line.starts_with("The body is rough"), "{line}");
+    }
+}

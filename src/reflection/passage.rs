@@ -1,0 +1,105 @@
+//! How light passes through a surface.
+
+use std::ops::BitOr;
+
+use super::Declaration;
+
+/// How light passes through surfaces: what a renderer must be ready for. Of most models it is
+/// [declared](Declaration::passage); where it depends on the parameters, a shader has only what its materials need, so
+/// that an opaque one costs nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Passage {
+    /// True if light from below the surface counts.
+    pub transmits: bool,
+    /// True if there may be directions in which light does not spread.
+    pub sharp: bool,
+    /// True if light follows the mesh of the object.
+    pub solid: bool,
+}
+
+impl Passage {
+    /// No light passes.
+    pub const NONE: Self = Self { transmits: false, sharp: false, solid: false };
+    /// Light passes through a sheet.
+    pub const SHEET: Self = Self { transmits: true, sharp: true, solid: false };
+    /// Light passes through a body.
+    pub const BODY: Self = Self { transmits: true, sharp: false, solid: true };
+
+    /// A number for each passage.
+    #[must_use]
+    pub const fn bits(self) -> u8 {
+        self.transmits as u8 | (self.sharp as u8) << 1 | (self.solid as u8) << 2
+    }
+}
+
+/// What either of two surfaces needs.
+impl BitOr for Passage {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self {
+            transmits: self.transmits | other.transmits,
+            sharp: self.sharp | other.sharp,
+            solid: self.solid | other.solid,
+        }
+    }
+}
+
+impl Declaration {
+    /// The passage that is declared: of a model whose parameters decide, all that may be needed.
+    #[must_use]
+    pub const fn passage(&self) -> Passage {
+        Passage { transmits: self.transmits, sharp: self.sharp, solid: self.solid }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        optics::{Frame, colour::Encoding},
+        registry::Registry,
+        testing::{direction, random_values},
+    };
+
+    #[test]
+    fn passages_differ_in_their_numbers_and_join() {
+        let all = [Passage::NONE, Passage::SHEET, Passage::BODY, Passage::SHEET | Passage::BODY];
+        assert_eq!(all.map(Passage::bits), [0, 3, 5, 7]);
+        assert_eq!(Passage::NONE | Passage::SHEET, Passage::SHEET);
+    }
+
+    #[test]
+    fn the_parameters_of_a_model_tell_what_its_surfaces_do() {
+        let mut seed = 41;
+        let mut varied = 0;
+        for model in Registry::builtin().models() {
+            let declared = model.declaration.passage();
+            for i in 0..12 {
+                let mut values = random_values(model, &mut seed);
+                if i % 3 == 0 {
+                    values = crate::parameter::Values::default();
+                }
+                let passage = model.passage(&values);
+                assert!(model.passages().contains(&passage), "{}: {values:?}", model.declaration.id);
+                assert_eq!(passage | declared, declared, "{}: {values:?}", model.declaration.id);
+                varied += usize::from(passage != declared);
+                let surface = model.instantiate(&values, Encoding::Srgb);
+                assert_eq!(surface.transmits(), passage.transmits, "{}: {values:?}", model.declaration.id);
+                let v = direction(&mut seed);
+                let sharp = !surface.sharp(v, &Frame::LOCAL).is_empty();
+                assert!(passage.sharp || !sharp, "{}: {values:?}", model.declaration.id);
+                assert_eq!(
+                    surface.interior().is_some(),
+                    passage.solid,
+                    "{}: {values:?}",
+                    model.declaration.id
+                );
+                let below = -direction(&mut seed);
+                let through = surface.response(below, v, &Frame::LOCAL).transmitted;
+                assert!(passage.transmits || through == glam::Vec3::ZERO, "{}", model.declaration.id);
+            }
+        }
+        assert!(varied > 6, "{varied}");
+    }
+}

@@ -1,0 +1,161 @@
+//! Bodies that light goes through: both renderers draw the same, and odd places and values do no harm.
+
+use std::{f32::consts::PI, sync::atomic::AtomicBool};
+
+use glam::Vec3;
+use lights_camera_models::{
+    optics::{TermSelection, colour::Encoding},
+    parameter::Value,
+    reference::{self, LightSamples, Picture},
+    registry::Registry,
+    render::capture::gpu::{GpuRenderer, Output},
+    scene::{Light, Observer, Scene},
+};
+
+use crate::helpers::pictures::{close_up, on_gpu};
+
+const SIZE: u32 = 64;
+/// Samples of light and of ways through bodies.
+const SAMPLES: u32 = 32;
+
+fn colour(rgb: [u8; 3]) -> (&'static str, Value) {
+    ("transmittance_colour", Value::Colour(rgb))
+}
+
+fn number(name: &'static str, value: f32) -> (&'static str, Value) {
+    (name, Value::Number(value))
+}
+
+/// An object of glass in surroundings that are not drawn themselves.
+fn body(kind: &str, source: &'static str, values: &[(&'static str, Value)]) -> Scene {
+    let mut scene = close_up(kind, "environment");
+    scene.reflection_model = "glass".to_owned();
+    scene.shading_model = "phong".to_owned();
+    scene.lights[0].parameters.set("source", Value::Choice(source.into()));
+    scene.lights[0].parameters.set("visible", Value::flag(false));
+    scene.lights[0].intensity = 0.3;
+    values.iter().for_each(|(name, value)| scene.objects[0].material.set(*name, value.clone()));
+    scene
+}
+
+fn renderer() -> GpuRenderer {
+    let mut renderer = GpuRenderer::new(SIZE, SIZE, 1, Output::Linear).expect("software Vulkan is installed");
+    renderer.set_light_samples(SAMPLES);
+    renderer
+}
+
+fn on_cpu(scene: &Scene) -> Picture {
+    on_cpu_with(scene, SAMPLES)
+}
+
+fn on_cpu_with(scene: &Scene, samples: u32) -> Picture {
+    let settings = reference::Settings { width: SIZE, height: SIZE, samples: 1, terms: TermSelection::All };
+    let odd = AtomicBool::default();
+    reference::render_samples(scene, &Registry::builtin(), &settings, LightSamples::of(samples), &odd)
+}
+
+/// The fraction of the pixels within the object that differ by more than two codes on the display.
+fn unlike(gpu: &[Vec3], cpu: &Picture) -> f32 {
+    let apart = |a: Vec3, b: Vec3| {
+        let [a, b] = [a, b].map(|light| Encoding::Srgb.encode(light));
+        (0..3).any(|i| a[i].abs_diff(b[i]) > 2)
+    };
+    let within: Vec<_> = cpu.pixels.iter().zip(gpu).filter(|(cpu, _)| cpu.w == 1.0).collect();
+    assert!(within.len() > 300, "hardly anything to compare");
+    let wrong = within.iter().filter(|(cpu, gpu)| apart(cpu.truncate(), **gpu)).count();
+    wrong as f32 / within.len() as f32
+}
+
+#[test]
+fn both_renderers_draw_the_same_bodies() {
+    let mut renderer = renderer();
+    let flint = [number("refractive_index", 1.7), number("dispersion", 0.03)];
+    let green = [colour([60, 220, 120]), number("distance", 0.8)];
+    let cases = [
+        ("sphere", "studio", &[][..]),
+        ("cube", "sky", &[]),
+        ("torus", "studio", &[]),
+        ("superellipsoid", "sky", &green[..]),
+        ("teapot", "studio", &[]),
+        ("sphere", "sky", &flint[..]),
+        ("sphere", "studio", &[number("roughness", 0.5)]),
+    ];
+    let mut report = Vec::new();
+    for (kind, source, values) in cases {
+        for shading in ["phong", "derivative"] {
+            let mut scene = body(kind, source, values);
+            scene.shading_model = shading.to_owned();
+            // The renderers take different wavelengths, so that only many of them have the same mean.
+            let samples = if values.iter().any(|(name, _)| *name == "dispersion") { 256 } else { SAMPLES };
+            renderer.set_light_samples(samples);
+            let shown = on_gpu(&mut renderer, &scene);
+            let share = unlike(&shown, &on_cpu_with(&scene, samples));
+            println!("{kind} {source} {values:?} {shading}: {share:.4}");
+            // The mean normals of a cube send light around in its corners, where rounding decides about its way.
+            let most = if kind == "cube" && shading == "phong" { 0.04 } else { 0.01 };
+            if share > most {
+                report.push(format!("{kind} {source} {values:?} {shading}: {share}"));
+            }
+            // The wrong twin: a denser body.
+            scene.objects[0].material.set("refractive_index", Value::Number(1.3));
+            assert!(unlike(&shown, &on_cpu(&scene)) > 0.1, "{kind} {source} {values:?} {shading}");
+        }
+    }
+    assert!(report.is_empty(), "{}", report.join("\n"));
+}
+
+/// Light from lamps without extent comes through rough boundaries.
+#[test]
+fn both_renderers_bring_light_of_lamps_through_rough_bodies() {
+    let mut renderer = renderer();
+    let mut scene = body("sphere", "uniform", &[number("roughness", 0.5)]);
+    scene.lights = vec![close_up("sphere", "point").lights.remove(0)];
+    // Behind the ball.
+    scene.lights[0].position = Some(Vec3::new(5.5, 5.5, 2.0));
+    let shown = on_gpu(&mut renderer, &scene);
+    let cpu = on_cpu(&scene);
+    assert!(unlike(&shown, &cpu) < 0.01, "{}", unlike(&shown, &cpu));
+    let brightest = cpu.pixels.iter().map(|p| p.x * p.w).fold(0.0, f32::max);
+    assert!(brightest > 0.01, "{brightest}");
+    scene.objects[0].material.set("roughness", Value::Number(0.0));
+    assert!(
+        on_cpu(&scene).pixels.iter().all(|p| p.truncate() == Vec3::ZERO),
+        "nothing goes to a smooth point"
+    );
+}
+
+/// A body that refracts nothing is not there, black glass lets nothing through, and neither the observer nor a lamp inside
+/// makes numbers that are none.
+#[test]
+fn odd_bodies_are_finite() {
+    let uniform = |values: &[(&'static str, Value)]| {
+        let mut scene = body("sphere", "uniform", values);
+        scene.lights[0].intensity = 0.25;
+        scene.lights[0].colour = [255; 3];
+        scene
+    };
+    let covered = |scene: &Scene| -> Vec<Vec3> {
+        let picture = on_cpu(scene);
+        assert!(picture.pixels.iter().all(|p| p.is_finite() && p.min_element() >= 0.0));
+        picture.pixels.iter().filter(|p| p.w == 1.0).map(|p| p.truncate()).collect()
+    };
+    let none = covered(&uniform(&[number("refractive_index", 1.0)]));
+    assert!(none.iter().all(|p| (*p - 0.25 * PI).abs().max_element() < 1e-5));
+    let black = [colour([0, 0, 0]), number("distance", 0.001)];
+    let black = covered(&uniform(&black));
+    // Only the reflection at the outside remains: 4 % in the middle.
+    let least = black.iter().map(|p| p.x).fold(f32::INFINITY, f32::min);
+    assert!((least / (0.25 * PI) - 0.04).abs() < 0.002, "{least}");
+    for values in [&[][..], &[number("roughness", 0.5)], &[number("dispersion", 0.1)]] {
+        let mut within = uniform(values);
+        within.observer = Observer::at(within.objects[0].position, Vec3::NEG_Z);
+        assert!(on_cpu(&within).pixels.iter().all(|p| p.is_finite()), "{values:?}");
+        for kind in ["point", "sphere", "rectangle"] {
+            let mut lamp: Light = close_up("sphere", kind).lights.remove(0);
+            lamp.position = Some(within.objects[0].position);
+            let mut lit = uniform(values);
+            lit.lights.push(lamp);
+            assert!(covered(&lit).len() > 300, "{kind} {values:?}");
+        }
+    }
+}
