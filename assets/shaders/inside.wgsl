@@ -67,31 +67,38 @@ fn follow_inside(
     var ray = MeshRay(to_mesh * (position - solid.position) / solid.size, unit_or_zero(to_mesh * first));
     for (var order = 0u; order < INSIDE_ORDERS; order++) {
         let hit = hierarchy_nearest(solid.base, ray, -INSIDE_BEHIND, 1e30, true);
-        if hit.met == 0u {
-            if order == 0u {
-                // It only touches the rim, beside which the normal of the shading leads it, and goes straight on.
-                leaves_solid(position, -view, part);
-                return vec3(0.0);
-            }
+        // It only touches the rim, beside which the normal of the shading leads it, and goes straight on.
+        let touches = hit.met == 0u && order == 0u;
+        if hit.met == 0u && !touches {
             break;
         }
-        part *= absorption_left(sigma, solid.size * hit.distance);
-        let face = hierarchy_triangle_normal(solid.base, hit.triangle);
-        var shading = hierarchy_triangle(solid.base, hit.triangle)[3];
-        if solid.by_polygon == 0u {
-            shading = hierarchy_vertex_normal(solid.base, hit);
+        var place = position;
+        var out = -view;
+        var leaving = part;
+        if touches {
+            part = vec3(0.0);
+        } else {
+            part *= absorption_left(sigma, solid.size * hit.distance);
+            let face = hierarchy_triangle_normal(solid.base, hit.triangle);
+            var shading = hierarchy_triangle(solid.base, hit.triangle)[3];
+            if solid.by_polygon == 0u {
+                shading = hierarchy_vertex_normal(solid.base, hit);
+            }
+            let boundary = boundary_of(ray.direction, shading, face, eta);
+            let origin = hierarchy_point(solid.base, hit);
+            place = solid.rotation * (solid.size * origin) + solid.position;
+            out = solid.rotation * boundary.out;
+            leaving = part * (1.0 - boundary.reflectance);
+            part *= boundary.reflectance;
+            ray = MeshRay(origin, unit_or_zero(boundary.reflected));
         }
-        let boundary = boundary_of(ray.direction, shading, face, eta);
-        let origin = hierarchy_point(solid.base, hit);
-        if any(boundary.out != vec3(0.0)) {
-            let place = solid.rotation * (solid.size * origin) + solid.position;
-            leaves_solid(place, solid.rotation * boundary.out, part * (1.0 - boundary.reflectance));
+        // In one place, as each call would stand in the shader in full.
+        if any(out != vec3(0.0)) {
+            leaves_solid(place, out, leaving);
         }
-        part *= boundary.reflectance;
         if max(part.x, max(part.y, part.z)) < INSIDE_LEAST {
             break;
         }
-        ray = MeshRay(origin, unit_or_zero(boundary.reflected));
     }
     return part;
 }

@@ -40,8 +40,11 @@ fn through_pane(position: vec3<f32>, view: vec3<f32>, frame: Frame, ior: f32) ->
     let first = dielectric(select(ior, 1.0, is_matched(ior)), cosine);
     let both = slab(vec3(first), vec3(1.0));
     solid_light = vec3(0.0);
-    leaves_solid(position, mirror(view, frame.n), max(both.reflectance - first, vec3(0.0)));
-    leaves_solid(position, -view, both.transmittance);
+    for (var side = 0u; side < 2u; side++) {
+        let passes = side == 1u;
+        let part = select(max(both.reflectance - first, vec3(0.0)), both.transmittance, passes);
+        leaves_solid(position, select(mirror(view, frame.n), -view, passes), part);
+    }
     return solid_light;
 }
 

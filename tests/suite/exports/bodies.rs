@@ -16,8 +16,8 @@ use serde_json::{Value, json};
 use super::pages::{BEYOND, MEAN, difference, page, scene, set};
 use crate::helpers::{browser::Browser, support::root};
 
-const WIDTH: u32 = 160;
-const HEIGHT: u32 = 90;
+const WIDTH: u32 = 112;
+const HEIGHT: u32 = 63;
 
 /// The picture of the program, with as many samples as a page takes.
 fn rendered(scene: &Scene, registry: &Registry) -> Vec<u8> {
