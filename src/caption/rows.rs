@@ -5,7 +5,7 @@ use crate::{
     parameter::Value,
     registry::Registry,
     scene::{
-        Object, Scene,
+        Scene,
         rows::{Row, Variable},
     },
 };
@@ -24,15 +24,18 @@ pub fn row_labels(scene: &Scene, registry: &Registry) -> Vec<(usize, Vec<Part>)>
 #[must_use]
 pub fn of_row(scene: &Scene, row: &Row, registry: &Registry) -> Vec<Vec<Part>> {
     let variables: Vec<_> = row.variables(registry).collect();
-    scene.objects[row.range()].iter().map(|object| of_copy(object, &variables, registry)).collect()
+    row.range().map(|i| of_copy(scene, i, &variables, registry)).collect()
 }
 
-/// The values of a copy that vary in its row.
+/// The values of a copy that vary in its row, without those of which its model makes no use.
 #[must_use]
-pub fn of_copy(object: &Object, variables: &[Variable], registry: &Registry) -> Vec<Part> {
-    let said = |Variable { key, declared }: &Variable| {
+pub fn of_copy(scene: &Scene, i: usize, variables: &[Variable], registry: &Registry) -> Vec<Part> {
+    let Some(object) = scene.objects.get(i) else { return Vec::new() };
+    let said = |variable: &Variable| {
+        let Variable { key, declared } = variable;
         let held = declared.held(object, *key).filter(|held| !matches!(held, Value::File(_)))?;
-        Some(said(declared.label(), declared.symbol(), declared.shown(&held, registry)))
+        let counts = variable.idle(scene, i, registry).is_none();
+        counts.then(|| said(declared.label(), declared.symbol(), declared.shown(&held, registry)))
     };
     variables.iter().filter_map(said).collect()
 }
@@ -40,20 +43,25 @@ pub fn of_copy(object: &Object, variables: &[Variable], registry: &Registry) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::caption::line;
+    use crate::{caption::line, scene::Object};
 
     #[test]
     fn values_are_named_as_people_call_them_not_by_their_paths() {
         let registry = Registry::builtin();
         let torus = Object { object_type: "torus".to_owned(), ..Object::default() };
-        let label = |path: &str| {
-            let variable = Variable::with_path(path, &torus.object_type, &registry).expect(path);
-            line(&of_copy(&torus, &[variable], &registry))
+        let mut scene = Scene { objects: vec![torus], ..Scene::default() };
+        let label = |scene: &Scene, path: &str| {
+            let variable = Variable::with_path(path, "torus", &registry).expect(path);
+            line(&of_copy(scene, 0, &[variable], &registry))
         };
-        // Lambert does not use it.
-        assert!(label("material.roughness").starts_with("r 0."), "{}", label("material.roughness"));
+        assert_eq!(label(&scene, "material.roughness"), "", "Lambert does not use it");
+        scene.reflection_model = "eon".to_owned();
+        let roughness = label(&scene, "material.roughness");
+        assert!(roughness.starts_with("r 0."), "{roughness}");
+        scene.reflection_model = "disney".to_owned();
+        let label = |path: &str| label(&scene, path);
         assert_eq!((label("size"), label("visible")), ("size 2 m".to_owned(), "visible true".to_owned()));
-        for path in ["tube_radius", "material.specular_colour", "rotation"] {
+        for path in ["tube_radius", "material.sheen", "rotation"] {
             let said = label(path);
             let declared = Variable::with_path(path, "torus", &registry).expect(path).declared;
             let name = if declared.symbol().is_empty() { declared.label() } else { declared.symbol() };

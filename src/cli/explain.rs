@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "VIEW", default_value = "A")]
     view: String,
     /// Show only one term of the reflection model's equation
-    #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular")]
+    #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular|transmitted")]
     term: TermSelection,
     /// Also print the numbers of the scene that would move this pixel most, by differences
     #[arg(long)]

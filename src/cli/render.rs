@@ -76,7 +76,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     changes: Changes,
     /// Show only one term of the reflection model's equation
-    #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular")]
+    #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular|transmitted")]
     term: TermSelection,
     #[arg(long, value_parser = channel, value_name = "NAME", help = format!(
         "Show a debug channel with its legend instead of the picture: {}",

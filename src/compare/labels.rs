@@ -55,6 +55,7 @@ fn draw(canvas: &mut Canvas, area: Rect, scene: &Scene, registry: &Registry) {
     let room = apart(&labels, style.height(usual)).unwrap_or(f32::INFINITY);
     // Padding of a third of a line at both sides.
     let px = (usual * room / (widest as f32 + 0.7 * usual)).clamp(SMALLEST.min(usual), usual);
+    let mut plates: Vec<Rect> = Vec::with_capacity(labels.len());
     for ([x, y], parts) in &labels {
         let pad = (0.25 * px).round() as u32;
         let [width, height] = [line_width(parts, px) + 2 * pad, style.height(px)];
@@ -69,10 +70,20 @@ fn draw(canvas: &mut Canvas, area: Rect, scene: &Scene, registry: &Registry) {
             width,
             height,
         ];
+        // Two over each other could not be read; the first stays, as in the window.
+        if plates.iter().any(|other| overlap(*other, plate)) {
+            continue;
+        }
+        plates.push(plate);
         canvas.fill(plate, ground.colour, PLATE);
         let at = [plate[0] + pad, plate[1]].map(|v| i32::try_from(v).unwrap_or(i32::MAX));
         draw_line(parts, &mut canvas.rgb8, canvas.size, at, px, ground.title);
     }
+}
+
+/// True if two rectangles have pixels in common.
+fn overlap(a: Rect, b: Rect) -> bool {
+    (0..2).all(|axis| a[axis] < b[axis] + b[axis + 2] && b[axis] < a[axis] + a[axis + 2])
 }
 
 /// The point below a visible object, pixels from the corner of an area; `None` if its middle is not in it.
@@ -116,7 +127,7 @@ mod tests {
             repeat: Repetition::Entry(Box::new(repeat)),
             ..Object::default()
         };
-        let scene = Scene { objects: vec![entry], ..Scene::default() };
+        let scene = Scene { objects: vec![entry], reflection_model: "phong".to_owned(), ..Scene::default() };
         scene.expanded(&Registry::builtin()).expect("a row")
     }
 

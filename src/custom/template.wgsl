@@ -5,7 +5,7 @@
     "author": "name and year",
     "source": "publication",
     "summary": "A matte body under a soft gloss; the two share the light.",
-    // One part for each term: total, ambient, diffuse, specular. _x is a subscript, ^x a superscript.
+    // One part for each term: total, ambient, diffuse, specular, transmitted. _x is a subscript, ^x a superscript.
     "equation": [
         { "term": "diffuse", "text": "I_d = (1 − g) C_b (N·L)" },
         { "term": "specular", "text": "I_s = g (N·H)^n (N·L)" },
@@ -14,6 +14,8 @@
     "laws": ["reciprocal", "energy conserving", "non-negative"],
     // True if turning the surface about its normal changes the response.
     "anisotropic": false,
+    // True if light also passes through: l may then point below the surface, and that light is the term `transmitted`.
+    "transmits": false,
     // A name alone is a parameter shared with other models: a surface keeps its value when the model changes.
     // Types are number, integer, colour, triple and choice; missing keys have sensible defaults.
     "parameters": [

@@ -218,7 +218,12 @@ impl Explanation {
             let through = match lit.through {
                 Vec3::ZERO => String::new(),
                 through => {
-                    say!(out, 2, "light that comes through the body: {}", triple(through));
+                    say!(
+                        out,
+                        2,
+                        "light that comes through the body: {}, a mean over random ways, with noise",
+                        triple(through)
+                    );
                     format!(" + {}", triple(through))
                 }
             };

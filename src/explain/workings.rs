@@ -251,7 +251,16 @@ impl Scope for Workings<'_> {
 /// several parts.
 fn substituted(body: &str, parameters: &[&str], arguments: &[String]) -> String {
     let mut out = Vec::new();
-    for atom in mathematics::parse(body) {
+    let atoms = mathematics::parse(body);
+    let ends = |atom: Option<&Atom>, bases: [&str; 2]| atom.is_some_and(|atom| bases.contains(&atom.base()));
+    // The whole argument of a function, as μ in F(0, μ).
+    let is_argument = |i: usize| {
+        let solid = |atom: &&Atom| !matches!(atom, Atom::Space);
+        ends(atoms[..i].iter().rev().find(solid), ["(", ","])
+            && ends(atoms[i + 1..].iter().find(solid), [")", ","])
+    };
+    let whole: Vec<bool> = (0..atoms.len()).map(is_argument).collect();
+    for (atom, whole) in atoms.into_iter().zip(whole) {
         let place = parameters.iter().position(|p| atom.symbol().is_some_and(|s| same_symbol(&s, p)));
         let scripts = |text: &str| substituted(text, parameters, arguments);
         match (place, atom) {
@@ -267,7 +276,7 @@ fn substituted(body: &str, parameters: &[&str], arguments: &[String]) -> String 
                     sup,
                 };
                 let sup = scripts(atom.sup());
-                if alone || product {
+                if alone || product || whole && atom.sup().is_empty() {
                     out.extend(argument);
                 } else {
                     out.push(upright("(", String::new()));
@@ -299,6 +308,8 @@ mod tests {
             ("1 − μ", "N·L", "1 − N·L"),
             ("2 μ", "a + b", "2 (a + b)"),
             ("2^μ", "a", "2^a"),
+            ("F(μ) − G(0, μ) μ", "2/3", "F(2/3) − G(0, 2/3) (2/3)"),
+            ("(μ)^2 + F(μ^2)", "a + b", "(a + b)^2 + F((a + b)^2)"),
             ("μ_1 μ", "0.5", "μ_1 0.5"),
         ] {
             assert_eq!(substituted(body, &["μ"], &[arguments.to_owned()]), expected);

@@ -192,7 +192,9 @@ fn apply(
         let action = explain::placed(ctx, session, action);
         effects.extend(session.apply(action, registry));
     }
-    if session.document.in_gesture() && !gesture_goes_on(ctx) {
+    // Asked in each frame: it compares the focus with that of the frame before.
+    let goes_on = gesture_goes_on(ctx);
+    if session.document.in_gesture() && !goes_on {
         session.document.end_gesture();
     }
     if session.wanted_dialog.is_some() {

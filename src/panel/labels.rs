@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{caption, marks::Lens, prelude::*, state::Labels};
 use crate::{
-    caption::{Ground, line, of_copy},
+    caption::{Ground, of_copy},
     scene::{Display, rows::Variable},
 };
 
@@ -14,6 +14,8 @@ const MOST: usize = 16;
 const MOST_OF_ROWS: usize = 100;
 /// Minimum size of a labelled object, in points.
 const SMALLEST: f32 = 24.0;
+/// The space around the text of a label, in points.
+const PADDING: Vec2 = vec2(8.0, 4.0);
 /// Number of values in a label.
 const VALUES: usize = 3;
 
@@ -41,17 +43,19 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, regist
     };
     let mut variables: HashMap<usize, Vec<Variable>> = HashMap::new();
     let palette = palette(ui, &in_view.display);
-    let size = TextStyle::Body.resolve(ui.style()).size;
+    let size = type_size(ui, rect, session);
     for (i, below) in nearest(rect, session, |i| row_of(i).is_some(), MOST_OF_ROWS) {
-        let Some((place, object)) = row_of(i).zip(in_view.objects.get(i)) else { continue };
+        let Some(place) = row_of(i) else { continue };
         let variables = variables.entry(place).or_insert_with(|| rows[place].variables(registry).collect());
-        let parts = of_copy(object, variables, registry);
+        let parts = of_copy(in_view, i, variables, registry);
         if parts.is_empty() {
             continue;
         }
-        let line =
-            theme::elided(ui, &line(&parts), FontId::proportional(0.9 * size), palette.text, rect.width());
-        places.extend(plate(ui, palette, rect, below, [line], &places));
+        let line = caption::Lines::of(ui, parts, 0.9 * size, palette.text, rect.width());
+        if let Some(place) = plate(ui, palette, rect, below, line.size, &places) {
+            line.paint(ui, place.min + PADDING, palette.text);
+            places.push(place);
+        }
     }
     places
 }
@@ -66,7 +70,7 @@ fn of_objects(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Re
     let Some((seen, _)) = few.seen(view, registry) else { return Vec::new() };
     let mut places: Vec<Rect> = Vec::new();
     let palette = palette(ui, &seen.display);
-    let size = TextStyle::Body.resolve(ui.style()).size;
+    let size = type_size(ui, rect, session);
     let room = (rect.width() - 24.0).clamp(40.0, 260.0 * theme::scale_here(ui));
     for ((i, below), object) in found.into_iter().zip(&seen.objects) {
         let model = seen.model_of(object);
@@ -78,9 +82,25 @@ fn of_objects(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Re
             theme::elided(ui, &model, FontId::proportional(0.9 * size), palette.text, room),
             theme::elided(ui, &values, FontId::proportional(0.9 * size), palette.weak, room),
         ];
-        places.extend(plate(ui, palette, rect, below, galleys, &places));
+        let filled = || galleys.iter().filter(|line| line.size().x > 0.0);
+        let width = filled().map(|line| line.size().x).fold(0.0, f32::max);
+        let height: f32 = filled().map(|line| line.size().y).sum();
+        let Some(place) = plate(ui, palette, rect, below, vec2(width, height), &places) else { continue };
+        let painter = ui.painter_at(rect);
+        let mut y = place.top() + PADDING.y;
+        for line in filled() {
+            painter.galley(pos2(place.center().x - 0.5 * line.size().x, y), line.clone(), palette.text);
+            y += line.size().y;
+        }
+        places.push(place);
     }
     places
+}
+
+/// The size of letters: in a presentation they are read from afar.
+fn type_size(ui: &Ui, rect: Rect, session: &Session) -> f32 {
+    let usual = TextStyle::Body.resolve(ui.style()).size;
+    if session.view.presenting { usual.max(0.026 * rect.height()) } else { usual }
 }
 
 /// The colours of labels: of the theme that suits the background of the scene, or of the window if there is none.
@@ -112,20 +132,16 @@ fn nearest(rect: Rect, session: &Session, wanted: impl Fn(usize) -> bool, most: 
     found.into_iter().take(most).map(|(i, below, _)| (i, below)).collect()
 }
 
-/// Paints the lines of a label below a point, unless it would cover others. Returns its rectangle.
-fn plate<const N: usize>(
+/// Paints the plate of a label with contents of this size below a point, unless it would cover others. Returns its rectangle.
+fn plate(
     ui: &Ui,
     palette: Palette,
     rect: Rect,
     below: Pos2,
-    lines: [Arc<Galley>; N],
+    contents: Vec2,
     others: &[Rect],
 ) -> Option<Rect> {
-    let lines = || lines.iter().filter(|line| line.size().x > 0.0);
-    let width = lines().map(|line| line.size().x).fold(0.0, f32::max);
-    let height: f32 = lines().map(|line| line.size().y).sum();
-    let padding = vec2(8.0, 4.0);
-    let whole = vec2(width, height) + 2.0 * padding;
+    let whole = contents + 2.0 * PADDING;
     let free = rect.shrink(4.0);
     let left = (below.x - 0.5 * whole.x).clamp(free.left(), (free.right() - whole.x).max(free.left()));
     let top = (below.y + 6.0).clamp(free.top(), (free.bottom() - whole.y).max(free.top()));
@@ -133,13 +149,7 @@ fn plate<const N: usize>(
     if others.iter().any(|other| other.intersects(place)) {
         return None;
     }
-    let painter = ui.painter_at(rect);
-    painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
-    let mut y = place.top() + padding.y;
-    for line in lines() {
-        painter.galley(pos2(place.center().x - 0.5 * line.size().x, y), line.clone(), palette.text);
-        y += line.size().y;
-    }
+    ui.painter_at(rect).rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
     Some(place)
 }
 

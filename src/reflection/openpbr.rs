@@ -525,7 +525,9 @@ impl OpenPbr {
     fn entered(&self, mu: f32) -> Vec3 {
         let p = &self.prepared;
         // The way inside begins at the boundary of the body to air: what the coat and the film change about that.
-        let at = if p.is_smooth() { mu } else { SCATTERED };
+        // Light that would be reflected totally there enters along the normal.
+        let scattered = if p.ior() * p.ior() > 1.0 - SCATTERED * SCATTERED { SCATTERED } else { 1.0 };
+        let at = if p.is_smooth() { mu } else { scattered };
         let bare = (1.0 - dielectric(p.ior(), at)).max(1e-6);
         let entered = (Vec3::ONE - self.boundary(at)) / bare;
         // The coat colours the light once more where it leaves, as at this angle.

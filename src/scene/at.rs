@@ -4,7 +4,7 @@
 //! Paths are those of messages, of lessons and of tables.
 
 use super::{
-    Field, Key, Part, Scene, check,
+    Field, Key, Object, Part, Scene, check,
     error::{Path, Problem, Segment},
     field::Kind,
     load::MAX_DEPTH,
@@ -256,6 +256,13 @@ fn declared<'p>(
         [Segment::Key(name), tail @ ..] => {
             let key = canonical(name, &known);
             let field = key.and_then(|key| fields.field(key));
+            if key == Some(Object::repeat.key) {
+                return Err(format!(
+                    "{} makes a row of copies, which are single objects here; vary a value of each of them, or write \
+                     scenes with other rows",
+                    at.key(name.clone())
+                ));
+            }
             if let Some(Field {
                 kind: Kind::Part | Kind::Parts | Kind::Parameters | Kind::Material, ..
             }) = field

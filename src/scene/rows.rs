@@ -9,13 +9,14 @@ use std::{borrow::Cow, ops::Range, sync::Arc};
 use glam::Vec3;
 
 use super::{
-    Field, MAX_OBJECTS, Object, Repeat, Repetition, Scene, SceneSize, Varied,
+    Field, MAX_OBJECTS, Object, Part, Repeat, Repetition, Scene, SceneSize, Varied,
     declaration::Declared,
     error::{Path, Problem, Segment},
     field::Kind,
     part::{Fields, Key, Structure as _},
     range::significant,
     repeat::{Along, Lists, MAX_VARIED, Scale},
+    used::{Idle, idle},
 };
 use crate::{
     parameter::{Parameter, Value},
@@ -129,6 +130,13 @@ impl Variable {
         let even = steps.iter().all(|other| (other - step).abs() <= 1e-4 * step.abs());
         let next = significant(last + step, 6);
         (even && limits.allows(next)).then(|| self.declared.of_number(next)).flatten()
+    }
+
+    /// The reason why an object makes no use of it; `None` if it does.
+    #[must_use]
+    pub fn idle(self, scene: &Scene, object: usize, registry: &Registry) -> Option<Idle> {
+        let Declared::Parameter(parameter) = self.declared else { return None };
+        idle((Part::Object(object), self.key), parameter, scene, registry)
     }
 
     /// The value that an object has, given or default, if it has one.
@@ -406,6 +414,13 @@ impl Row<'_> {
             let variable = Variable::with_path(&varied.parameter, &self.entry.object_type, registry)?;
             variable.next_after(&varied.values)
         });
+    }
+
+    /// The values of a varied value one by one, in its direction; `None` if they have none.
+    #[must_use]
+    pub fn values(&self, varied: &Varied, registry: &Registry) -> Option<Vec<Value>> {
+        let of_type = (&*self.entry.object_type, self.repeat.steps(varied.along));
+        series(varied, of_type, &Path::root(), registry).ok().map(|(_, values)| values)
     }
 
     /// The values that vary.

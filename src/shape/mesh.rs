@@ -129,7 +129,15 @@ impl PolygonMesh {
         let normals = self.polygon_normals();
         let count = self.positions.len();
         let mut means =
-            vertex_normals(count, self.polygons.iter().zip(normals).map(|(p, n)| (p.corners(), n)));
+            vertex_normals(count, self.polygons.iter().zip(&normals).map(|(p, n)| (p.corners(), *n)));
+        // Those of polygons back to back cancel: one is better than none.
+        for (polygon, normal) in self.polygons.iter().zip(&normals) {
+            for corner in polygon.corners() {
+                if let Some(mean) = means.get_mut(*corner as usize).filter(|mean| **mean == Vec3::ZERO) {
+                    *mean = *normal;
+                }
+            }
+        }
         if self.polygons.iter().any(|p| p.normals != [Vec3::ZERO; 4]) {
             let corners = self
                 .polygons

@@ -89,7 +89,8 @@ impl Axis {
         })
     }
 
-    /// The copies of the row to which an object belongs, each alone, with their values as labels.
+    /// The copies of the row to which an object belongs, each alone in the place of the one in the middle, under the same
+    /// light, with their values as labels.
     ///
     /// # Errors
     /// Returns an error if the object is in no row, or if the row has too many copies.
@@ -107,10 +108,16 @@ impl Axis {
             ),
             several => Words::new(0, caption::line(several)),
         };
-        let set = |i: usize| {
-            let path = Part::Object(i).path().key(Object::visible.key).to_string();
-            let values = row.range().map(|shown| Value::from(shown == i)).collect();
-            Ok((Place::find(&path, scene, registry)?, values))
+        let place = |i: usize, key: &'static str| {
+            Place::find(&Part::Object(i).path().key(key).to_string(), scene, registry)
+        };
+        let middle = Value::from(scene.objects[row.first + row.count / 2].position);
+        let sets = |i: usize| {
+            let visible = row.range().map(|shown| Value::from(shown == i)).collect();
+            [
+                place(i, Object::visible.key).map(|place| (place, visible)),
+                place(i, Object::position.key).map(|place| (place, vec![middle.clone(); row.count])),
+            ]
         };
         Ok(Self {
             name: COPY.to_owned(),
@@ -118,7 +125,7 @@ impl Axis {
             moves: false,
             word: COPY.to_owned(),
             written: (1..=row.count).map(|number| number.to_string()).collect(),
-            sets: row.range().map(set).collect::<Result<_, String>>()?,
+            sets: row.range().flat_map(sets).collect::<Result<_, String>>()?,
             views: Vec::new(),
         })
     }
@@ -252,6 +259,7 @@ mod tests {
             let (seen, _) = sweep.seen(i).expect("valid");
             let shown: Vec<_> = seen.objects.iter().map(|object| object.visible).collect();
             assert_eq!(shown, [i == 0, i == 1, i == 2, true]);
+            assert_eq!(seen.objects[i].position, scene.objects[1].position);
         }
         let said = Axis::copies(3, &scene, &registry).expect_err("it is alone");
         assert_eq!(said, "objects[3] is in no row");

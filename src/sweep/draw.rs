@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     caption::Sampled,
-    compare::View,
+    compare::{Cell, View, with_row_labels},
     failure::Failure,
     picture::png::{self, About},
     progress::{Cancelled, Progress},
@@ -124,6 +124,7 @@ pub fn files(
             return Ok(true);
         }
         let (rgb8, _) = one.draw(check, cancelled)?;
+        let rgb8 = labelled(rgb8, settings.size, &one.scene, sweep.registry);
         let about = About::scene(&one.scene.clone().alone(), sweep.registry).with("Renderer", "CPU");
         let about = about.with(parts::KEYWORD, one.stamp);
         png::write(&file, width, height, &rgb8, &about).map_err(|error| unwritten(&file, &error))?;
@@ -131,6 +132,24 @@ pub fn files(
     })?;
     let kept = all.iter().filter(|kept| **kept).count();
     Ok(Written { drawn: all.len() - kept, kept })
+}
+
+/// A picture with the labels of its rows, as in that of `lcm render`.
+fn labelled(rgb8: Vec<u8>, size: [u32; 2], scene: &Scene, registry: &Registry) -> Vec<u8> {
+    let [width, height] = size;
+    with_row_labels(rgb8, size, [(Cell { view: 0, left: 0, top: 0, width, height }, scene)], registry)
+}
+
+impl Drawn {
+    /// The pictures with the labels of their rows, which differences do without.
+    #[must_use]
+    pub fn labelled(self, sweep: &Sweep, size: [u32; 2]) -> Vec<Vec<u8>> {
+        let with_labels = |(i, rgb8)| match sweep.seen(i) {
+            Some((scene, _)) => labelled(rgb8, size, &scene, sweep.registry),
+            None => rgb8,
+        };
+        self.pictures.into_iter().enumerate().map(with_labels).collect()
+    }
 }
 
 /// A picture of a sweep.
@@ -152,7 +171,7 @@ impl<'a> One<'a> {
         Ok(Self { scene, settings, until, stamp, registry: sweep.registry })
     }
 
-    /// The same picture as that of `lcm render`.
+    /// The same picture as that of `lcm render`, without the labels of rows.
     fn draw(&self, check: Check, cancelled: &AtomicBool) -> Result<(Vec<u8>, Option<Sampled>), Failure> {
         let Self { scene, settings, registry, .. } = self;
         check(scene)?;

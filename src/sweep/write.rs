@@ -140,9 +140,11 @@ impl<'a> Plan<'a> {
             None => Vec::new(),
         };
         let caption = sweep.caption().resting_on(&drawn.sampled);
+        let (light, kept) = (caption::line(&caption::sampled(&drawn.sampled)), drawn.kept);
+        let pictures = drawn.labelled(sweep, settings.size);
         let mut whole = page.size();
-        let mut sheets = Vec::with_capacity(drawn.pictures.len() / each);
-        for (i, pictures) in drawn.pictures.chunks(*each).enumerate() {
+        let mut sheets = Vec::with_capacity(pictures.len() / each);
+        for (i, pictures) in pictures.chunks(*each).enumerate() {
             let maps = maps.get(i * each..(i + 1) * each).unwrap_or_default();
             let mut sheet = page.compose(pictures, maps, self.time.map(|time| &time.labels[i]));
             if self.look.words {
@@ -150,7 +152,6 @@ impl<'a> Plan<'a> {
             }
             sheets.push(sheet);
         }
-        let light = caption::line(&caption::sampled(&drawn.sampled));
         let about = About::scene(sweep.scene, sweep.registry)
             .with("Description", caption::line(&caption.facts))
             .with("Source", source)
@@ -161,7 +162,7 @@ impl<'a> Plan<'a> {
             _ => unwritten(output, &error),
         })?;
         parts.remove();
-        Ok(drawn.kept)
+        Ok(kept)
     }
 
     fn file(&self, output: &Path, size: [u32; 2], sheets: &[Vec<u8>], about: &About) -> io::Result<()> {

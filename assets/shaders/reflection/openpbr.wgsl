@@ -65,8 +65,11 @@ fn sharp(i: u32, v: vec3<f32>, frame: Frame, m: Parameters) -> Sharp {
 fn entering(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
     let mu = max(dot(frame.n, v), OPENPBR_GRAZING);
     let rough = value_prepared(2u).w > MINIMUM_ALPHA;
-    let at = select(mu, 2.0 / 3.0, rough);
-    let bare = max(1.0 - dielectric(clamp(value_prepared(0u).y, 0.1, 10.0), at), 1e-6);
+    let ior = clamp(value_prepared(0u).y, 0.1, 10.0);
+    // Light that would be reflected totally at a cosine of 2/3 enters along the normal.
+    let scattered = select(1.0, 2.0 / 3.0, ior * ior > 5.0 / 9.0);
+    let at = select(mu, scattered, rough);
+    let bare = max(1.0 - dielectric(ior, at), 1e-6);
     let entered = (vec3(1.0) - openpbr_boundary(at, m)) / bare;
     var left = vec3(1.0);
     if m.coat_weight > 0.0 {

@@ -66,8 +66,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let name = |light: usize| session.name_of(Selection::Light(light), registry);
     // A hidden point has no pixel.
     let subject = match explained.sight {
-        None | Some(Sight::Clear) => "This pixel is",
-        Some(_) => "The pinned point would be",
+        None | Some(Sight::Clear) if !explained.aside => "This pixel is",
+        _ => "The pinned point would be",
     };
     let text = sentence(&explained.explanation, subject, &name);
     let level = probe::choice(ui.ctx()).level;
@@ -213,8 +213,13 @@ fn remarks(explained: &Explained, session: &Session, registry: &Registry) -> Vec
     all
 }
 
-/// Why the pinned point cannot be seen, if so.
+/// Why the pinned point cannot be seen, or not as it is explained, if so.
 fn unseen(explained: &Explained, session: &Session, registry: &Registry) -> Option<String> {
+    if explained.aside {
+        let why = "From the side: V and the light are still those of the observer before. Pin the point anew to explain it \
+                   from here.";
+        return Some(why.to_owned());
+    }
     let so = match explained.sight? {
         Sight::Clear => return None,
         Sight::Outside => "is outside the picture".to_owned(),

@@ -32,6 +32,8 @@ pub struct Explained {
     pub sight: Option<Sight>,
     /// Paths of edited shaders that affect the picture but not the explanation.
     pub ignored: Vec<String>,
+    /// True if the light is that for an earlier place of the observer, whose ray is looked at from the side.
+    pub aside: bool,
 }
 
 /// The light whose block is unfolded.
@@ -84,8 +86,10 @@ struct Question {
     held: Option<Held>,
     /// The view of the pin, and other views in which the point is shown too.
     views: Vec<Shown>,
-    /// The camera.
+    /// The camera, or where it was before the ray was looked at from the side.
     observer: Observer,
+    /// True if it was.
+    aside: bool,
     /// The latest successful shader reload.
     reloaded: Option<Reloaded>,
 }
@@ -111,6 +115,8 @@ struct Probe {
     /// Explanations of the same point in the other views.
     beside: Vec<Arc<Explained>>,
     holding: Holding,
+    /// The number of a pin within a body and the observer whose ray it holds while it is looked at from the side.
+    seen_from: Option<(u64, Observer)>,
     calculations: u64,
     explainer: Explainer,
     /// Scenes of views, without the camera of the window.
@@ -438,12 +444,19 @@ impl Probe {
             // A view outside the picture takes the size of the visible one.
             views.push(Shown { view, terms: session.terms_of(view), ..own });
         }
+        let camera = session.facts.observer(session.document.observer);
+        let is_pinned =
+            |of: &(u64, Observer)| session.view.pinned.is_some() && of.0 == session.view.pin_number;
+        let observer = self.seen_from.filter(is_pinned).map_or(camera, |(_, observer)| observer);
+        let moved =
+            observer.position.distance(camera.position).max(observer.direction.distance(camera.direction));
         Some(Question {
             revision: session.document.revision(),
             pin,
             held: self.holding.now(session),
             views,
-            observer: session.facts.observer(session.document.observer),
+            observer,
+            aside: moved > SAME,
             reloaded: session.shaders.last.clone(),
         })
     }
@@ -473,11 +486,15 @@ impl Probe {
         scene.observer = question.observer.fitting(size, session.document.view_angle());
         let scene = &*scene;
         let settings = Settings { width: size[0], height: size[1], samples: 1, terms };
-        let ignored = || ignored_edits(registry, scene).into_iter().collect();
+        let aside = question.aside;
+        let of = |explanation, sight| {
+            let ignored = ignored_edits(registry, scene).into_iter().collect();
+            Explained { view, explanation, sight, ignored, aside }
+        };
         let pixel = question.pin.pixel(size, session.document.view_angle());
         let mut of_pixel = || explainer.pixel(scene, registry, &settings, pixel).ok();
         let Some(Held { object, anchor, .. }) = question.held else {
-            return Some(Explained { view, explanation: of_pixel()?, sight: None, ignored: ignored() });
+            return Some(of(of_pixel()?, None));
         };
         let object = session.document.object(object)?;
         // Where the line of sight still hits the point, use the numbers of the picture.
@@ -487,12 +504,22 @@ impl Probe {
             seen.is_some_and(|seen| seen.object.index == object && seen.position.distance(place) < SAME)
         };
         let aims = question.pin.aims_at(session.facts.camera.inverse() * (place - session.facts.eye));
-        if let Some(explanation) = aims.then(of_pixel).flatten().filter(is_there) {
-            return Some(Explained { view, explanation, sight: None, ignored: ignored() });
+        if let Some(explanation) = (aims && !aside).then(of_pixel).flatten().filter(is_there) {
+            return Some(of(explanation, None));
         }
         let (explanation, sight) = explainer.point(scene, registry, &settings, object, &anchor)?;
-        Some(Explained { view, explanation, sight: Some(sight), ignored: ignored() })
+        Some(of(explanation, Some(sight)))
     }
+}
+
+/// Keeps the ray of the observer to the pinned point while the camera looks at it from the side.
+pub(super) fn keep_ray(ctx: &Context, session: &Session) {
+    let (pin, observer) = (session.view.pin_number, session.facts.observer(session.document.observer));
+    with(ctx, |probe| {
+        if probe.seen_from.is_none_or(|(of, _)| of != pin) {
+            probe.seen_from = Some((pin, observer));
+        }
+    });
 }
 
 /// Points that can be shown: those that produced the colour, and that of per-pixel shading for comparison.

@@ -10,9 +10,9 @@ use crate::panel::{
 /// Sine of the angle below which two vectors span no usable plane.
 const APART: f32 = 0.02;
 
-/// The pinned point, and the direction that views the plane of its vectors face on: that of `N` and `L`, that of `N`
-/// and `V` if the former coincide or light is bent, otherwise any plane with `N` in it.
-fn side(ctx: &Context, session: &Session) -> Option<Steer> {
+/// The pinned point, whether light is bent there, and the direction that views the plane of its vectors face on: that of `N` and `L`,
+/// that of `N` and `V` if the former coincide or light is bent, otherwise any plane with `N` in it.
+fn side(ctx: &Context, session: &Session) -> Option<(Steer, bool)> {
     session.view.pinned?;
     let explained = probe::explained(ctx)?;
     let seen = explained.explanation.seen.as_ref()?;
@@ -22,7 +22,7 @@ fn side(ctx: &Context, session: &Session) -> Option<Steer> {
     let bent = spot.refraction.as_ref().map(|_| spot.view);
     let ways = bent.into_iter().chain(l).chain([spot.view, up, right]).map(|other| spot.normal.cross(other));
     let way = ways.into_iter().find(|way| way.is_finite() && way.length() > APART)?;
-    Some(Steer::Along { point: seen.position, way: way.normalize() })
+    Some((Steer::Along { point: seen.position, way: way.normalize() }, bent.is_some()))
 }
 
 /// True if there is a pinned point that can be viewed from the side.
@@ -33,7 +33,13 @@ pub fn has_sides(ctx: &Context, session: &Session) -> bool {
 /// Completes the action that views from the side with the pinned point.
 pub fn placed(ctx: &Context, session: &Session, action: Action) -> Action {
     match (action, side(ctx, session)) {
-        (Action::LookFromSide, Some(steer)) => Action::Do(Effect::Steer(steer)),
+        (Action::LookFromSide, Some((steer, is_bent))) => {
+            // The way inside begins with the ray of the observer: of another one it would be another.
+            if is_bent {
+                probe::keep_ray(ctx, session);
+            }
+            Action::Do(Effect::Steer(steer))
+        }
         (Action::LookFromSide, None) => {
             let key = keys::word(ctx, "explain");
             let why = format!(

@@ -243,16 +243,58 @@ impl Shown<'_> {
             .map(|v| self.varying("Last value", j, |varied| varied.to = Some(v)));
         let scale = choice(ui, Varied::scale, varied.scale, Scale::ALL)
             .map(|scale| self.varying("Scale", j, |varied| varied.scale = scale));
-        from.or(to).or(scale)
+        let help = "The values one by one, to be changed each by itself";
+        let listed = ui.button("List instead").on_hover_text(help).clicked();
+        let values = listed.then(|| self.row.values(varied, self.registry)).flatten();
+        let list = values.map(|values| {
+            self.varying("Varied value", j, |varied| {
+                (varied.values, varied.from, varied.to) = (values, None, None);
+                varied.scale = Scale::default();
+            })
+        });
+        from.or(to).or(scale).or(list)
     }
 
-    /// The listed values, and a button that makes a range of them.
+    /// The listed values, each with a knob if they are numbers, and a button that makes a range of them.
     fn list(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
-        let mut all: Vec<_> = varied.values.iter().take(MOST_LISTED).map(Value::to_string).collect();
-        all.extend(
+        let known = self.numbers().into_iter().find(|one| one.path() == varied.parameter);
+        let limits = known.and_then(|one| one.declared.limits().map(|limits| (one.declared, limits)));
+        let mut changed = None;
+        let mut words = Vec::new();
+        for (k, value) in varied.values.iter().take(MOST_LISTED).enumerate() {
+            let number = match value {
+                Value::Number(v) => Some(f64::from(*v)),
+                Value::Integer(n) => Some(*n as f64),
+                _ => None,
+            };
+            let Some(((declared, limits), number)) = limits.as_ref().zip(number) else {
+                words.push(self.in_words(varied, value));
+                continue;
+            };
+            let name = format!("value {}", k + 1);
+            let caption = Caption::new(&name, "", declared.label());
+            let new = ui.push_id(k, |ui| knob::number_knob(ui, &caption, Amount::new(number, None, limits)));
+            if let Some(new) = new.inner.and_then(|new| declared.of_number(new)) {
+                changed = Some(self.varying("Listed value", j, |varied| varied.values[k] = new));
+            }
+        }
+        words.extend(
             (varied.values.len() > MOST_LISTED).then(|| format!("… ({} in all)", varied.values.len())),
         );
-        ui.add(Label::new(theme::small(ui, format!("Values: {}", all.join(", ")))).wrap());
+        if !words.is_empty() {
+            ui.add(Label::new(theme::small(ui, format!("Values: {}", words.join(", ")))).wrap());
+        }
+        changed.or_else(|| self.range_instead(ui, j, varied))
+    }
+
+    /// A listed value as people write it.
+    fn in_words(&self, varied: &Varied, value: &Value) -> String {
+        let known = Variable::with_path(&varied.parameter, &self.row.entry.object_type, self.registry);
+        known.map_or_else(|| value.to_string(), |one| one.declared.shown(value, self.registry))
+    }
+
+    /// The button that makes a range of listed values.
+    fn range_instead(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
         let ends = [varied.values.first(), varied.values.last()].map(|end| match end {
             Some(Value::Number(v)) => Some(*v),
             Some(Value::Integer(n)) => Some(*n as f32),

@@ -1,6 +1,6 @@
 //! Rows in the window: made, edited as one, undone in one step, and broken up.
 
-use bevy_egui::egui::{Key, Modifiers, Shape, accesskit::Role, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, Shape, accesskit::Role, vec2};
 use glam::Vec3;
 use lights_camera_models::{
     document::{Document, Edit, Selection},
@@ -294,6 +294,40 @@ fn the_properties_say_which_copy_is_shown_and_edit_the_row() {
     bench.apply(Action::MakeRow(Selection::Object(3)));
     bench.settle();
     assert_eq!(bench.session.document.objects.len(), 11, "{:?}", bench.session.messages);
+}
+
+/// The keys come one by one: a value that is typed is one step, as a drag is.
+#[test]
+fn a_typed_value_is_one_step() {
+    let mut bench = Bench::new(Session::new(scene()));
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench.settle();
+    let before = bench.session.document.done();
+    bench.type_into("size", "");
+    for text in ["0", ".", "4"] {
+        bench.frame(vec![Event::Text(text.to_owned())]);
+    }
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert_eq!(bench.session.document.objects[0].size, 0.4);
+    assert_eq!(bench.session.document.done(), before + 1);
+}
+
+#[test]
+fn a_range_becomes_a_list_whose_values_are_changed_one_by_one() {
+    let mut bench = Bench::new(Session::new(scene()));
+    bench.apply(Action::Select(Selection::Object(1)));
+    bench.settle();
+    let before = roughness(&bench.session.document);
+    bench.click("List instead");
+    assert_eq!(roughness(&bench.session.document), before, "{:?}", bench.session.messages);
+    let listed = |bench: &Bench| row(&bench.session.document).repeat.vary[0].values.clone();
+    assert_eq!(listed(&bench).len(), 5);
+    bench.type_into("value 2", "0.77");
+    assert_eq!(listed(&bench)[1], Value::Number(0.77));
+    assert_eq!(roughness(&bench.session.document)[2], Some(Value::Number(0.77)));
+    bench.key(Key::Enter, Modifiers::NONE);
+    bench.type_into("value 2", "7");
+    assert_eq!(listed(&bench)[1], Value::Number(0.77), "beyond the range of the roughness");
 }
 
 #[test]

@@ -234,6 +234,16 @@ fn layers_above_take_their_share_once() {
     assert!((metal.x - 0.25 * bare.x).abs() < 1e-5, "{metal} {bare}");
 }
 
+/// Below an index of 0.745 the mean angle of light from all sides is one of total reflection.
+#[test]
+fn a_rough_body_lets_light_in_whatever_its_index() {
+    for ior in [0.5, 0.7, 0.74, 0.75, 1.0, 1.5, 2.5] {
+        let surface = surface(&solid(vec![number("roughness", 0.3), number("specular_ior", ior)]));
+        let enters = surface.entering(direction(40.0, 0.0), &LOCAL);
+        assert!((enters - 1.0).abs().max_element() < 1e-3, "{ior}: {enters}");
+    }
+}
+
 #[test]
 fn the_inside_has_the_constants_of_the_parameters() {
     let colour = [128, 230, 255];
