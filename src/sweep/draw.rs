@@ -144,6 +144,10 @@ impl Drawn {
     /// The pictures with the labels of their rows, which differences do without.
     #[must_use]
     pub fn labelled(self, sweep: &Sweep, size: [u32; 2]) -> Vec<Vec<u8>> {
+        // Making each scene once more takes as long as a small picture.
+        if !sweep.scene.rows().any(|row| row.repeat.labels) {
+            return self.pictures;
+        }
         let with_labels = |(i, rgb8)| match sweep.seen(i) {
             Some((scene, _)) => labelled(rgb8, size, &scene, sweep.registry),
             None => rgb8,

@@ -262,12 +262,7 @@ impl Shown<'_> {
         let mut changed = None;
         let mut words = Vec::new();
         for (k, value) in varied.values.iter().take(MOST_LISTED).enumerate() {
-            let number = match value {
-                Value::Number(v) => Some(f64::from(*v)),
-                Value::Integer(n) => Some(*n as f64),
-                _ => None,
-            };
-            let Some(((declared, limits), number)) = limits.as_ref().zip(number) else {
+            let Some(((declared, limits), number)) = limits.as_ref().zip(number_of(value)) else {
                 words.push(self.in_words(varied, value));
                 continue;
             };
@@ -295,11 +290,8 @@ impl Shown<'_> {
 
     /// The button that makes a range of listed values.
     fn range_instead(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
-        let ends = [varied.values.first(), varied.values.last()].map(|end| match end {
-            Some(Value::Number(v)) => Some(*v),
-            Some(Value::Integer(n)) => Some(*n as f32),
-            _ => None,
-        });
+        let ends = [varied.values.first(), varied.values.last()]
+            .map(|end| end.and_then(number_of).map(|v| v as f32));
         let [Some(from), Some(to)] = ends else { return None };
         let help = "From the first of these values to the last, in equal steps";
         let range = ui.button("Range instead").on_hover_text(help).clicked();
@@ -308,6 +300,15 @@ impl Shown<'_> {
                 (varied.values, varied.from, varied.to) = (Vec::new(), Some(from), Some(to));
             })
         })
+    }
+}
+
+/// The number that a value is, if it is one.
+fn number_of(value: &Value) -> Option<f64> {
+    match value {
+        Value::Number(v) => Some(f64::from(*v)),
+        Value::Integer(n) => Some(*n as f64),
+        _ => None,
     }
 }
 
