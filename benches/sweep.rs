@@ -7,7 +7,11 @@ use lights_camera_models::{
     progress::Progress,
     reference::{Settings as Bare, render_rgb8},
     registry::Registry,
-    scene::Scene,
+    scene::{
+        Object, Repeat, Repetition, Scene, SceneIn, Varied,
+        load::{self, Defaults},
+        repeat::Along,
+    },
     sweep::{Axis, Settings, Sweep, files, gif, pictures},
 };
 
@@ -63,5 +67,45 @@ fn film(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, hundred, film);
+/// A row of 25 spheres beside 25 single ones: read from JSON, and drawn.
+fn row(c: &mut Criterion) {
+    let (registry, settings) = (Registry::builtin(), Bare::default());
+    let varied = Varied {
+        parameter: "size".to_owned(),
+        from: Some(0.2),
+        to: Some(0.4),
+        along: Along::All,
+        ..Varied::default()
+    };
+    let repeat = Repeat {
+        columns: 5,
+        rows: 5,
+        spacing: [0.8, 0.0, 0.0].into(),
+        row_spacing: [0.0, -0.8, 0.0].into(),
+        vary: vec![varied],
+        ..Repeat::default()
+    };
+    let position = [3.4, 6.6, 5.0].into();
+    let entry = Object { repeat: Repetition::Entry(Box::new(repeat)), position, ..Object::default() };
+    let of_row = Scene { objects: vec![entry], ..Scene::default() };
+    let mut singles = of_row.clone().expanded(&registry).expect("a grid");
+    singles.objects.iter_mut().for_each(|object| object.repeat = Repetition::None);
+    let of_row = of_row.expanded(&registry).expect("a grid");
+    let mut group = c.benchmark_group("25 spheres 1280x720");
+    group.sample_size(20);
+    for (name, scene) in [("a row", of_row), ("single objects", singles)] {
+        let json = serde_json::to_string(&SceneIn(&scene, &registry)).expect("JSON");
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                let read =
+                    load::from_text(&json, "row.json", &registry, Defaults::Refuse).expect("valid").scene;
+                assert_eq!(read.objects.len(), 25);
+                render_rgb8(&read, &registry, &settings).len()
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, hundred, film, row);
 criterion_main!(benches);

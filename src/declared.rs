@@ -166,7 +166,7 @@ macro_rules! setters {
     };
 }
 
-/// Methods of a trait for trait objects that call the same methods of a trait that is none.
+/// Methods of a dyn-compatible trait that call the methods of the same names in a trait that is not.
 macro_rules! forwards {
     (|$this:ident| $to:expr => $Trait:ident: $(fn $name:ident($($argument:ident: $Type:ty),*) -> $Result:ty;)+) => {
         $(fn $name(&self, $($argument: $Type),*) -> $Result {

@@ -67,7 +67,7 @@ const OPTIONS: TextOptions = TextOptions {
     subpixel_binning: true,
 };
 
-/// A style of lettering. Its size is the size of the em in pixels, from 4 to 200.
+/// A style of lettering; the size is that of the em in pixels, from 4 to 200.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Lettering {
     /// For text.

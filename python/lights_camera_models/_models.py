@@ -144,7 +144,7 @@ class Model:
         -------
         array
             Shape (…, 3): float32 if both arrays are, otherwise float64. Zero where light or viewer are below the surface,
-            unless the model transmits.
+            unless the model transmits. Light that does not spread, as of smooth glass, is not part of it.
 
         Raises
         ------
@@ -180,7 +180,8 @@ class Model:
         return found.astype(result_type(light, viewer), copy=False)
 
     def albedo(self, mu: ArrayLike, phi: float = 0.0) -> NDArray[Any]:
-        """The directional albedo: the part of uniform light that reaches a viewer, in red, green and blue.
+        """The directional albedo: the part of uniform light above the surface that reaches a viewer, in red, green and
+        blue. Light that a smooth surface mirrors counts too.
 
         Parameters
         ----------

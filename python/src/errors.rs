@@ -48,8 +48,14 @@ pub fn values(problems: Vec<Problem>) -> PyErr {
 
 /// A path or a text that is refused.
 pub fn value(path: &str, message: &str) -> PyErr {
-    let problem = json!([{ "path": path, "line": null, "column": null, "value": null, "message": message }]);
-    raise("SceneError", message, &problem)
+    each(&[(path, message.to_owned())])
+}
+
+/// Paths or texts that are refused, each with its message.
+pub fn each(refused: &[(&str, String)]) -> PyErr {
+    let problem = |(path, message): &(&str, String)| json!({ "path": path, "line": null, "column": null, "value": null, "message": message });
+    let messages: Vec<_> = refused.iter().map(|(_, message)| message.as_str()).collect();
+    raise("SceneError", &messages.join("\n"), &refused.iter().map(problem).collect())
 }
 
 /// A message of the program in words of this package.

@@ -8,7 +8,7 @@ use std::sync::{
 use glam::{DVec3, Vec3};
 use lights_camera_models::{
     curves::{Detail, Form, Kind, Setup, Subject, curve},
-    optics::{Frame, albedo::directional, colour::Encoding},
+    optics::{Frame, colour::Encoding},
     parameter::{Values, json},
     progress::Cancelled,
     reflection::{
@@ -116,7 +116,7 @@ impl Model {
         let of = |mu: f64| {
             let sine = (1.0 - mu * mu).max(0.0).sqrt();
             let v = DVec3::new(sine * phi.cos(), sine * phi.sin(), mu).as_vec3();
-            directional(|l| self.surface.response(l, v, &Frame::LOCAL), v, &Frame::LOCAL).to_array()
+            self.surface.directional_albedo(v).to_array()
         };
         let all = work::long(py, |progress| {
             let mut all = Vec::with_capacity(3 * mu.len());

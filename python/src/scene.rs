@@ -115,12 +115,11 @@ impl Scene {
             });
             match read {
                 Ok(one) => all.push(one),
-                Err(why) => problems.push((path, why)),
+                Err(why) => problems.push((path.as_str(), why)),
             }
         }
-        if let [(path, _), ..] = problems.as_slice() {
-            let each: Vec<_> = problems.iter().map(|(_, why)| why.as_str()).collect();
-            return Err(errors::value(path, &each.join("\n")));
+        if !problems.is_empty() {
+            return Err(errors::each(&problems));
         }
         let scene = self.scene.with(all.iter().map(|(value, place)| (place, value)), &self.registry);
         Ok(Self { scene: scene.map_err(errors::values)?, registry: self.registry.clone() })
@@ -232,18 +231,7 @@ impl Scene {
 impl Scene {
     /// The number of a view, from its letter or its name.
     fn number(&self, view: &str) -> PyResult<usize> {
-        let named = self
-            .scene
-            .variants
-            .iter()
-            .position(|variant| variant.name.as_deref() == Some(view))
-            .map(|i| i + 1);
-        let lettered =
-            LETTERS.iter().position(|letter| *letter == view).filter(|i| *i <= self.scene.variants.len());
-        lettered.or(named).ok_or_else(|| {
-            let known: Vec<_> = LETTERS.iter().copied().take(1 + self.scene.variants.len()).collect();
-            one_of("view", view, &known)
-        })
+        self.scene.view_named(view).map_err(|why| PyValueError::new_err(format!("view: {why}")))
     }
 
     /// The scene of a view, and its terms.

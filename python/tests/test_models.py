@@ -49,6 +49,8 @@ WHITE = [255, 255, 255]
 BARE = {"base_colour": WHITE, "diffuse": "none", "multiple_scattering": "none", "ior": [1.5] * 3}
 GGX = {**BARE, "distribution": "ggx", "fresnel": "dielectric", "alpha_x": 0.3, "alpha_y": 0.3}
 
+WARD = {"k_s": 1.0, "specular_colour": WHITE, "alpha_x": 0.15, "alpha_y": 0.5, "ward_form": "ward"}
+
 WITNESSES = [
     ("bbm", "Phong", "sharpness = 20", ("modified_phong", {"k_s": 1.0, "alpha": 20, "specular_colour": WHITE}), {"alpha": 21}, 1e-5),
     ("disney_brdf_explorer", "walter", "alphaG=0.3", ("microfacet", {**GGX, "masking": "smith_separable"}),
@@ -57,6 +59,13 @@ WITNESSES = [
      {"masking": "smith_separable"}, 2e-5),
     ("mitsuba3.9.1", "roughdielectric", "ggx", ("microfacet", {**GGX, "masking": "smith_separable"}),
      {"masking": "smith_height_correlated"}, 2e-5),
+    ("disney_brdf_explorer", "walter", "alphaG=0.6",
+     ("microfacet", {**GGX, "masking": "smith_separable", "fresnel": "none", "alpha_x": 0.6, "alpha_y": 0.6}),
+     {"fresnel": "dielectric"}, 1e-5),
+    ("disney_brdf_explorer", "ward", "alpha_x=0.15", ("ward", WARD), {"ward_form": "duer"}, 1e-5),
+    ("bbm", "WardDuer", "", ("ward", {**WARD, "ward_form": "duer"}), {"ward_form": "ward"}, 1e-5),
+    ("disney_brdf_explorer", "minnaert", "k=0.8", ("minnaert", {"base_colour": WHITE, "limb_darkening": 0.8}),
+     {"limb_darkening": 0.801}, 1e-5),
 ]
 
 

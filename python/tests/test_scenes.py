@@ -111,6 +111,11 @@ def test_values_are_set_by_path():
     ]:
         with pytest.raises(lcm.SceneError, match=text):
             scene.set(values)
+    wrong = {"objects[0].size": "large", "objects[0].material.k_t": 2}
+    with pytest.raises(lcm.SceneError) as raised:
+        scene.set(wrong)
+    assert [problem["path"] for problem in raised.value.problems] == list(wrong)
+    assert all(problem["message"] for problem in raised.value.problems)
 
 
 def test_every_problem_of_a_scene_is_named():
@@ -163,7 +168,7 @@ def test_files_outside_the_folder_of_a_scene_are_refused(tmp_path):
     ({"size": (10**6, 10)}, "from 1 to 16384"),
     ({"size": 10}, "width, height"),
     ({"samples": 3}, "must be 1 or 4"),
-    ({"view": "B"}, "view is"),
+    ({"view": "B"}, "there is no view"),
     ({"terms": "difuse"}, "did you mean"),
     ({"channel": "normalz"}, "channel is"),
     ({"light_samples": 0}, "whole number from 1"),
@@ -222,7 +227,7 @@ def test_a_view_is_matched():
     found, nearer = scene.match("B", on="highlight", free=["alpha"])
     assert found["after"] < found["before"]
     assert nearer["variants[0].material.alpha"] == found["values"]["alpha"]
-    for arguments, text in [({"view": "C"}, "view is"), ({"on": "colour"}, "on is"), ({"free": ["alhpa"]}, "alpha")]:
+    for arguments, text in [({"view": "C"}, "there is no view"), ({"on": "colour"}, "on is"), ({"free": ["alhpa"]}, "alpha")]:
         with pytest.raises(ValueError, match=text):
             scene.match(**arguments)
 

@@ -2,10 +2,10 @@
 
 use crate::{optics::colour::luminance, scene::Display};
 
-/// The ground of words: of labels in a picture, and of what surrounds it.
+/// The ground of words: of labels in a picture, and of its surroundings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ground {
-    /// Its colour: neutral, since the colours beside it are judged.
+    /// The colour of the ground: neutral, since viewers judge the colours beside it.
     pub colour: [u8; 3],
     /// A line on it.
     pub line: [u8; 3],
@@ -13,7 +13,7 @@ pub struct Ground {
     pub title: [u8; 3],
     /// The ink of text.
     pub text: [u8; 3],
-    /// The ink of what matters least. Its contrast is 5.6:1 or more.
+    /// The ink of the least important text, with a contrast of 5.6:1 or more.
     pub weak: [u8; 3],
 }
 

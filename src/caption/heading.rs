@@ -1,4 +1,4 @@
-//! The heading of a view: what it overrides, in one line.
+//! The heading of a view: its overrides, in one line.
 
 use super::{
     part::{Part, line},

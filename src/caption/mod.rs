@@ -81,8 +81,8 @@ fn of_seen(
     Caption { title: title(scene, view), ..caption }
 }
 
-/// The caption of a picture with several views: first what they share, then what differs in each. `terms` are
-/// the terms shown in every view that does not set others.
+/// The caption of a picture with several views: first the common facts, then the differences of each. `terms`
+/// are the terms shown in every view that does not set others.
 #[must_use]
 pub fn of_views(
     scene: &Scene,

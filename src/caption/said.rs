@@ -5,7 +5,7 @@ use crate::scene::{Scene, Variant};
 /// The facts that the heading of a view gives instead of the caption around it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Said {
-    /// What is overridden, with the values of any view.
+    /// The overridden fields, with the values of any view.
     pub(super) over: Variant,
     /// Also the non-default values, except colours: where models differ, they are part of what defines one.
     pub(super) values: bool,

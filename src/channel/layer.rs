@@ -46,7 +46,7 @@ pub struct Layer {
     shows: Shows,
 }
 
-/// What a layer shows of a scene.
+/// The part of a scene that a layer shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shows {
     /// All of it.
@@ -61,7 +61,7 @@ enum Shows {
 
 impl Layer {
     /// True if the layer is one of geometry. It then has one sample for each pixel, at its centre: a mean of
-    /// distances or of directions is none.
+    /// distances or of directions is meaningless.
     #[must_use]
     pub fn is_of_geometry(&self) -> bool {
         !self.setting.channel.is_picture()

@@ -1,5 +1,5 @@
-//! Debug channels of scenes: the light and the scale of a channel, and its legend. What each shows,
-//! [`debug`](crate::debug) declares.
+//! Debug channels of scenes: the light and the scale of a channel, and its legend. [`debug`](crate::debug)
+//! declares what each shows.
 //!
 //! A channel belongs to a view, not to the scene. It is drawn without exposure and tone mapping, so that its legend
 //! is valid; only [`DebugChannel::Light`] is a picture like any other, under one light.

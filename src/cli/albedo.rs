@@ -4,10 +4,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::{angles::Column, evaluate::Quantity};
-use crate::{
-    optics::{Frame, albedo::directional},
-    parameter::ABOVE_ZERO,
-};
+use crate::parameter::ABOVE_ZERO;
 
 /// The albedo for viewers. At μ = 0 the viewer is in the surface, where a response is 0 by definition instead of the
 /// limit of the albedo.
@@ -15,9 +12,6 @@ pub(super) const ALBEDO: Quantity<1, Vec3> = Quantity {
     columns: [Column { name: "mu", range: Some((ABOVE_ZERO as f64, 1.0)) }],
     header: "mu,e_r,e_g,e_b",
     input: |[mu]| DVec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu).as_vec3(),
-    on_cpu: |surface, views| {
-        let of = |v: &Vec3| directional(|l| surface.response(l, *v, &Frame::LOCAL), *v, &Frame::LOCAL);
-        views.par_iter().map(|v| of(v).as_vec3()).collect()
-    },
+    on_cpu: |surface, views| views.par_iter().map(|v| surface.directional_albedo(*v).as_vec3()).collect(),
     on_gpu: |gpu, views| Ok(gpu.albedos(views)?.iter().map(|e| e.as_vec3()).collect()),
 };

@@ -21,7 +21,7 @@ use crate::{
     text::quoted,
 };
 
-/// What to do without a GPU.
+/// The hint given without a GPU.
 const WITH_CPU: &str = "no model can be evaluated on the GPU; use --on cpu";
 
 /// A model with its parameters, and the machine that evaluates it.

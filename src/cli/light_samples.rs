@@ -79,7 +79,7 @@ impl Sampling {
     }
 }
 
-/// What a picture says of itself, with the light that it rests on in words, if there are any.
+/// The metadata of a picture, with a description of the light that it rests on, if there is one.
 pub(super) fn noted(about: About, light: &str) -> About {
     if light.is_empty() { about } else { about.with("Light", light) }
 }

@@ -353,7 +353,7 @@ fn sides(text: &str) -> Result<[u32; 2], String> {
 /// The result of a command.
 type Outcome = Result<(), Failure>;
 
-/// Everything, or all problems of what is invalid; any other failure at once.
+/// Everything, or all problems of the invalid files; any other failure at once.
 fn collected<T>(all: impl Iterator<Item = Result<T, Failure>>) -> Result<Vec<T>, Failure> {
     let (mut good, mut problems) = (Vec::new(), Vec::new());
     for one in all {
@@ -369,7 +369,7 @@ fn collected<T>(all: impl Iterator<Item = Result<T, Failure>>) -> Result<Vec<T>,
 /// The results of checking some files.
 struct Checked<P> {
     reports: Vec<Report<P>>,
-    /// What is said of the valid ones.
+    /// The text about the valid files.
     listed: String,
 }
 

@@ -51,7 +51,7 @@ struct Light {
     scale: DVec3,
     /// True if the file has no coverage.
     is_opaque: bool,
-    /// The first pixel that is no light: row, column, and its number.
+    /// The first pixel that is not light: row, column, and its number.
     odd: Option<(usize, usize, f32)>,
 }
 

@@ -50,7 +50,7 @@ const MOST_LISTED: usize = 16;
 const TICK: Duration = Duration::from_millis(200);
 /// Default folder for pictures (CA `RENDERS_DIR`).
 const RENDERS_DIR: &str = "renders";
-/// What to do without the GPU renderer.
+/// The hint given without the GPU renderer.
 const WITH_CPU: &str = "there is no GPU renderer; use --renderer cpu";
 
 #[derive(Args, Debug)]
@@ -358,7 +358,7 @@ fn fits(arguments: &Arguments, file: &Path) -> Outcome {
     Ok(())
 }
 
-/// The reason why a linear picture cannot hold what it would show.
+/// The reason why a linear picture cannot hold the requested content.
 fn holds(arguments: &Arguments, plan: &Plan, file: &Path, registry: &Registry) -> Result<(), String> {
     let Some(format) = Format::of(file) else { return Ok(()) };
     let [part] = plan.parts.as_slice() else {

@@ -1,6 +1,10 @@
 //! `lcm sweep`: pictures of a scene with some of its values varied, in a folder, on a sheet or in a film.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::HashSet,
+    ffi::OsString,
+    path::{Path, PathBuf},
+};
 
 use clap::Args;
 use glam::Vec3;
@@ -27,6 +31,9 @@ use crate::{
     sweep::{self, Axis, Format, Look, MAX_RATE, Parts, Plan, Settings, Sweep},
     text::{numbers, plural},
 };
+
+/// Maximum number of entries of a folder among which pictures of other sweeps are looked for.
+const MOST_ENTRIES: usize = 100_000;
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
@@ -93,7 +100,7 @@ fn rate(text: &str) -> Result<u32, String> {
     rate.ok_or_else(|| format!("it must be a whole number from 1 to {MAX_RATE}"))
 }
 
-/// What is written.
+/// The form of the output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     Folder,
@@ -161,7 +168,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
 }
 
-/// Options that do not suit what is written.
+/// Options that do not suit the form of the output.
 fn fits(arguments: &Arguments, form: Form) -> Outcome {
     let folder = form == Form::Folder;
     let given = [
@@ -191,7 +198,7 @@ fn fits(arguments: &Arguments, form: Form) -> Outcome {
     }
 }
 
-/// What varies: values in their order, and then the motion.
+/// The axes: values in their order, and then the motion.
 fn axes(arguments: &Arguments, scene: &Scene, registry: &Registry) -> Result<Vec<Axis>, Failure> {
     let usage = |flag: &'static str| move |why: String| Failure::Usage(format!("--{flag}: {why}"));
     let vary = arguments.vary.iter().map(|text| Axis::vary(text, scene, registry).map_err(usage("vary")));
@@ -244,7 +251,24 @@ impl Job<'_> {
             plural(written.drawn, "picture"),
             folder.shown()
         ));
+        self.strangers(folder);
         Ok(())
+    }
+
+    /// Says that the folder has pictures of something else, such as of another sweep, which nobody should take for these.
+    fn strangers(&self, folder: &Path) {
+        let own: HashSet<OsString> = (0..self.sweep.count()).map(|i| self.sweep.file(i).into()).collect();
+        let is_png = |name: &OsString| Path::new(name).extension().is_some_and(|e| e == "png");
+        let found = std::fs::read_dir(folder).into_iter().flatten().take(MOST_ENTRIES).flatten();
+        let others = found.map(|entry| entry.file_name()).filter(|name| is_png(name) && !own.contains(name));
+        match others.count() {
+            0 => {}
+            n => self.options.tell(format_args!(
+                "{} has {} that this sweep did not write",
+                folder.shown(),
+                plural(n, "more picture")
+            )),
+        }
     }
 
     /// Writes a sheet, or a film of sheets.

@@ -39,7 +39,7 @@ pub enum Undrawn {
     /// The user cancelled.
     #[error("cancelled")]
     Cancelled,
-    /// Its light does not fit into memory.
+    /// The light of the view does not fit into memory.
     #[error(
         "{}×{} are too many pixels for a view whose light is calculated, as that of lights with extent and of comparisons: \
          at most {} are possible", .0[0], .0[1], MAX_PIXELS

@@ -21,7 +21,7 @@ const MOST: usize = 400;
 /// Text size in a picture of 720 lines, and the smallest legible one, pixels.
 const TEXT: f32 = 18.0;
 const SMALLEST: f32 = 8.0;
-/// The opacity of the plate behind a text: what is behind it leaves a contrast of 7:1.
+/// The opacity of the plate behind a text: any picture behind it leaves a contrast of 7:1.
 const PLATE: f32 = 0.75;
 
 /// A picture with the labels of its rows. `views` are the places of its views, each with the scene it shows.
@@ -51,14 +51,26 @@ fn draw(canvas: &mut Canvas, area: Rect, scene: &Scene, registry: &Registry) {
     let labels: Vec<_> = labels.into_iter().filter_map(seen).take(MOST).collect();
     let (style, usual) = (Lettering::Regular, TEXT * canvas.scale());
     let ground = Ground::of(&scene.display);
-    let widest = labels.iter().map(|(_, parts)| line_width(parts, usual)).max().unwrap_or(0);
     let room = apart(&labels, style.height(usual)).unwrap_or(f32::INFINITY);
+    let labels: Vec<_> = labels.into_iter().map(|(at, parts)| (at, vec![parts])).collect();
+    let widest = |labels: &[([f32; 2], Vec<Vec<Part>>)]| {
+        let lines = labels.iter().flat_map(|(_, lines)| lines);
+        lines.map(|line| line_width(line, usual)).max().unwrap_or(0) as f32
+    };
+    // Where there is no room for all values beside each other, they stand below each other.
+    let labels = match widest(&labels) + 0.7 * usual > room {
+        true => labels.into_iter().map(|(at, lines)| (at, one_by_one(lines))).collect(),
+        false => labels,
+    };
+    let widest = widest(&labels);
     // Padding of a third of a line at both sides.
-    let px = (usual * room / (widest as f32 + 0.7 * usual)).clamp(SMALLEST.min(usual), usual);
+    let px = (usual * room / (widest + 0.7 * usual)).clamp(SMALLEST.min(usual), usual);
     let mut plates: Vec<Rect> = Vec::with_capacity(labels.len());
-    for ([x, y], parts) in &labels {
-        let pad = (0.25 * px).round() as u32;
-        let [width, height] = [line_width(parts, px) + 2 * pad, style.height(px)];
+    for ([x, y], lines) in &labels {
+        let (pad, line) = ((0.25 * px).round() as u32, style.height(px));
+        let widths: Vec<_> = lines.iter().map(|line| line_width(line, px)).collect();
+        let width = widths.iter().max().copied().unwrap_or(0) + 2 * pad;
+        let height = line * lines.len() as u32;
         let [left, top, across, down] = area;
         let at = |middle: f32, extent: u32, [from, room]: [u32; 2]| {
             (middle - 0.5 * extent as f32).round().max(0.0).min(room.saturating_sub(extent) as f32) as u32
@@ -76,9 +88,17 @@ fn draw(canvas: &mut Canvas, area: Rect, scene: &Scene, registry: &Registry) {
         }
         plates.push(plate);
         canvas.fill(plate, ground.colour, PLATE);
-        let at = [plate[0] + pad, plate[1]].map(|v| i32::try_from(v).unwrap_or(i32::MAX));
-        draw_line(parts, &mut canvas.rgb8, canvas.size, at, px, ground.title);
+        for (i, (parts, own)) in lines.iter().zip(widths).enumerate() {
+            let at = [plate[0] + (width - own) / 2, plate[1] + i as u32 * line];
+            let at = at.map(|v| i32::try_from(v).unwrap_or(i32::MAX));
+            draw_line(parts, &mut canvas.rgb8, canvas.size, at, px, ground.title);
+        }
     }
+}
+
+/// Each part of some lines in a line of its own.
+fn one_by_one(lines: Vec<Vec<Part>>) -> Vec<Vec<Part>> {
+    lines.into_iter().flatten().map(|part| vec![part]).collect()
 }
 
 /// True if two rectangles have pixels in common.
@@ -111,7 +131,10 @@ fn apart(labels: &[([f32; 2], Vec<Part>)], line: u32) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Background, Object, Repeat, Repetition, Varied};
+    use crate::{
+        parameter::Value,
+        scene::{Background, Object, Repeat, Repetition, Varied},
+    };
 
     fn row(labels: bool) -> Scene {
         let varied = Varied {
@@ -151,6 +174,31 @@ mod tests {
         let plate = (1..160).find(|x| lit(*x, line)).map(|x| picture[3 * (line * 320 + x)]);
         assert_eq!(plate, Some(18), "a dark plate over black");
         assert!((0..80).all(|y| (0..320).all(|x| !lit(x, y))), "nothing above the objects");
+    }
+
+    #[test]
+    fn many_values_stand_below_each_other_and_no_label_is_left_out() {
+        let mut scene = row(true);
+        let Repetition::Copy { entry, .. } = &scene.objects[0].repeat else { panic!("a row") };
+        let mut entry = (**entry).clone();
+        let Repetition::Entry(repeat) = &mut entry.repeat else { panic!("a row") };
+        let colours = [[250, 120, 10], [10, 120, 250], [120, 250, 10]].map(Value::Colour).to_vec();
+        repeat.vary.push(Varied {
+            parameter: "material.base_colour".to_owned(),
+            values: colours,
+            ..Varied::default()
+        });
+        scene.objects = vec![entry];
+        let scene = scene.expanded(&Registry::builtin()).expect("a row");
+        let cell = Cell { view: 0, left: 0, top: 0, width: 640, height: 360 };
+        let picture =
+            with_row_labels(vec![0; 640 * 360 * 3], [640, 360], [(cell, &scene)], &Registry::builtin());
+        let lit = |x: usize, y: usize| picture[3 * (y * 640 + x)] > 0;
+        let starts = |y: usize| (1..640).filter(|x| lit(*x, y) && !lit(x - 1, y)).count();
+        let first = (0..360).find(|y| (0..640).any(|x| lit(x, *y))).expect("labels");
+        let last = (0..360).rfind(|y| (0..640).any(|x| lit(x, *y))).expect("labels");
+        assert_eq!((starts(first), starts(last)), (3, 3));
+        assert!(last - first > 14, "two lines: {first} to {last}");
     }
 
     #[test]

@@ -35,8 +35,8 @@ pub struct WrongSize {
 }
 
 impl Shown {
-    /// A picture of display codes: red, green, blue, row by row from the top. Its light, and which pixels objects cover,
-    /// are unknown.
+    /// A picture of display codes: red, green, blue, row by row from the top. The light and the coverage by objects are
+    /// unknown.
     ///
     /// # Errors
     /// Returns an error if there are not `width · height · 3` codes.

@@ -9,7 +9,7 @@ use crate::{
 };
 
 ids! {
-    /// The format of a file. Its id is the extension, without the dot.
+    /// The format of a file; the id is the extension, without the dot.
     Format {
         /// Vector graphics.
         Svg = "svg",

@@ -103,6 +103,8 @@ pub struct Curve {
     pub points: Vec<Point>,
     /// True if the points were measured, and nothing is known between them.
     pub measured: bool,
+    /// True if a part of the light leaves in a single direction, which the curve leaves out.
+    pub sharp: bool,
 }
 
 impl Curve {

@@ -41,7 +41,8 @@ pub fn curve(
         points.append(&mut side);
     }
     subject.runs()?;
-    Ok(Curve { name: subject.name.clone(), points, measured: false })
+    let sharp = declared.has_light && subject.is_sharp();
+    Ok(Curve { name: subject.name.clone(), points, measured: false, sharp })
 }
 
 /// The angles to the normal behind a surface at which light from an angle goes on: straight, and bent; and 0.
@@ -93,5 +94,5 @@ fn measured(subject: &Subject, id: &str, setup: &Setup) -> Result<Curve, CurveEr
         }
     })?;
     let points = points.into_iter().map(|(angle, f)| Point { angle, rgb: factor * f }).collect();
-    Ok(Curve { name, points, measured: true })
+    Ok(Curve { name, points, measured: true, sharp: false })
 }

@@ -13,6 +13,10 @@ use crate::{
     text::capitalised,
 };
 
+/// The remark on curves of smooth surfaces.
+const UNSPREAD: &str = "a smooth surface sends light on in single directions, where f has no finite value; the albedo \
+                        counts what is mirrored.";
+
 /// Curves or slices of one kind, with display settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
@@ -71,6 +75,9 @@ impl Sheet {
             if let Some(missing) = curve.missing() {
                 notes.push(format!("{}: {missing}, where the curve has a gap.", curve.name));
             }
+            if curve.sharp {
+                notes.push(format!("{}: {UNSPREAD}", curve.name));
+            }
             let mut values = curve.points.iter().map(|p| self.value(p.rgb)).filter(|v| v.is_finite());
             let what = if self.log && values.clone().any(|v| v < 0.0) {
                 "negative values have"
@@ -95,7 +102,10 @@ impl Sheet {
     #[must_use]
     pub fn heading(&self) -> String {
         let Setup { kind, theta_i, phi_i } = self.setup;
-        let mut words = capitalised(kind.declaration().heading.unwrap_or(kind.name()));
+        let name = kind.declaration().heading.unwrap_or(kind.name());
+        // Both sides of a surface together: a bidirectional scattering distribution function.
+        let mut words = if self.is_around() { name.replace("BRDF", "BSDF") } else { name.to_owned() };
+        words = capitalised(&words);
         if kind.declaration().has_light {
             words += &format!(" in the plane of incidence, light at {theta_i}°");
         }

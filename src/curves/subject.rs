@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     caption,
-    optics::{Frame, Terms, colour::Encoding},
+    optics::{Frame, Terms, albedo::directional, colour::Encoding},
     parameter::{Parameter, Value, Values},
     reflection::{Factor, ModelEntry, Surface, bsdf, usage},
     text::did_you_mean,
@@ -121,15 +121,21 @@ impl Subject {
         }
     }
 
-    /// The response `π f cos θ_i` by term, for integrals.
-    pub(super) fn response(&self, l: Vec3, v: Vec3) -> Terms {
-        match &self.source {
-            Source::Model { surface, .. } => surface.response(l, v, &Frame::LOCAL),
+    /// The directional albedo for a viewer.
+    pub(super) fn directional_albedo(&self, v: Vec3) -> Vec3 {
+        let albedo = match &self.source {
+            Source::Model { surface, .. } => surface.directional_albedo(v),
             _ => {
-                let specular = std::f32::consts::PI * l.z * self.brdf(l, v);
-                Terms { specular, ..Terms::default() }
+                let specular = |l: Vec3| std::f32::consts::PI * l.z * self.brdf(l, v);
+                directional(|l| Terms { specular: specular(l), ..Terms::default() }, v, &Frame::LOCAL)
             }
-        }
+        };
+        albedo.as_vec3()
+    }
+
+    /// True if a part of the light leaves in a single direction, which a function of directions leaves out.
+    pub(super) fn is_sharp(&self) -> bool {
+        matches!(&self.source, Source::Model { surface, .. } if !surface.sharp(Vec3::Z, &Frame::LOCAL).is_empty())
     }
 
     /// A single factor of the model.

@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use super::*;
 use crate::{
-    optics::colour::Encoding,
+    optics::{Frame, colour::Encoding},
     parameter::{Value, Values},
     progress::Progress,
     reflection::{Factor, brdf},
@@ -109,7 +109,11 @@ fn factors_are_those_of_the_response() {
         // Smooth glass has no lobe.
         let smooth = ["thin_glass", "glass"].contains(&id);
         let rough = [("roughness", Value::Number(0.5))];
-        let model = subject(id, if smooth { &rough } else { &[] });
+        let set = if smooth { &rough[..] } else { &[] };
+        let model = subject(id, set);
+        let mut values = Values::default();
+        set.iter().for_each(|(name, value)| values.set(*name, value.clone()));
+        let surface = registry.model(id).expect("built in").instantiate(&values, Encoding::Srgb);
         // Thin glass adds light of several bounces between the facets.
         let more = if id == "thin_glass" { 0.5 } else { 2e-4 };
         let mut twin = 0.0f32;
@@ -126,7 +130,7 @@ fn factors_are_those_of_the_response() {
                 factor(Factor::Masking { l, v }),
             ];
             let found = std::f32::consts::PI * d * f * g / (4.0 * v.z) * share;
-            let expected = model.response(l, v).specular.x;
+            let expected = surface.response(l, v, &Frame::LOCAL).specular.x;
             let bounds = expected * (1.0 - more) - 1e-9..=expected * (1.0 + 2e-4) + 1e-9;
             assert!(bounds.contains(&found), "{id}: {found} {expected}");
             twin = twin.max((found / g / expected - 1.0).abs());
@@ -215,7 +219,7 @@ fn values_that_are_no_numbers_are_said_and_shown() {
             1.0
         }),
     });
-    let curve = Curve { name: "broken".to_owned(), points: points.collect(), measured: false };
+    let curve = Curve { name: "broken".to_owned(), points: points.collect(), measured: false, sharp: false };
     let missing = curve.missing().expect("there are some");
     assert_eq!(missing.to_string(), "values are not finite numbers from −3° to −2° and at 2°");
     let none = Curve { points: vec![Point { angle: 1.0, rgb: Vec3::NAN }], ..curve.clone() };
@@ -252,6 +256,7 @@ fn every_curve_has_a_colour_and_a_dash() {
         name: format!("curve {i}"),
         points: vec![Point { angle: 0.0, rgb: Vec3::ONE }, Point { angle: 9.0, rgb: Vec3::ONE }],
         measured: false,
+        sharp: false,
     };
     let sheet = Sheet { curves: (0..8).map(one).collect(), ..Sheet::new(setup) };
     let draw::Figure::Plot(plot) = sheet.figure() else { panic!("a plot") };
@@ -315,7 +320,7 @@ fn what_a_logarithmic_axis_cannot_show_is_said() {
     let said = |values: [f32; 3], log: bool| {
         let point = |(i, v): (usize, f32)| Point { angle: i as f64, rgb: Vec3::splat(v) };
         let points = values.into_iter().enumerate().map(point).collect();
-        let curves = vec![Curve { name: "x".to_owned(), points, measured: false }];
+        let curves = vec![Curve { name: "x".to_owned(), points, measured: false, sharp: false }];
         let sheet = Sheet { curves, log, ..Sheet::new(setup) };
         assert!(!sheet.figure().svg().contains("NaN"));
         sheet.notes().join(" ")
@@ -426,4 +431,29 @@ fn figures_show_both_sides_only_where_a_curve_goes_there() {
     assert!(!around(&["lambert"]) && around(&["lambert", "diffuse_transmission"]));
     let svg = sheet(&["diffuse_transmission"], Kind::Polar).figure().svg();
     assert!(svg.contains("150°") && svg.contains("180°"), "labels below the surface");
+}
+
+#[test]
+fn a_smooth_surface_has_an_albedo_and_says_what_curves_leave_out() {
+    let rough = [("roughness", number(0.4))];
+    for id in ["glass", "thin_glass"] {
+        let [smooth, spread] = [subject(id, &[]), subject(id, &rough)];
+        let e = fine(&smooth, Kind::Albedo, 0.0);
+        // Of the single boundary of a body F, of the two of a pane 2 F/(1 + F), all orders together.
+        let expected = if id == "glass" { 0.04 } else { 0.08 / 1.04 };
+        assert!((e.points[0].rgb.x - expected).abs() < 1e-4 && !e.sharp, "{id}: {:?}", e.points[0]);
+        let note = |subject: &Subject| {
+            let curve = fine(subject, Kind::Brdf, 45.0);
+            let sheet = Sheet {
+                curves: vec![curve],
+                ..Sheet::new(Setup::new(Kind::Brdf, 45.0, 0.0).expect("legal"))
+            };
+            (sheet.notes().iter().any(|note| note.contains("in single directions")), sheet.heading())
+        };
+        assert!(note(&smooth).0, "{id}");
+        let (said, heading) = note(&spread);
+        assert!(!said && heading.starts_with("BSDF in the plane"), "{id}: {heading}");
+    }
+    let (said, heading) = (fine(&subject("phong", &[]), Kind::Brdf, 45.0).sharp, Kind::Brdf.name());
+    assert!(!said && heading == "BRDF");
 }

@@ -148,7 +148,7 @@ impl Reader<'_> {
         let mut parts = Vec::new();
         if value.text().is_some() {
             let text = self.mathematics(fields, "equation");
-            parts.extend(text.map(|text| EquationPart { term: Term::Total, text }));
+            parts.extend(text.map(|text| EquationPart::new(Term::Total, text)));
         } else if let Some(list) = value.list() {
             for element in list {
                 let Some(part) = self.fields(element, PART_KEYS, "a part of an equation") else { continue };
@@ -160,7 +160,7 @@ impl Reader<'_> {
                 if part.get("text").is_none() {
                     self.lacking(&part, "text", "a part of an equation needs one");
                 }
-                parts.extend(term.zip(text).map(|(term, text)| EquationPart { term, text }));
+                parts.extend(term.zip(text).map(|(term, text)| EquationPart::new(term, text)));
             }
         } else {
             let rule =

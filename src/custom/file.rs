@@ -7,7 +7,7 @@ use crate::{
     shader::check::ShaderProblem,
 };
 
-/// Maximum size of a file, in bytes. Its declaration and its WGSL have separate limits of length and depth:
+/// Maximum size of a file, in bytes. The declaration and the WGSL have separate limits of length and depth:
 /// [`LIMITS`](crate::shader::limits::LIMITS).
 pub const MAX_BYTES: u64 = 1 << 20;
 

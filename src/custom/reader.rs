@@ -1,4 +1,4 @@
-//! The reader of declarations: what its parts, one for each key, have in common.
+//! The reader of declarations: the common code of its parts, one for each key.
 
 use jsonc_parser::common::Ranged as _;
 

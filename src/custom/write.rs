@@ -112,7 +112,12 @@ pub fn duplicate(
         let _ = writeln!(out, "    \"{key}\": {},", text(value));
     }
     out.push_str("    \"equation\": [\n");
-    for part in d.equation {
+    if d.solid {
+        out.push_str(
+            "    // A model in a file is a surface: the path inside the body is not part of the copy.\n",
+        );
+    }
+    for part in d.equation.iter().filter(|part| !part.along_path) {
         let (term, text) = (part.term.id(), text(part.text));
         let _ = writeln!(out, "        {{ \"term\": \"{term}\", \"text\": {text} }},");
     }

@@ -1,7 +1,7 @@
 //! Debug channels: the values that lead to the colour of a pixel, drawn as colours instead of the picture. Each is
 //! declared in a file of its own, with its formula for both renderers, and named in [`DebugChannel`].
 //!
-//! [`wgsl`] joins the formulas for the shaders; `assets/shaders/channels.wgsl` has what they share.
+//! [`wgsl`] joins the formulas for the shaders; `assets/shaders/channels.wgsl` has their common code.
 
 pub mod colours;
 mod declaration;
@@ -55,8 +55,8 @@ declared! {
 /// The number in shaders from which on channels are of geometry: `CHANNEL_OF_GEOMETRY` in `channels.wgsl`.
 const OF_GEOMETRY: u32 = 64;
 
-/// The number that shaders have instead of that of a term where they draw what remains inside bodies: `TERM_REMAINING` in
-/// `lights.wgsl`.
+/// The number that shaders have instead of that of a term where they draw the light that remains inside bodies:
+/// `TERM_REMAINING` in `lights.wgsl`.
 pub const REMAINING: u32 = 5;
 
 impl DebugChannel {

@@ -31,7 +31,7 @@ pub enum Edit {
         part: Part,
         /// The values; `None` removes one that need not be there.
         values: Vec<(Key, Option<Value>)>,
-        /// What was changed, for the name of the step, if not one field: "Measured material".
+        /// The subject of the change, for the name of the step, if not one field: "Measured material".
         what: Option<&'static str>,
     },
     /// An object, or the row to which it belongs, becomes a row, or single objects.
@@ -40,7 +40,7 @@ pub enum Edit {
         object: usize,
         /// The object with its row as in a file; `None` for single objects like the present copies.
         entry: Option<Box<Object>>,
-        /// What was changed, for the name of the step: "Number".
+        /// The subject of the change, for the name of the step: "Number".
         what: &'static str,
     },
     /// All variants, if some are added, removed or reordered, together with the resulting comparison of the

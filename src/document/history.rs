@@ -227,8 +227,7 @@ impl Patch {
     }
 }
 
-/// Inserts ranges into a list. Their positions refer to the old list; everything before a range must still be
-/// old.
+/// Inserts ranges into a list. Positions refer to the old list; everything before a range must still be old.
 fn put<T: Clone + PartialEq>(splices: &[Splice<T>], parts: &mut Vec<T>, labels: &mut Vec<Label>, back: bool) {
     let put = |splice: &Splice<T>| splice.put(parts, labels, back);
     if back { splices.iter().for_each(put) } else { splices.iter().rev().for_each(put) }

@@ -19,7 +19,7 @@ const SYSTEMS: u64 = u64::MAX;
 const BY_SYSTEM: &str = "Change by a system";
 
 impl Document {
-    /// Adopts what a system changed in these parts, if the rules of scenes allow it. Consecutive changes of
+    /// Adopts the changes of a system to these parts, if the rules of scenes allow it. Consecutive changes of
     /// this kind are one step: a system may change something in every frame.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use super::{Geometry, Line, Lit, Model, measured, numbers::colour, workings::of_terms};
 use crate::{
     optics::{TermSelection, Terms},
-    reflection::Term,
+    reflection::{EquationPart, Term},
 };
 use glam::Vec3;
 
@@ -53,10 +53,17 @@ impl Integral {
     }
 
     /// A line for each term that is not 0.
-    pub(super) fn lines(&self, terms: &Terms) -> Vec<Line> {
+    pub(super) fn lines(&self, terms: &Terms, model: &Model) -> Vec<Line> {
         let all = of_terms(terms).into_iter().zip(of_terms(&self.errors));
         let line = |((term, value), (_, error)): ((Term, Vec3), (Term, Vec3))| {
-            let text = format!("{0} = ∫ {0}(l) L(l) dω", term.symbol());
+            // Light through a body has a path instead.
+            let is_path =
+                |part: &&EquationPart| part.along_path && part.term == term && !part.text.contains(" if ");
+            let path = model.declaration.equation.iter().find(is_path);
+            let text = path.map_or_else(
+                || format!("{0} = ∫ {0}(l) L(l) dω", term.symbol()),
+                |path| path.text.to_owned(),
+            );
             Line { error: Some(error), ..Line::new(term, text, colour(value)) }
         };
         all.filter(|((_, value), _)| *value != Vec3::ZERO).map(line).collect()

@@ -177,7 +177,7 @@ impl Lit {
     #[must_use]
     pub fn rounded_lines(&self, model: &Model, digits: usize) -> Vec<Line> {
         match &self.integral {
-            Some(integral) => integral.lines(&self.response),
+            Some(integral) => integral.lines(&self.response, model),
             None => model.lines(self.geometry.as_ref(), &self.response, digits),
         }
     }
@@ -240,7 +240,7 @@ impl Model {
 
 /// The definitions of a term in the equation.
 fn parts(model: &Model, term: Term) -> impl Iterator<Item = &'static str> {
-    let of_term = model.declaration.equation.iter().filter(move |part| part.term == term);
+    let of_term = model.declaration.equation.iter().filter(move |part| part.term == term && !part.along_path);
     of_term.flat_map(|part| mathematics::definitions(part.text))
 }
 

@@ -312,7 +312,8 @@ pub struct Lit {
     pub integral: Option<Integral>,
     /// The light of a light without extent that comes through the body, if that is displayed.
     pub through: Vec3,
-    /// The light to the observer: the response times the arriving light, for the displayed terms, and what comes through.
+    /// The light to the observer: the response times the arriving light, for the displayed terms, and the transmitted
+    /// light.
     pub contribution: Vec3,
 }
 

@@ -34,8 +34,10 @@ pub struct Refraction {
     pub critical: f32,
     /// The part of the light that the boundary reflects where the view meets it.
     pub reflectance: f32,
-    /// What is behind the boundary, for solid bodies.
+    /// The inside of the body, for solid bodies.
     pub inside: Option<Inside>,
+    /// The parts of the light that both faces of a smooth pane together reflect and let through, in red, green and blue.
+    pub pane: Option<[Vec3; 2]>,
 }
 
 impl Refraction {
@@ -57,6 +59,7 @@ impl Refraction {
             critical: critical_angle(index).to_degrees(),
             reflectance: dielectric(index, frame.n.dot(view)),
             inside: body.map(|body| body.inside(at, view, frame.n).seen_by(surface.entering(view, frame))),
+            pane: body.is_none().then(|| pane(surface, view, frame)).flatten(),
         })
     }
 
@@ -80,7 +83,7 @@ impl Refraction {
     }
 
     fn angles(&self) -> Vec<String> {
-        let Self { index, incidence, refracted, critical, reflectance, .. } = self;
+        let Self { index, incidence, refracted, critical, reflectance, pane, .. } = self;
         let [n, theta, reflected] = [*index, *incidence, *reflectance].map(number);
         let mut lines = Vec::new();
         if *index == 1.0 {
@@ -100,9 +103,27 @@ impl Refraction {
             "θ_c = asin {quotient} = {}°: light that meets the boundary from {side} at a larger angle is reflected completely",
             number(*critical)
         ));
-        lines.push(format!("F = {reflected}: the part of the light that is reflected here; the rest is seen through the surface"));
+        lines.push(match pane {
+            Some([back, through]) => format!(
+                "F = {reflected}: the part of the light that one face reflects; both together reflect {} and let {} through",
+                part(*back),
+                part(*through)
+            ),
+            None if matches!(self.inside, Some(Inside::Ways(..) | Inside::Chance)) => format!(
+                "F = {reflected}: the part of the light that is reflected here; the rest is seen through the surface"
+            ),
+            None => format!("F = {reflected}: the part of the light that one smooth face reflects"),
+        });
         lines
     }
+}
+
+/// The parts of the light that a smooth pane reflects and transmits, all orders together; `None` for other surfaces.
+fn pane(surface: &dyn Surface, view: Vec3, frame: &Frame) -> Option<[Vec3; 2]> {
+    let sharps = surface.sharp(view, frame);
+    let of =
+        |transmitted: bool| sharps.iter().find(|sharp| sharp.transmitted == transmitted).map(|s| s.share);
+    Some([of(false)?, of(true)?])
 }
 
 /// The boundaries from inside, one by one.
@@ -112,7 +133,7 @@ fn ways(turns: &[Turn], remaining: Vec3, lines: &mut Vec<String>) {
         turns.iter().rposition(|turn| turn.leaves.is_some() && counts(turn)).map_or(0, |last| last + 1);
     let shown = last.clamp(1, LISTED).min(turns.len());
     for (i, turn) in turns[..shown].iter().enumerate() {
-        lines.push(format!("{}: {}", i + 1, met(turn)));
+        lines.push(format!("{}: {}", i + 1, met(turn, i + 1)));
     }
     let rest = turns.len() - shown;
     if rest > 0 {
@@ -128,8 +149,8 @@ fn part(part: Vec3) -> String {
     if r == g && g == b { r } else { format!("({r}, {g}, {b})") }
 }
 
-/// What happens at a boundary.
-fn met(turn: &Turn) -> String {
+/// The events at a boundary, in words.
+fn met(turn: &Turn, k: usize) -> String {
     let after = format!(
         "after {} m, at {}° from the normal inside, ",
         rounded(turn.length, 3),
@@ -138,7 +159,8 @@ fn met(turn: &Turn) -> String {
     match turn.leaves {
         None => format!("{after}everything is reflected"),
         Some((direction, through)) => {
-            format!("{after}{} comes from {}, {}", part(through), triple(direction), elevation(direction))
+            let (part, from) = (part(through), triple(direction));
+            format!("{after}w_{k} = {part} of the light from d_{k} = {from}, {}", elevation(direction))
         }
     }
 }
@@ -163,7 +185,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [101, 101];
 
-    /// What is said of a pixel of an object in front of the observer.
+    /// The refraction at a pixel of an object in front of the observer.
     fn refraction(
         object_type: &str,
         model: &str,

@@ -1,4 +1,4 @@
-//! Objects of solid models whose meshes are no solids: they are drawn as thin glass, and these are the reasons.
+//! Objects of solid models that are drawn as thin glass because their meshes are not solids, with the reasons.
 
 use std::{collections::HashMap, fmt};
 
@@ -20,9 +20,9 @@ const KEPT: usize = 1 << 12;
 pub struct Thin {
     /// Path of the first object with this model and mesh.
     pub path: Path,
-    /// Its name.
+    /// Name of the object.
     pub name: Option<String>,
-    /// The rest of the sentence: the reason, and what would be right.
+    /// The rest of the sentence: the reason and the remedy.
     pub what: String,
 }
 
@@ -38,7 +38,7 @@ impl fmt::Display for Thin {
 pub struct Tested(HashMap<MeshKey, Option<NotSolid>>);
 
 impl Tested {
-    /// Why an object's mesh is no solid; `None` if it is one.
+    /// The reason why an object's mesh is not a solid; `None` if it is one.
     fn problem(&mut self, shape: &ShapeEntry, object: &Object) -> Option<&NotSolid> {
         let key = shape.key(&object.shape, object.tessellation);
         if self.0.len() > KEPT && !self.0.contains_key(&key) {
@@ -82,7 +82,7 @@ pub fn thin(scene: &Scene, registry: &Registry, tested: &mut Tested) -> Vec<Thin
     found
 }
 
-/// What is wrong with a mesh, and what would be right; for a built-in shape, why it is so.
+/// The problem of a mesh and its remedy; for a built-in shape, the problem and its cause.
 fn reason(problem: &NotSolid, shape: &ShapeEntry) -> String {
     let said = problem.to_string();
     match (shape.declaration.open, said.split_once("; ")) {

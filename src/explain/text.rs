@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use glam::Vec3;
 
 use super::{
-    Brightest, Explanation, Geometry, Influence, Line, Lit, Part, Place, Refraction, Seen, Spot, agrees,
-    angle,
+    Brightest, Explanation, Geometry, Influence, Inside, Line, Lit, Part, Place, Refraction, Seen, Spot,
+    agrees, angle,
     lines::{self, calculation, reading},
     noise::{estimated, told, within},
     number,
@@ -17,9 +17,12 @@ use crate::{
     light::Factor,
     optics::{TermSelection, colour::Encoding},
     reference::DisplaySteps,
-    reflection::Family,
+    reflection::{Declaration, Family, Quantity},
     shading::Stage,
-    text::plural,
+    text::{
+        mathematics::{self, Atom, same_symbol},
+        plural,
+    },
 };
 
 /// Writes a line with arguments, at a depth.
@@ -218,12 +221,14 @@ impl Explanation {
             let through = match lit.through {
                 Vec3::ZERO => String::new(),
                 through => {
-                    say!(
-                        out,
-                        2,
-                        "light that comes through the body: {}, a mean over random ways, with noise",
-                        triple(through)
-                    );
+                    let by_chance = |spot: &Spot| {
+                        spot.refraction.as_ref().is_some_and(|found| found.inside == Some(Inside::Chance))
+                    };
+                    let noise = match seen.spots.iter().any(by_chance) {
+                        true => ", a mean over random ways, with noise",
+                        false => "",
+                    };
+                    say!(out, 2, "light that comes through the body: {}{noise}", triple(through));
                     format!(" + {}", triple(through))
                 }
             };
@@ -339,12 +344,36 @@ fn named(list: &str, part: &Part) -> String {
     }
 }
 
+/// The quantities of light along a path: it has no line of its own with numbers, so they are named at once.
+fn along_path(d: &Declaration) -> Vec<&'static Quantity> {
+    let mut texts: Vec<_> = d.equation.iter().filter(|part| part.along_path).map(|part| part.text).collect();
+    let mut found: Vec<&Quantity> = Vec::new();
+    while let Some(text) = texts.pop() {
+        let atoms = mathematics::parse(text);
+        let symbols: Vec<_> = atoms.iter().filter_map(Atom::symbol).collect();
+        let named = |quantity: &&Quantity| symbols.iter().any(|s| same_symbol(quantity.symbol(), s));
+        for quantity in d.quantities.iter().filter(named) {
+            if !found.iter().any(|known| known.text == quantity.text) {
+                found.push(quantity);
+                texts.push(quantity.text);
+            }
+        }
+    }
+    // In the order of their declaration.
+    let quantities = d.quantities.iter();
+    quantities.filter(|quantity| found.iter().any(|known| known.text == quantity.text)).collect()
+}
+
 fn model(out: &mut Writer, seen: &Seen) {
     let d = seen.model.declaration;
     let author = if d.author.is_empty() { String::new() } else { format!(" ({})", d.author) };
     out.heading(format_args!("Reflection model: {}{author}", d.name));
     for part in d.equation {
         out.mathematics(1, part.text, "");
+    }
+    for quantity in along_path(d) {
+        let by = if quantity.source.is_empty() { String::new() } else { format!(", {}", quantity.source) };
+        out.mathematics(2, quantity.text, &format!(": {}{by}", quantity.label));
     }
     if d.family != Family::Basic && !d.equation.is_empty() {
         out.line(1, "I is the answer to light of unit intensity: for a BRDF f_r, π f_r N·L.");

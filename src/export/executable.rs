@@ -25,7 +25,7 @@ pub const FORM: Form = Form {
     make,
 };
 
-/// What to do in a program without the window.
+/// The hint given in a program without the window.
 pub(crate) const WITHOUT_WINDOW: &str =
     "a copy of it could not show the scene; a web page can, with --as html";
 

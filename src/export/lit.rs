@@ -56,7 +56,7 @@ struct Known {
 pub struct Program<'a> {
     /// The reflection model.
     pub model: &'a ModelEntry,
-    /// How light passes through the objects with the shader.
+    /// The passage of light through the objects with the shader.
     pub passage: Passage,
     /// The shading model.
     pub shading: &'a ShadingEntry,
@@ -305,7 +305,7 @@ impl<'a> Lit<'a> {
     }
 }
 
-/// How light passes through the objects that share a shader: all solid bodies of a model, or all others.
+/// The passage of light through the objects that share a shader: all solid bodies of a model, or all others.
 #[must_use]
 pub fn passage_of(scene: &Scene, model: &ModelEntry, solid: bool) -> Passage {
     let own = scene.objects.iter().filter(|object| scene.model_of(object) == model.declaration.id);

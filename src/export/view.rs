@@ -45,6 +45,12 @@ pub fn exported(
     (seen, Some(note))
 }
 
+/// The note of forms whose pictures have no labels, if the scene has some.
+pub(super) fn without_labels(scene: &Scene) -> Option<String> {
+    let has_labels = scene.rows().any(|row| row.repeat.labels);
+    has_labels.then(|| "The labels of rows are left out.".to_owned())
+}
+
 /// `view B (Phong)`.
 pub(super) fn called(scene: &Scene, view: usize) -> String {
     let letter = LETTERS.get(view).copied().unwrap_or("?");

@@ -108,8 +108,8 @@ pub fn may_write(
     Ok(before)
 }
 
-/// Writes an export, after [`may_write`] has returned the state of the place. That state is replaced only
-/// when everything is on disk; anything written there since by somebody else stays.
+/// Writes an export, after [`may_write`] has returned the state of the place. The place is replaced only once
+/// everything is on disk; anything written there since by somebody else stays.
 ///
 /// # Errors
 /// Returns an error if the place is a folder of something else, if somebody else wrote there, or if the

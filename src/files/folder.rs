@@ -21,10 +21,10 @@ use super::{
 
 /// The new content of a folder, not yet in place. Dropping it deletes it.
 ///
-/// The draft is made next to its destination, in a folder called `.lcm-XXXXXX.tmp` like other drafts. Its
-/// file `lock` is locked while its process lives, `new` is the new content, and `old/NAME` is the replaced
-/// folder, from the first of two renames to the end: [`tidy`] restores it if the process was killed between
-/// them.
+/// The draft is made next to its destination, in a folder called `.lcm-XXXXXX.tmp` like other drafts. The
+/// file `lock` in it is locked while its process lives, `new` is the new content, and `old/NAME` is the
+/// replaced folder, from the first of two renames to the end: [`tidy`] restores it if the process was killed
+/// between them.
 #[derive(Debug)]
 pub struct FolderDraft {
     // Dropped first: not every system deletes open files.

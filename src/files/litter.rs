@@ -153,7 +153,8 @@ fn remove_if_abandoned(path: &Path) {
     }
 }
 
-/// Removes the draft of a folder. What it was about to replace is put back first, if nothing has taken its place.
+/// Removes the draft of a folder. The folder that it was about to replace is put back first, if nothing has taken its
+/// place.
 fn remove_folder_if_abandoned(path: &Path) {
     // One without a lock is that of a process killed at once, or of somebody else, who may have put something in it.
     let Some(lock) = abandoned(&path.join(LOCK)) else { return };

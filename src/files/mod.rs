@@ -32,14 +32,13 @@
 //! other's name, so that names of any length work. It is locked while its process lives. Usually it is then
 //! renamed, so a half-written file never exists.
 //!
-//! Renaming gives the name to another file. Where that would separate hard links, or give the file an owner or group
-//! that this user may not restore, and where this user may write to the file, its content is overwritten instead.
-//! Because that can be interrupted, the complete copy beside it is first synced and renamed to
-//! `.lcm-XXXXXX.INODE-TIME.whole`, with the inode and the modification time of the file to be overwritten. It is
-//! removed only when everything is synced.
-//! [`tidy`] never treats such a copy as litter. If the file it belongs to is equal to the copy, the overwriting was
-//! finished; if it is a prefix of the copy, the overwriting was interrupted, and is repeated; otherwise both are kept
-//! and the user is informed.
+//! Renaming gives the name to another file. The content of the old one is overwritten instead if renaming would
+//! separate hard links, or would give the file an owner or group that this user may not restore, provided that this
+//! user may write to the file. Because that can be interrupted, the complete copy beside it is first synced and renamed
+//! to `.lcm-XXXXXX.INODE-TIME.whole`, with the inode and the modification time of the file to be overwritten. It is
+//! removed only when everything is synced. [`tidy`] never treats such a copy as litter. If the file it belongs to is
+//! equal to the copy, the overwriting was finished; if it is a prefix of the copy, the overwriting was interrupted, and
+//! is repeated; otherwise both are kept and the user is informed.
 
 use std::{
     env, fmt,
@@ -129,7 +128,7 @@ impl fmt::Display for Kind {
     }
 }
 
-/// An error in reading or writing a file. Its text follows the file name: "c.json could not be read: …".
+/// An error in reading or writing a file. The text follows the file name: "c.json could not be read: …".
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The path leads to something other than a regular file.
@@ -304,7 +303,7 @@ fn is_same(a: &Metadata, b: &Metadata) -> bool {
     (a.device, a.inode) == (b.device, b.inode)
 }
 
-/// What Unix knows of a file; elsewhere, all files are alike.
+/// The identity, owner and links of a file on Unix; on other systems, all files are alike.
 pub(crate) struct Node {
     device: u64,
     pub(crate) inode: u64,

@@ -32,7 +32,7 @@ pub(super) use crate::scene::at::path;
 /// Name of the scene in the reader of scene files, which determines its format.
 const NAME: &str = "step.json";
 
-/// Where a lesson finds its scenes.
+/// The places of a lesson's scenes.
 #[derive(Clone, Copy)]
 pub(super) struct Shelf<'a> {
     /// The folder of the lesson, if it has one; it must contain the scenes.

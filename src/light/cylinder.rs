@@ -20,12 +20,12 @@ const RADIUS: Parameter =
     Parameter::number("radius", SMALLEST..=100.0, 0.05).symbol("r").unit("m").help("Half its diameter.");
 
 parameters! {
-    /// **Cylinder**: a fluorescent tube; the same luminance L, cd/m², from every point of its side. Its ends are dark. Its
-    /// luminous flux is `Φ = 2π² r a L` lumen. A point within it gets no light.
+    /// **Cylinder**: a fluorescent tube; the same luminance L, cd/m², from every point of its side. The ends are dark.
+    /// The luminous flux is `Φ = 2π² r a L` lumen. A point within it gets no light.
     pub struct Cylinder {
-        /// Its length, metres.
+        /// The length, metres.
         length: number = LENGTH,
-        /// Its radius, metres.
+        /// The radius, metres.
         radius: number = RADIUS,
         /// True if it is to be seen in the picture.
         visible: flag = VISIBLE,

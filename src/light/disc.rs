@@ -15,10 +15,10 @@ pub(super) const RADIUS: Parameter =
     Parameter::number("radius", SMALLEST..=100.0, 0.5).symbol("r").unit("m").help("Half its diameter.");
 
 parameters! {
-    /// **Disc**: a round lamp; the same luminance L, cd/m², from every point of it in every direction to its front. Its luminous
-    /// flux is `Φ = π² r² L` lumen, twice that if both sides shine.
+    /// **Disc**: a round lamp; the same luminance L, cd/m², from every point of it in every direction to its front. The
+    /// luminous flux is `Φ = π² r² L` lumen, twice that if both sides shine.
     pub struct Disc {
-        /// Its radius, metres.
+        /// The radius, metres.
         radius: number = RADIUS,
         /// True if it shines to both sides.
         two_sided: flag = TWO_SIDED,

@@ -1,5 +1,7 @@
 //! Photometric files as published by luminaire manufacturers: IES LM-63 of 1986, 1991, 1995 and 2002, with
-//! type C photometry.
+//! type C photometry. The reader is our own, since files come from strangers: it limits the number of values,
+//! reports each mistake with its line, and completes symmetric files to the whole circle as renderers read
+//! them.
 
 use std::f64::consts::PI;
 

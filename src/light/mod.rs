@@ -78,8 +78,8 @@ pub struct Declaration {
     pub has_position: bool,
     /// True if the type has a direction.
     pub has_direction: bool,
-    /// Unit of the intensity: `cd` or `lx`, or `×` for a factor of the light's own output. Where
-    /// [`LightType::solid_angle`] exists, it converts the intensity to lumen.
+    /// Unit of the intensity: `cd` or `lx`, or `×` for a factor of the light's own output.
+    /// [`LightType::solid_angle`], if there is one, converts the intensity to lumen.
     pub unit: &'static str,
     /// Default intensity.
     pub default_intensity: f32,

@@ -20,8 +20,8 @@ const ROTATION: Parameter = Parameter::number("rotation", -360.0..=360.0, 0.0)
 parameters! {
     /// **Photometric lamp**: shines as measured by its maker; `I(p) = I w(γ, C) / |p − p₀|²`. `w` is the distribution
     /// in an IES file ([`FORMAT`](ies::FORMAT)): its candelas × its multiplier × its ballast factors, interpolated
-    /// linearly in both angles. `I` has no unit: 1 is the lamp of the file, 0.5 is the lamp dimmed to half. Its luminous
-    /// flux is `Φ = I ∫ w dω` lumen.
+    /// linearly in both angles. `I` has no unit: 1 is the lamp of the file, 0.5 is the lamp dimmed to half. The
+    /// luminous flux is `Φ = I ∫ w dω` lumen.
     ///
     /// The direction of the light is the axis `γ = 0`. The half plane `C = 0` of a lamp that points down looks along x;
     /// seen from above, `C` grows anticlockwise. A lamp that points elsewhere is tilted by the shortest turn.

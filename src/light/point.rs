@@ -9,8 +9,7 @@ use crate::{
 
 parameters! {
     /// **Point light**: shines equally in every direction; `I(p) = I / |p − p₀|²` (CA DD7, intensity at a point), I in
-    /// candela. Its luminous flux
-    /// is `Φ = 4π I` lumen.
+    /// candela. The luminous flux is `Φ = 4π I` lumen.
     pub struct Point {}
 }
 

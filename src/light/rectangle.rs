@@ -17,12 +17,12 @@ const HEIGHT: Parameter = Parameter::number("height", SMALLEST..=100.0, 1.0)
     .help("The length of its other sides, which point up as nearly as its direction allows.");
 
 parameters! {
-    /// **Rectangle**: a window, a softbox; the same luminance L, cd/m², from every point of it in every direction to its front.
-    /// Its luminous flux is `Φ = π w h L` lumen, twice that if both sides shine.
+    /// **Rectangle**: a window, a softbox; the same luminance L, cd/m², from every point of it in every direction to
+    /// its front. The luminous flux is `Φ = π w h L` lumen, twice that if both sides shine.
     pub struct Rectangle {
-        /// Its width, metres.
+        /// The width, metres.
         width: number = WIDTH,
-        /// Its height, metres.
+        /// The height, metres.
         height: number = HEIGHT,
         /// The turn about its direction, degrees.
         roll: number = ROLL,

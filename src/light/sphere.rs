@@ -10,10 +10,10 @@ use super::{
 use crate::{optics::sampling, parameters, shader::wgsl};
 
 parameters! {
-    /// **Sphere**: a globe lamp; the same luminance L, cd/m², from every point of it. Its luminous flux is `Φ = 4π² r² L` lumen. A
-    /// point within it gets no light.
+    /// **Sphere**: a globe lamp; the same luminance L, cd/m², from every point of it. The luminous flux is
+    /// `Φ = 4π² r² L` lumen. A point within it gets no light.
     pub struct Sphere {
-        /// Its radius, metres.
+        /// The radius, metres.
         radius: number = RADIUS,
         /// True if it is to be seen in the picture.
         visible: flag = VISIBLE,

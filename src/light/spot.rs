@@ -20,7 +20,7 @@ const PENUMBRA: Parameter = Parameter::number("penumbra", 0.0..=1.0, 0.1).symbol
 
 parameters! {
     /// **Spotlight**: a point light within a cone; `I(p) = I · cone(θ, θ_c, s) / |p − p₀|²`
-    /// ([`cone`]), I in candela, on the axis. Its luminous flux is `Φ = I ∫ cone dω` lumen
+    /// ([`cone`]), I in candela, on the axis. The luminous flux is `Φ = I ∫ cone dω` lumen
     /// ([`cone_solid_angle`]).
     pub struct Spot {
         /// Half the opening of the cone, degrees.

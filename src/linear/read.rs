@@ -29,7 +29,7 @@ const MAX_LAYERS: usize = 64;
 const MAX_BLOCK_BYTES: usize = 16 << 20;
 const MAX_BLOCKS: usize = 1 << 18;
 
-/// The limits of a reader, and what it reads.
+/// The limits of a reader, and the kind of its pictures.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Maximum size of the header of a Radiance file, in bytes.

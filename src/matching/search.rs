@@ -377,7 +377,7 @@ impl<'a, T: Target> Search<'a, T> {
         Ok(())
     }
 
-    /// The point with insignificant values dropped and the rest rounded. Its error is at most `good`.
+    /// The point with insignificant values dropped and the rest rounded; the error is at most `good`.
     fn simplified(&mut self, mut point: Point, good: f64, mut error: f64) -> Result<(Point, f64), Stop> {
         for i in 0..self.free.len() {
             let mut without = point.clone();

@@ -37,8 +37,8 @@ pub fn oren_nayar_qualitative(cos_l: f32, cos_v: f32, cos_lv: f32, sigma: f32) -
 }
 
 /// The factor of M. Oren, S. K. Nayar (1994) on Lambert's diffuse BRDF, in full: single reflection, in three parts with
-/// C₁, C₂, C₃, plus interreflection between two facets, `0.17 ρ σ²/(σ² + 0.13) (1 − cos φ (2β/π)²)`. Where φ is beyond
-/// 90°, `C₂ = 0.45 σ²/(σ² + 0.09) (sin α − (2β/π)³)`.
+/// C₁, C₂, C₃, plus interreflection between two facets, `0.17 ρ σ²/(σ² + 0.13) (1 − cos φ (2β/π)²)`. For φ beyond 90°,
+/// `C₂ = 0.45 σ²/(σ² + 0.09) (sin α − (2β/π)³)`.
 ///
 /// Arguments and angles as for [`oren_nayar_qualitative`]; `rho` is the reflectance of the facets. Negative for σ above
 /// 36° where light and view are at grazing angles from opposite sides.

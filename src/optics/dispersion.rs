@@ -56,9 +56,9 @@ pub struct Wavelength {
     pub weight: Vec3,
 }
 
-/// Red, green and blue at the bounds between the [parts](PARTS) of the visible range, in thousandths; zero at its ends. They
-/// are the [matching functions](super::temperature::colour_matching) of CIE 1931 in the primaries of sRGB (IEC 61966-2-1), without
-/// what is negative there, since it is no light that a display can show. Each column adds up to 16 000, so that a flat
+/// Red, green and blue at the bounds between the [parts](PARTS) of the visible range, in thousandths; zero at its ends.
+/// They are the [matching functions](super::temperature::colour_matching) of CIE 1931 in the primaries of sRGB (IEC
+/// 61966-2-1), without their negative parts, which a display cannot show. Each column adds up to 16 000, so that a flat
 /// spectrum is white.
 const COLOURS: [[u16; 3]; PARTS as usize - 1] = [
     [222, 0, 2081],

@@ -19,8 +19,8 @@ impl Frame {
     pub const LOCAL: Self = Self { n: Vec3::Z, t: Vec3::X, b: Vec3::Y };
 
     /// The frame of a surface point with a shading normal and a tangent, which need be neither perpendicular nor of
-    /// length 1: J. Gram and E. Schmidt's `t = T − (N·T) N`, normalised. Where the tangent vanishes or runs along the
-    /// normal (the sine of their angle is below 10⁻⁴), the frame [from the normal](Self::from_normal) alone.
+    /// length 1: J. Gram and E. Schmidt's `t = T − (N·T) N`, normalised. If the tangent vanishes or runs along the
+    /// normal (the sine of their angle is below 10⁻⁴), the frame is made [from the normal](Self::from_normal) alone.
     #[must_use]
     pub fn new(n: Vec3, tangent: Vec3) -> Self {
         let across = tangent - n.dot(tangent) * n;
@@ -87,9 +87,9 @@ pub fn half_vector(l: Vec3, v: Vec3) -> Vec3 {
     (l + v).normalize_or_zero()
 }
 
-/// The slope of the facet that mirrors `l` to `v`: `(H·T, H·B) / (H·N)`. Its squared length is tan² θ_h. It
-/// is calculated from `L + V` directly, since tan² θ_h from a cosine, 1/cos² θ_h − 1, would lose digits near
-/// highlights. Finite for opposite vectors too.
+/// The slope of the facet that mirrors `l` to `v`: `(H·T, H·B) / (H·N)`. The squared length is tan² θ_h. The
+/// slope is calculated from `L + V` directly, since tan² θ_h from a cosine, 1/cos² θ_h − 1, would lose digits
+/// near highlights. Finite for opposite vectors too.
 #[must_use]
 pub fn half_slope(l: Vec3, v: Vec3, frame: &Frame) -> Vec2 {
     let h = l + v;

@@ -162,8 +162,8 @@ impl Interface {
         right.then(|| l.with_z(v.z.signum() * l.z))
     }
 
-    /// The density per solid angle with which [`sample`](Self::sample) returns a direction to the light. Its integral is
-    /// less than 1 by the part for which there is none.
+    /// The density per solid angle with which [`sample`](Self::sample) returns a direction to the light. The integral
+    /// is 1 less the fraction of samples without a direction.
     #[must_use]
     pub fn pdf(&self, l: Vec3, v: Vec3) -> f32 {
         if let Some(facet) = self.refracting(l, v) {
@@ -196,7 +196,7 @@ fn visible_normal(u: Vec2, v: Vec3, alpha: Vec2) -> Vec3 {
 
 /// A facet that refracts one direction to another.
 struct Refracting {
-    /// Its normal, z ≥ 0.
+    /// The normal of the facet, z ≥ 0.
     h: Vec3,
     /// The cosines between the directions and its normal, without sign.
     cos_l: f32,

@@ -12,7 +12,7 @@ use super::{
     slab::slab,
 };
 
-/// What light meets at the boundary of a solid body, and within it.
+/// The optical properties of a solid body, at its boundary and inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interior {
     /// Refractive index relative to the room, at the [d line](dispersion::LINES).
@@ -47,8 +47,8 @@ impl Interior {
         if is_matched(self.ior) { 1.0 } else { self.ior }
     }
 
-    /// The pane that stands for a body without an inside: what two faces without distance transmit, and reflect in
-    /// addition to the first one.
+    /// The pane that stands for a body without an inside: the light that two faces without distance transmit, and that
+    /// they reflect in addition to the first one.
     #[must_use]
     pub fn pane(&self, v: Vec3, frame: &Frame) -> Sharps {
         let cosine = frame.n.dot(v);

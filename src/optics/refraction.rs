@@ -2,8 +2,8 @@
 //!
 //! Twin: `assets/shaders/optics/refraction.wgsl`. Directions point away from the boundary: `v` to the observer, a
 //! refracted direction to where the observed light comes from. **η** is the refractive index on the other side of the
-//! boundary, divided by that on the side of `v`: 1.5 from air into glass, 1/1.5 from glass into air. Light takes the same
-//! path both ways, so what is said of rays from the observer holds for light towards it.
+//! boundary, divided by that on the side of `v`: 1.5 from air into glass, 1/1.5 from glass into air. Light takes the
+//! same path both ways, so statements about rays from the observer hold for light towards it.
 
 use glam::Vec3;
 

@@ -64,7 +64,7 @@ pub fn buttons(ui: &mut Ui, context: &mut PanelContext<'_>) {
 
 /// Id of the dialog.
 pub(super) const DRAFT: &str = "model draft";
-/// Its name.
+/// Title of the dialog.
 pub(super) const DRAFT_TITLE: &str = "A new reflection model";
 
 /// The dialog that asks for the name of a new model.

@@ -25,8 +25,8 @@ pub trait Panel: Send + Sync + 'static {
     fn title(&self) -> &'static str;
     /// The place.
     fn place(&self) -> Place;
-    /// False while there is nothing to show. What is open over the rest hides the tooltips below it, or takes the input:
-    /// see [`Over`].
+    /// False while there is nothing to show. A panel that is open over the rest hides the tooltips below it, or takes
+    /// the input: see [`Over`].
     fn is_open(&self, _session: &Session) -> bool {
         true
     }
@@ -57,12 +57,12 @@ impl Own {
         Self { names, place, is_open: |_| true, note: |_| None, show: Box::new(show) }
     }
 
-    /// The same, but closed at times.
+    /// Makes the panel open only while a condition holds.
     pub(super) fn open_if(self, is_open: fn(&Session) -> bool) -> Self {
         Self { is_open, ..self }
     }
 
-    /// The same with a note.
+    /// Adds a note beside the title.
     pub(super) fn noted(self, note: fn(&Session) -> Option<(Severity, String)>) -> Self {
         Self { note, ..self }
     }
@@ -125,7 +125,7 @@ impl<'a> PanelContext<'a> {
         self.area
     }
 
-    /// The state of the window: what is selected, what is shown, the messages.
+    /// The state of the window: the selection, the display, the messages.
     #[must_use]
     pub fn session(&self) -> &'a Session {
         self.session
@@ -153,17 +153,17 @@ impl<'a> PanelContext<'a> {
         self.world
     }
 
-    /// Does what a user could do.
+    /// Performs an action that a user could perform.
     pub fn act(&mut self, action: Action) {
         self.actions.push(action);
     }
 
-    /// Does what a user asks for by a click.
+    /// Performs an action that a user asks for by a click.
     pub(super) fn on_click(&mut self, widget: &Response, action: impl FnOnce() -> Action) {
         self.actions.extend(widget.clicked().then(action));
     }
 
-    /// Changes the scene, as one step of the history. What breaks a rule of scenes is refused with a message.
+    /// Changes the scene, as one step of the history. An edit that breaks a rule of scenes is refused with a message.
     pub fn edit(&mut self, edit: Edit) {
         self.act(Action::Edit(edit));
     }

@@ -40,9 +40,9 @@ pub struct Dialogs {
     dialog: FileDialog,
     /// Id of the dialog.
     id: &'static str,
-    /// What is being selected.
+    /// The purpose of the selection in progress.
     asked: Option<Pick>,
-    /// What earlier dialogs remember, by their ids.
+    /// The memory of earlier dialogs, by their ids.
     kept: HashMap<&'static str, FileDialogStorage>,
     /// The dialog field that had the focus at the end of the previous frame.
     typed_into: Option<Field>,
@@ -115,7 +115,9 @@ fn export_dialog(what: Pick, session: &Session) -> FileDialog {
         Pick::Picture(view) => {
             ("Save the picture".to_owned(), "Save", format!("{}.png", session.picture_stem(view)))
         }
-        Pick::Sheet(_) => ("Save the sheet".to_owned(), "Save", format!("{}_sheet.png", session.stem())),
+        Pick::Sheet(_) => {
+            ("Save the sheet or the film".to_owned(), "Save", format!("{}_sheet.png", session.stem()))
+        }
         Pick::Export(id) => {
             let (form, stem) = (form(id), session.stem());
             let title = form.map_or_else(String::new, |form| format!("Export as {}", form.name));
@@ -170,7 +172,7 @@ fn requested(what: Pick, session: &Session, registry: &Registry) -> (&'static st
     }
 }
 
-/// The action that a dialog was opened for, with what was selected.
+/// The action that a dialog was opened for, with the selected file.
 fn action(what: Pick, path: PathBuf, session: &Session) -> Option<Action> {
     Some(match what {
         // The user was asked about unsaved changes before the dialog opened.
@@ -188,7 +190,7 @@ fn action(what: Pick, path: PathBuf, session: &Session) -> Option<Action> {
             Action::Do(Effect::Picture { view, file: Some(path), overwrite })
         }
         Pick::Plot => Action::Do(Effect::WritePlot(path)),
-        Pick::Sheet(row) => Action::Do(Effect::WriteSheet { row, path }),
+        Pick::Sheet(subject) => Action::Do(Effect::WriteSheet { subject, path }),
     })
 }
 

@@ -20,7 +20,7 @@ pub(super) fn window(ui: &Ui, id: &str, title: String, centre: Pos2, content: im
     })
 }
 
-/// What such a window asks for. It scrolls where the screen is too low for it: the buttons below stay in sight.
+/// The content of such a window. It scrolls if the screen is too low: the buttons below stay in sight.
 pub(super) fn content(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     let most = ui.ctx().content_rect().height() - AROUND;
     let scroll = ScrollArea::vertical().auto_shrink([false, true]).min_scrolled_height(most);

@@ -77,7 +77,7 @@ pub(super) fn copy_menu(ui: &mut Ui, context: &mut PanelContext<'_>) {
     menu.response.on_hover_text(help);
 }
 
-/// The shader of an object for the clipboard, and what is said of it.
+/// The shader of an object for the clipboard, and the message about it.
 fn copied(form: &Form, object: usize, session: &Session, registry: &Registry) -> Vec<Action> {
     let scene = &session.document;
     let request = Request { scene, registry, stem: "scene", size: SIZE, object, point: None };

@@ -22,7 +22,7 @@ use crate::{
 /// The width, points, and the room at its sides in a narrower window.
 const WIDTH: f32 = 620.0;
 const MARGIN: f32 = 24.0;
-/// The room around what is in it, points.
+/// The margin around the content, points.
 const PADDING: f32 = 8.0;
 /// The part of the window above it, and the part that its list takes.
 const ABOVE: f32 = 0.09;
@@ -150,7 +150,7 @@ fn listed<'f>(ctx: &Context, all: &'f [Found]) -> Vec<(&'static str, &'f Found)>
     again.map(|found| ("Used last", found)).chain(all.iter().map(|found| (found.heading, found))).collect()
 }
 
-/// Those that fit what was typed, the best first.
+/// Those that fit the typed text, the best first.
 fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> {
     let fits = |found: &'f Found| Some((rank(&found.title, &found.more, search)?, found));
     let mut found: Vec<_> = all.iter().filter_map(fits).collect();

@@ -17,7 +17,7 @@ pub(super) enum Region {
 #[derive(Clone, Debug, Default)]
 struct Regions(Vec<(Region, Rect)>, Vec<Id>);
 
-/// What is known of the focus.
+/// The known state of the focus.
 #[derive(Clone, Debug, Default)]
 struct Known {
     /// The regions as last shown, and those of this frame.

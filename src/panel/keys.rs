@@ -22,7 +22,7 @@ pub struct Binding {
     pub label: String,
     /// The action.
     pub action: Action,
-    /// True if it works while text is typed, as far as it is no text.
+    /// True if it works while text is typed, unless it is text itself.
     anywhere: bool,
 }
 

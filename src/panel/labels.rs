@@ -44,14 +44,18 @@ pub(super) fn labels(ui: &Ui, rect: Rect, view: usize, session: &Session, regist
     let mut variables: HashMap<usize, Vec<Variable>> = HashMap::new();
     let palette = palette(ui, &in_view.display);
     let size = type_size(ui, rect, session);
-    for (i, below) in nearest(rect, session, |i| row_of(i).is_some(), MOST_OF_ROWS) {
+    let found = nearest(rect, session, |i| row_of(i).is_some(), MOST_OF_ROWS);
+    // Values break into lines between neighbours.
+    let width = (apart(&found, 2.0 * size) - 2.0 * PADDING.x - 2.0).max(4.0 * size).min(rect.width());
+    for (i, below) in found {
         let Some(place) = row_of(i) else { continue };
         let variables = variables.entry(place).or_insert_with(|| rows[place].variables(registry).collect());
         let parts = of_copy(in_view, i, variables, registry);
         if parts.is_empty() {
             continue;
         }
-        let line = caption::Lines::of(ui, parts, 0.9 * size, palette.text, rect.width());
+        let count = parts.len();
+        let line = caption::Lines::within(ui, parts, 0.9 * size, palette.text, width, count);
         if let Some(place) = plate(ui, palette, rect, below, line.size, &places) {
             line.paint(ui, place.min + PADDING, palette.text);
             places.push(place);
@@ -95,6 +99,13 @@ fn of_objects(ui: &Ui, rect: Rect, view: usize, session: &Session, registry: &Re
         places.push(place);
     }
     places
+}
+
+/// The smallest distance between neighbours in about one line.
+fn apart(found: &[(usize, Pos2)], line: f32) -> f32 {
+    let each = found.iter().enumerate().flat_map(|(i, (_, a))| found[..i].iter().map(move |(_, b)| *a - *b));
+    let beside = each.filter(|way| way.y.abs() < line).map(|way| way.x.abs());
+    beside.fold(f32::INFINITY, f32::min)
 }
 
 /// The size of letters: in a presentation they are read from afar.

@@ -14,7 +14,7 @@ use super::{
 /// A menu is shown within so many passes; one that has no entries never gets the focus.
 const PATIENCE: u64 = 4;
 
-/// What is known of the menus.
+/// The known state of the menus.
 #[derive(Clone, Default)]
 struct Known {
     /// The menu whose first entry gets the focus as soon as it is shown, and the last pass in which it can.

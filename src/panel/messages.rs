@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// A message with what it offers, and buttons that copy and dismiss it.
+/// A message with its offer, and buttons that copy and dismiss it.
 fn row(ui: &mut Ui, i: usize, message: &Note, context: &mut PanelContext<'_>) {
     ui.spacing_mut().item_spacing.x = 6.0;
     icon::sign(ui, [16.0, 20.0], 6.0, message.severity).on_hover_text(message.severity.name());

@@ -205,8 +205,10 @@ impl<'a> Overlaid<'_, 'a> {
             let corner = Rect::from_min_max(cell.rect.right_top() - vec2(16.0, 0.0), cell.rect.right_top())
                 .expand2(vec2(0.0, 16.0));
             let there = self.written.iter().filter(|place| place.is_positive() && place.intersects(corner));
-            let left = next.filter(|_| narrow).unwrap_or(first);
-            let below = there.map(|place| place.bottom() + 4.0).fold(left, f32::max);
+            let lobe = there.map(|place| place.bottom() + 4.0).reduce(f32::max);
+            let under = |top: f32| lobe.map_or(top, |lobe| lobe.max(top));
+            let below = under(next.filter(|_| narrow).unwrap_or(first));
+            let first = if narrow && apart { under(first) } else { first };
             let from = match comparison.edge {
                 Edge::Vertical if is_second => (Align2::RIGHT_TOP, below),
                 Edge::Horizontal if is_second => (Align2::LEFT_TOP, first.max(cell.part.top() + 8.0)),

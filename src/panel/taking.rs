@@ -1,22 +1,23 @@
 //! Saved pictures and sheets: the window that asks for size, caption, background and layers before the file dialog, and
-//! the progress of what is drawn.
+//! the progress of drawing.
 
 use bevy_egui::egui::ComboBox;
 
 use super::{
     draft, export, knob, menu,
     prelude::*,
-    state::{Effect, PictureSize, SheetOptions, TakeDraft, Taken},
+    state::{Effect, PictureSize, SheetOf, SheetOptions, TakeDraft, Taken, Turning},
 };
 use crate::{
     channel::LayerKind,
     reference::MAX_SIDE,
     scene::{comparison, limits::Limits},
+    sweep::MAX_RATE,
 };
 
 /// Id of the window.
 pub(super) const DRAFT: &str = "take draft";
-/// Its title, where all views are saved.
+/// Title of the window when all views are saved.
 pub(super) const TITLE: &str = "Save the picture";
 /// Width of a field for a number, in points.
 const FIELD: f32 = 56.0;
@@ -33,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let title = match draft.of {
         Taken::Picture(None) => TITLE.to_owned(),
         Taken::Picture(Some(view)) => format!("Save view {}", LETTERS[view.min(MAX_VARIANTS)]),
-        Taken::Sheet(_) => "Save a sheet".to_owned(),
+        Taken::Sheet(_) => "Save a sheet or a film".to_owned(),
     };
     let (centre, asked) = (context.area().rect.center(), context.actions.len());
     if is_gone(context.session(), draft.of)
@@ -49,7 +50,9 @@ fn is_gone(session: &Session, of: Taken) -> bool {
     let scene = &session.document;
     match of {
         Taken::Picture(view) => view.is_some_and(|view| view > scene.variants.len()),
-        Taken::Sheet(row) => row.is_some_and(|object| scene.row(object).is_none()),
+        Taken::Sheet(SheetOf::Row(object)) => scene.row(object).is_none(),
+        Taken::Sheet(SheetOf::Views) => scene.variants.is_empty(),
+        Taken::Sheet(SheetOf::Turn(_)) => false,
     }
 }
 
@@ -58,7 +61,7 @@ fn ask(ui: &mut Ui, draft: &TakeDraft, context: &mut PanelContext<'_>) {
     let mut typed = Typed::default();
     draft::content(ui, |ui| match draft.of {
         Taken::Picture(view) => picture(ui, view, &mut next, (&mut typed, context.session())),
-        Taken::Sheet(row) => sheet(ui, row, &mut next, (&mut typed, context)),
+        Taken::Sheet(now) => sheet(ui, now, &mut next, (&mut typed, context)),
     });
     ui.add_space(10.0);
     let [choose, cancel] = draft::buttons(ui, "Choose a file…", !typed.is_wrong);
@@ -83,7 +86,7 @@ fn ask(ui: &mut Ui, draft: &TakeDraft, context: &mut PanelContext<'_>) {
     context.on_click(&cancel, || Action::Take(TakeCommand::Close));
 }
 
-/// What was typed into the fields of the window.
+/// The result of typing into the fields of the window.
 #[derive(Default)]
 struct Typed {
     /// True if a number is wrong.
@@ -232,59 +235,99 @@ fn layers(ui: &mut Ui, chosen: &mut Vec<String>) {
     });
 }
 
-/// The options of a sheet.
-fn sheet(
-    ui: &mut Ui,
-    row: Option<usize>,
-    next: &mut TakeDraft,
-    (typed, context): (&mut Typed, &PanelContext<'_>),
-) {
-    next.of = Taken::Sheet(subject(ui, row, context));
+/// The options of a sheet or a film.
+fn sheet(ui: &mut Ui, now: SheetOf, next: &mut TakeDraft, (typed, context): (&mut Typed, &PanelContext<'_>)) {
+    let subject = subject(ui, now, context);
+    next.of = Taken::Sheet(subject);
     let options = &mut next.sheet;
     line(ui, "Each picture", "Width and height of each picture of the sheet", |ui| {
         sides(ui, &mut options.size, typed);
     });
+    if let SheetOf::Turn(_) = subject {
+        line(ui, "Pictures", "Number of pictures of the full turn", |ui| {
+            let limits = Limits::between(2.0, f64::from(SheetOptions::MAX_TURN)).whole();
+            number(ui, ["Pictures", "From 2 to 360"], (&mut options.turn, &limits), typed);
+        });
+    }
     line(ui, "Columns", "Number of pictures beside each other; further ones begin a new row", |ui| {
         let limits = Limits::between(0.0, f64::from(SheetOptions::MAX_COLUMNS)).whole();
         let tip = "From 1 to 100; 0 leaves it to the program";
         number(ui, ["Columns", tip], (&mut options.columns, &limits), typed);
         ui.label(theme::small(ui, if options.columns == 0 { "as many as suit" } else { "" }));
     });
+    line(
+        ui,
+        "Films",
+        "A name that ends in .gif or .apng makes a film: the pictures one after the other",
+        |ui| {
+            let limits = Limits::between(1.0, f64::from(MAX_RATE)).whole();
+            number(ui, ["Pictures per second", "From 1 to 50"], (&mut options.rate, &limits), typed);
+            ui.label(theme::small(ui, "pictures per second, in .gif and .apng files"));
+        },
+    );
     let tip = "The name or the values of each picture above it, and a caption below all";
     check(ui, &mut options.labels, "Labels and caption", tip, None);
-    let tip = "Below each picture its difference from the first, as a map with numbers";
-    // Copies of a row are in different places of their pictures.
-    if next.of == Taken::Sheet(None) {
-        check(ui, &mut options.differences, "Differences from the first picture", tip, None);
+    // Copies of a row, and parts that turn, are in different places of their pictures.
+    if subject == SheetOf::Views {
+        differences(ui, options, context.session());
     }
     check(ui, &mut options.smooth, "Smooth edges", "Four samples per pixel instead of one", None);
 }
 
-/// The list of what a sheet can show: the views, and the rows. Returns an object of the row that is chosen.
-fn subject(ui: &mut Ui, row: Option<usize>, context: &PanelContext<'_>) -> Option<usize> {
+/// The choice of the view from which the others differ.
+fn differences(ui: &mut Ui, options: &mut SheetOptions, session: &Session) {
+    let tip = "Below each picture of a sheet its difference from one of them, as a map with numbers. Channel, sign and \
+               amplification are those of the comparison.";
+    check(ui, &mut options.differences, "Differences from one picture", tip, None);
+    let count = session.document.variants.len() + 1;
+    if !options.differences || count < 2 {
+        return;
+    }
+    let name = |view: usize| format!("view {}", LETTERS[view.min(MAX_VARIANTS)]);
+    let names: Vec<_> = (0..count).map(name).collect();
+    let names: Vec<_> = names.iter().map(String::as_str).collect();
+    let now = (options.against as usize).min(count - 1);
+    let tip = "The view with which the others are compared";
+    line(ui, "Compared with", tip, |ui| {
+        let combo = ComboBox::from_id_salt("take against").width(128.0);
+        let (button, picked) = menu::list(ui, combo, "Compared with", &names, Some(now), |_, _| {});
+        button.on_hover_text(tip);
+        options.against = picked.unwrap_or(now) as u32;
+    });
+}
+
+/// The list of the possible subjects of a sheet: the views, the rows, and turns. Returns the chosen one.
+fn subject(ui: &mut Ui, now: SheetOf, context: &PanelContext<'_>) -> SheetOf {
     let (session, scene) = (context.session(), &context.session().document);
-    let views = (!scene.variants.is_empty()).then(|| (None, "The views".to_owned()));
+    let views = (!scene.variants.is_empty()).then(|| (SheetOf::Views, "The views".to_owned()));
     let of_row = |first: usize| {
         let name = session.name_of(Selection::Object(first), context.registry());
-        (Some(first), format!("The row from {name} on"))
+        (SheetOf::Row(first), format!("The row from {name} on"))
     };
-    let all: Vec<_> = views.into_iter().chain(scene.rows().map(|row| of_row(row.first))).collect();
-    let first = row.and_then(|object| scene.row(object)).map(|row| row.first);
-    let now = all.iter().position(|(one, _)| *one == first);
-    let mut chosen = row;
-    line(ui, "Pictures of", "The views, or the copies of a row: one for each picture", |ui| {
+    let turns = Turning::ALL.iter().map(|turning| (SheetOf::Turn(*turning), turning.name().to_owned()));
+    let rows = scene.rows().map(|row| of_row(row.first));
+    let all: Vec<_> = views.into_iter().chain(rows).chain(turns).collect();
+    let now = match now {
+        SheetOf::Row(object) => SheetOf::Row(scene.row(object).map_or(object, |row| row.first)),
+        other => other,
+    };
+    let at = all.iter().position(|(one, _)| *one == now);
+    let mut chosen = now;
+    let about = "The views, the copies of a row, or the steps of a turn: one for each picture";
+    line(ui, "Pictures of", about, |ui| {
         let names: Vec<_> = all.iter().map(|(_, name)| name.as_str()).collect();
         let combo = ComboBox::from_id_salt("take subject").width(240.0);
         let tip = |ui: &mut Ui, i: usize| {
             let tip = match all.get(i) {
-                Some((Some(_), _)) => "Each copy of the row alone, with what else is in the scene",
+                Some((SheetOf::Row(_), _)) => "Each copy of the row alone, with what else is in the scene",
+                Some((SheetOf::Turn(turning), _)) => turning.summary(),
                 _ => "Each view of the scene",
             };
             ui.label(tip);
         };
-        let (button, picked) = menu::list(ui, combo, "Pictures of", &names, now, tip);
-        button.on_hover_text("The views, or the copies of a row: one for each picture");
-        chosen = picked.and_then(|i| all.get(i)).map_or(row, |(one, _)| *one);
+        let (button, picked) = menu::list(ui, combo, "Pictures of", &names, at, tip);
+        button.on_hover_text(about);
+        chosen = picked.and_then(|i| all.get(i)).map_or(now, |(one, _)| *one);
     });
     chosen
 }

@@ -95,7 +95,7 @@ fn add_objects(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// The part that an arrow key moves to from the focused row. That part gets the focus.
+/// The part that an arrow key moves to from the focused row; it gets the focus.
 fn step(ui: &Ui, session: &Session) -> Option<Selection> {
     let focus = ui.memory(egui::Memory::focused)?;
     let keys = [Key::ArrowUp, Key::ArrowDown];

@@ -1,4 +1,6 @@
 //! Typesetting of equations: stacked fractions, roots, brackets as tall as their content, line breaks before + and −.
+//! The typesetting is our own, since it lays out the text of egui itself: symbols and numbers keep their cells for
+//! tooltips and links, and lines break to the width of the panel, which a picture of a formula could not do.
 
 use bevy_egui::egui::epaint::{CubicBezierShape, PathShape};
 
@@ -270,8 +272,8 @@ impl Setter<'_> {
     }
 
     /// Sets an equation in lines of at most this width; continuation lines are indented to the text after the equals
-    /// sign. Lines break before + and − outside brackets, before a condition, and before a new definition. What is still too wide is set
-    /// smaller, then broken between factors, with a ×, then anywhere.
+    /// sign. Lines break before + and − outside brackets, before a condition, and before a new definition. A line that
+    /// is still too wide is set smaller, then broken between factors, with a ×, then anywhere.
     #[must_use]
     pub fn lines(self, nodes: &[Node], width: f32) -> Vec<Set> {
         const SIZES: [f32; 4] = [1.0, 0.94, 0.88, 0.82];

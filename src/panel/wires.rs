@@ -1,6 +1,6 @@
 //! Lines and dots of meshes over the picture of a view: debug channels that the window draws without shaders.
 //!
-//! A thread finds the visible ones when scene, camera or view have changed. Their positions are in the scene: they move
+//! A thread finds the visible ones when scene, camera or view have changed. The positions are in the scene: they move
 //! correctly with the camera, while occlusion follows a moment later.
 
 use std::{collections::BTreeMap, sync::Mutex, time::Duration};

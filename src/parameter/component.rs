@@ -77,8 +77,7 @@ impl TypeComponent {
         }
     }
 
-    /// Copies the parameters of an entity's component into others. Where both mean the same, the others stay
-    /// as written.
+    /// Copies the parameters of an entity's component into others. Others that mean the same stay as written.
     ///
     /// # Errors
     /// Returns an error if a colour or the index of a choice is invalid: the others then get the nearest

@@ -1,4 +1,4 @@
-//! What follows from the declaration of a parameter.
+//! Properties derived from the declaration of a parameter.
 
 use super::{Parameter, UsedWhen, kind::Value};
 use crate::text::with_article;

@@ -16,8 +16,9 @@ pub trait ParameterSet: Sized + Send + Sync + 'static {
 }
 
 /// Declares a struct whose fields are the parameters of a model, a light type or an object type, each with the file of
-/// its [kind](crate::parameter::kind) and its declaration. A block `derived { field: Type = function }` after it adds fields calculated once from the others. Its
-/// default has the declared defaults. The struct is also a component of Bevy's, and known to its reflection.
+/// its [kind](crate::parameter::kind) and its declaration. A block `derived { field: Type = function }` after it adds
+/// fields calculated once from the others. The default of the struct has the declared defaults. The struct is also a
+/// component of Bevy's, and known to its reflection.
 ///
 /// ```
 /// use lights_camera_models::{parameters, parameter::{BASE_COLOUR, K_D, ParameterSet}};

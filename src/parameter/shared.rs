@@ -87,7 +87,7 @@ pub const ALPHA_Y: Parameter = Parameter::number("alpha_y", 0.001..=1.0, 0.3)
         .label("roughness across the tangent")
         .help("The steepness of the microfacets across the brushing. If it equals the roughness along the brushing, the surface is isotropic.");
 
-/// Standard deviation of the slope angles (Oren, Nayar 1994). Their full equation falls below zero from 36° on, so the
+/// Standard deviation of the slope angles (Oren, Nayar 1994). The full equation falls below zero from 36° on, so the
 /// range ends at 35°.
 pub const SIGMA: Parameter = Parameter::number("sigma", 0.0..=35.0, 20.0)
         .symbol("σ")

@@ -62,7 +62,7 @@ impl Sight {
     }
 }
 
-/// A shading model, and what a channel shows of it.
+/// A shading model, and the quantity of it that a channel shows.
 struct Channelled {
     inner: Box<dyn Shading>,
     parts: Arc<Parts>,

@@ -129,7 +129,9 @@ impl DisplayTransform {
         self.codes(c)
     }
 
-    /// The light after exposure, the input of the tone curve, and its result.
+    /// The light after exposure, the input of the tone curve, and its result. Where only the result is asked for, the rest
+    /// is not calculated.
+    #[inline]
     fn curve(&self, pixel: Vec4, behind: Option<Vec3>) -> [Vec3; 3] {
         let (light, covered) = (pixel.truncate() * self.exposure, pixel.w);
         let exposed = match behind {

@@ -1,4 +1,4 @@
-//! What only the GPU renderer draws: edited shaders, and models that the CPU cannot run.
+//! Shaders that only the GPU renderer draws: edited ones, and those of models that the CPU cannot run.
 
 use std::collections::BTreeSet;
 

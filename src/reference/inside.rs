@@ -1,11 +1,10 @@
 //! Light within a smooth solid: a ray of view goes in, is reflected inside, and at each boundary a part leaves.
 //!
-//! One chain: at each inner hit the ray leaves with the part that the boundary transmits (A. Fresnel 1823), and the rest
-//! goes on. On the way, light is absorbed (A. Beer 1852). Directions follow the normals of the
-//! [shading](Normals), so that a coarse mesh looks round; the sides are those of the triangles. Where both
-//! disagree, so that a ray refracted outwards would point inwards, or a reflected one outwards, that boundary has
-//! the normal of the triangle. So no light gets lost: what leaves, what is absorbed and what
-//! [remains](follow) are all that entered.
+//! One chain: at each inner hit the ray leaves with the part that the boundary transmits (A. Fresnel 1823), and the
+//! rest goes on. On the way, light is absorbed (A. Beer 1852). Directions follow the normals of the [shading](Normals),
+//! so that a coarse mesh looks round; the sides are those of the triangles. A boundary at which both disagree, so that
+//! a ray refracted outwards would point inwards, or a reflected one outwards, has the normal of the triangle. So no
+//! light is lost: the parts that leave, that are absorbed and that [remain](follow) add up to the light that entered.
 //!
 //! Radiance that enters and leaves again is scaled twice, by η² and by 1/η²; so the parts are of radiance in the room.
 
@@ -43,15 +42,15 @@ pub enum Normals {
 /// A solid in its place in the room.
 #[derive(Clone, Copy, Debug)]
 pub struct Solid<'a> {
-    /// Its triangles.
+    /// The triangles of the solid.
     pub hierarchy: &'a Hierarchy,
     /// The normals of its boundary.
     pub normals: Normals,
-    /// Its rotation.
+    /// The rotation of the solid.
     pub rotation: Mat3,
-    /// Its size in metres.
+    /// The size of the solid, metres.
     pub size: f32,
-    /// Its position in metres.
+    /// The position of the solid, metres.
     pub position: Vec3,
 }
 
@@ -91,7 +90,7 @@ impl Solid<'_> {
     }
 }
 
-/// Where a ray of view meets a solid from outside, in the room.
+/// The intersection of a ray of view with a solid from outside, in the room.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
     /// The point.
@@ -100,7 +99,8 @@ pub struct Entry {
     pub view: Vec3,
     /// The normal of the shading.
     pub normal: Vec3,
-    /// The normal of the polygon.
+    /// The normal of the polygon, on whose inner side the ray goes on. Renderers shade with one normal, and pass it for
+    /// both.
     pub face_normal: Vec3,
 }
 
@@ -119,9 +119,9 @@ impl Entry {
     }
 }
 
-/// What happens to a ray at a boundary that it meets from inside.
+/// The split of a ray at a boundary that it meets from inside.
 struct Boundary {
-    /// Where it leaves, if it does.
+    /// The direction of the refracted ray; `None` for total reflection.
     out: Option<Vec3>,
     /// The part that is reflected.
     reflectance: f32,
@@ -156,8 +156,8 @@ impl Boundary {
 /// inside: after [`ORDERS`] boundaries, where hardly anything is left, or, by rounding, where the mesh has no way out.
 /// A ray that only touches the rim goes straight on.
 ///
-/// What the solid reflects outside, before the ray enters, is not part of it. The dispersion of the interior is
-/// not either: [`Interior::at`] has the body for one wavelength.
+/// Light that the solid reflects outside, before the ray enters, is not included. Nor is the dispersion of the
+/// interior: [`Interior::at`] has the body for one wavelength.
 #[must_use]
 pub fn follow(
     solid: &Solid,
@@ -217,7 +217,8 @@ struct Met {
 }
 
 impl Met {
-    /// Where a ray only touches the rim of a solid, beside which the normal of the shading leads it: it goes straight on.
+    /// The boundary of a ray that only touches the rim of a solid, past which the shading normal leads it: it goes
+    /// straight on.
     fn beside(origin: Vec3, direction: Vec3, part: Vec3) -> Self {
         let boundary =
             Boundary { out: Some(direction), reflectance: 0.0, reflected: Vec3::ZERO, cosine: 0.0 };
@@ -275,7 +276,7 @@ mod tests {
         Solid { hierarchy, normals, rotation: Mat3::IDENTITY, size: 1.0, position: Vec3::ZERO }
     }
 
-    /// Where a ray from outside meets a solid.
+    /// The intersection of a ray from outside with a solid.
     fn meet(solid: &Solid, origin: Vec3, direction: Vec3) -> Option<Entry> {
         let turned = solid.rotation.transpose() * direction;
         let ray = Ray { origin: solid.local(origin), direction: turned };
@@ -285,7 +286,7 @@ mod tests {
         Some(Entry { position, view: -direction, normal, face_normal })
     }
 
-    /// The points, directions and parts that leave, and what remains.
+    /// The points, directions and parts that leave, and the part that remains.
     fn parts(solid: &Solid, interior: &Interior, entry: &Entry) -> (Vec<(Vec3, Vec3, Vec3)>, Vec3) {
         let mut parts = Vec::new();
         let remains = follow(solid, interior, entry, |p, d, part| parts.push((p, d, part)));

@@ -92,7 +92,7 @@ impl LightsOn<'_> {
         sum
     }
 
-    /// What comes through the body.
+    /// The light transmitted through the body.
     pub(super) fn through(&self, position: Vec3, view: Vec3, frame: &Frame) -> Through {
         let from = Viewed { position, view, frame, seed: self.seed() };
         self.through_by(self.lights.extended.samples, &from)

@@ -35,7 +35,7 @@ pub(super) struct Lights {
     pub(super) terms: TermSelection,
     /// True if NaN and excessive values are kept.
     pub(super) raw: bool,
-    /// True if what remains inside solid bodies takes the place of the light.
+    /// True if the light that remains inside solid bodies takes the place of the light.
     pub(super) remaining: bool,
     /// True once a sum was not finite.
     pub(super) odd: AtomicBool,
@@ -74,7 +74,7 @@ impl Lights {
         Self { raw: true, ..self }
     }
 
-    /// Replaces the light of surfaces by what remains inside solid bodies.
+    /// Replaces the light of surfaces by the light that remains inside solid bodies.
     pub(super) fn remaining(self) -> Self {
         Self { remaining: true, ..self }
     }

@@ -52,7 +52,7 @@ impl Prepared {
         }
     }
 
-    /// The triangles, or the reason why the mesh is no solid.
+    /// The triangles, or the reason why the mesh is not a solid.
     pub(super) fn body(&self) -> Result<&Hierarchy, &NotSolid> {
         let closed = || {
             let hierarchy = Hierarchy::new(&self.mesh);

@@ -286,7 +286,7 @@ struct Drawing<'a> {
     shot: Shot<'a>,
     /// Another way of drawing objects, if any.
     sight: Option<&'a Seen<'a>>,
-    /// True if what remains inside solid bodies takes the place of the light.
+    /// True if the light that remains inside solid bodies takes the place of the light.
     remaining: bool,
     samples: LightSamples,
     /// Anything not done by then is skipped.

@@ -53,7 +53,7 @@ pub(super) struct Viewed<'a> {
     pub(super) seed: u32,
 }
 
-/// What comes through.
+/// The transmitted light.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Through {
     /// The light that reaches the viewer.
@@ -62,10 +62,10 @@ pub(crate) struct Through {
     pub(crate) remaining: Vec3,
 }
 
-/// What is behind the boundary of a body, for explanations.
+/// The inside of a body behind its boundary, for explanations.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Inside {
-    /// Its mesh is no solid: it is a pane.
+    /// The body is a pane, because its mesh is not a solid.
     Pane(NotSolid),
     /// It is rough: each ray takes a way of its own, by chance.
     Chance,
@@ -75,7 +75,7 @@ pub enum Inside {
 }
 
 impl Inside {
-    /// What reaches the viewer if the surface lets this part of the light pass.
+    /// The inside as seen through a surface that transmits this part of the light.
     pub(crate) fn seen_by(mut self, part: Vec3) -> Self {
         if let Self::Ways(turns, remaining) = &mut self {
             turns
@@ -89,7 +89,7 @@ impl Inside {
 }
 
 impl Body {
-    /// What a ray of view meets inside, from where it enters.
+    /// The boundaries that a ray of view meets inside, from its point of entry on.
     pub(crate) fn inside(&self, position: Vec3, view: Vec3, normal: Vec3) -> Inside {
         match self.solid() {
             Err(why) => Inside::Pane(why.clone()),
@@ -107,7 +107,7 @@ impl Body {
         self.interior.is_rough() && self.shape.body().is_ok()
     }
 
-    /// The body as a solid, or the reason why its mesh is none.
+    /// The body as a solid, or the reason why its mesh is not one.
     fn solid(&self) -> Result<Solid<'_>, &NotSolid> {
         let hierarchy = self.shape.body()?;
         let Self { normals, rotation, size, position, .. } = *self;
@@ -242,7 +242,7 @@ impl Walk<'_> {
 
 /// The way of a ray at a rough boundary.
 struct Step {
-    /// Where it goes on.
+    /// The direction in which the ray goes on.
     l: Vec3,
     /// The part of the light from there.
     weight: f32,

@@ -207,7 +207,7 @@ pub(super) struct Part<'a> {
     edge: usize,
     /// The light known in the whole part, and the number of lights that it is from.
     same: Option<(Option<Sight>, usize)>,
-    /// The same for each pixel, if it is not known in the whole part.
+    /// The light of each pixel, with that number, if it is not known in the whole part.
     known: Vec<(Option<Sight>, usize)>,
     /// The radiance of the lights, if it is the same in the whole part.
     pub(super) throughout: Option<Vec3>,

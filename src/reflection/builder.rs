@@ -109,6 +109,12 @@ impl EquationPart {
     /// One part of an equation.
     #[must_use]
     pub const fn new(term: Term, text: &'static str) -> Self {
-        Self { term, text }
+        Self { term, text, along_path: false }
+    }
+
+    /// A part for light along the path of the ray of view.
+    #[must_use]
+    pub const fn along_path(term: Term, text: &'static str) -> Self {
+        Self { along_path: true, ..Self::new(term, text) }
     }
 }

@@ -120,8 +120,8 @@ impl ReflectionModel for CookTorrance {
     }
 }
 
-/// Sets n and k; a metal has no diffuse reflection. That of a dielectric depends on its pigments, so it
-/// stays.
+/// Sets n and k; a metal has no diffuse reflection. The diffuse reflection of a dielectric depends on its
+/// pigments, so it stays.
 pub(super) fn conductor_preset(material: &Measured) -> Vec<(&'static str, Value)> {
     let mut values = preset::conductor(material);
     if material.metal {

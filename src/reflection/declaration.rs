@@ -63,6 +63,8 @@ pub struct EquationPart {
     pub term: Term,
     /// The mathematics.
     pub text: &'static str,
+    /// True for light along a path, which has no value for a single direction of light: it is shown, not evaluated.
+    pub along_path: bool,
 }
 
 texts! {

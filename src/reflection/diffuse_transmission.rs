@@ -39,7 +39,7 @@ parameters! {
 }
 
 impl DiffuseTransmission {
-    /// What is reflected, and what passes through.
+    /// The reflected and the transmitted fraction of the light.
     fn shares(&self) -> [Vec3; 2] {
         let scale = (self.base_colour + self.transmittance_colour).max(Vec3::ONE).recip();
         [self.base_colour * scale, self.transmittance_colour * scale]

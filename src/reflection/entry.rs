@@ -204,7 +204,7 @@ impl ModelEntry {
         }
     }
 
-    /// How light passes through surfaces with these parameters.
+    /// The passage of light through surfaces with these parameters.
     #[must_use]
     pub fn passage(&self, values: &Values) -> Passage {
         self.passage.map_or_else(|| self.declaration.passage(), |of| of(values))

@@ -47,7 +47,7 @@ impl Factor {
         })
     }
 
-    /// The factor of what a rough boundary reflects.
+    /// The factor of the light that a rough boundary reflects.
     pub(super) fn of_boundary(self, interface: &Interface) -> Option<Vec3> {
         self.by(
             |cos_d| Vec3::splat(interface.reflectance(cos_d)),

@@ -40,7 +40,7 @@ parameters! {
     /// **Glass** — a solid, clear body: a ball, a lens, a gem, a paperweight.
     ///
     /// ```text
-    /// I = π F L(R) + π Σ over the ways out: (1 − F)(1 − F₁) F₂ F₃ … exp(−σ s) L(d)
+    /// I = π F L(R) + π Σ over the ways out: (1 − ρ₀) a₁ ρ₁ a₂ ρ₂ … a_k (1 − ρ_k) L(d_k),   a_k = exp(−σ s_k)
     /// σ = −ln(C_t)/d,   n(λ) = n + B (1/λ² − 1/λ_d²),   B = (n − 1)/(V_d (1/λ_F² − 1/λ_C²))
     /// ```
     ///
@@ -58,13 +58,15 @@ parameters! {
     ///
     /// **The way of light** follows the object's own mesh: at each boundary a part leaves, and the rest is reflected inside,
     /// at most 16 times. It leaves into the lights with extent and the surroundings; other objects are not seen through the
-    /// glass, and what has left does not come back. Light without extent shines through rough glass only.
+    /// glass, and what has left does not come back. Light without extent shines through rough glass only,
+    /// and a lamp inside the body is not seen: the path inside ends at the mesh.
     ///
     /// **The mesh must be closed**, with faces outwards. An open one is drawn as thin glass.
     ///
     /// **Smooth or rough**: α = r² below 0.001 counts as smooth.
     ///
-    /// **Laws**: those of the outer boundary, which reflects; a body that absorbs nothing is invisible in uniform light.
+    /// **Laws**: those of the outer boundary, which reflects; a smooth body that absorbs nothing is invisible in uniform
+    /// light; facets of a rough one hide a part.
     pub struct Glass {
         /// `n`.
         refractive_index: number = REFRACTIVE_INDEX,

@@ -412,7 +412,7 @@ fn compare<E>(
     Ok(())
 }
 
-/// Directional albedos, the largest with the finer quadrature; with what passes through.
+/// Directional albedos, the largest with the finer quadrature; with the transmitted light.
 fn integrate<E>(
     model: &ModelEntry,
     values: &Values,

@@ -45,7 +45,7 @@ pub trait ReflectionModel: ParameterSet + Copy {
     const LOBE: bool = false;
 
     /// Additional curves over a cosine that the model calculates once per surface, see
-    /// [`curves`](Self::curves). Its WGSL may call `curve_NAME(mu)` and `mean_NAME()` for each.
+    /// [`curves`](Self::curves). The WGSL of the model may call `curve_NAME(mu)` and `mean_NAME()` for each.
     const CURVES: &'static [NamedCurve] = &[];
 
     /// The curves as JavaScript, for web pages that change parameters without the program. A model with
@@ -57,12 +57,12 @@ pub trait ReflectionModel: ParameterSet + Copy {
     /// [`CURVES`](Self::CURVES). A model of a solid body without this has fixed parameters there, which the export reports.
     const INTERIOR_ON_PAGES: Option<&'static str> = None;
 
-    /// How light passes through surfaces with these parameters, for models whose parameters decide that; `None` for those
-    /// that are as [declared](Declaration::passage). Called for every object that changes, so it must be quick. The same as
-    /// [`passage`](Self::passage), without the model.
+    /// The passage of light through surfaces with these parameters, for models whose parameters decide that; `None` for
+    /// those that are as [declared](Declaration::passage). Called for every object that changes, so it must be quick.
+    /// Equivalent to [`passage`](Self::passage), without the model.
     const PASSAGE: Option<fn(&Values) -> Passage> = None;
 
-    /// How light passes through the surface.
+    /// The passage of light through the surface.
     fn passage(&self) -> Passage {
         Self::DECLARATION.passage()
     }
@@ -98,7 +98,7 @@ pub trait ReflectionModel: ParameterSet + Copy {
     }
 
     /// The part of the light from within a solid body that reaches the viewer through what lies on its surface, such as
-    /// paint that covers some of it. Its twin in WGSL is `entering`.
+    /// paint that covers some of it. The twin in WGSL is `entering`.
     fn entering(&self, _v: Vec3, _frame: &Frame) -> Vec3 {
         Vec3::ONE
     }

@@ -193,7 +193,7 @@ parameters! {
         thin_film_ior: number = THIN_FILM_IOR,
     }
     derived {
-        /// What depends on the parameters alone.
+        /// The values that depend on the parameters alone.
         prepared: Prepared = Prepared::of,
         /// E_1, E_d and E_c.
         boundaries: Albedos = Self::boundaries_of,
@@ -449,7 +449,7 @@ impl OpenPbr {
         Vec3::ONE.lerp(passed, self.coat_weight)
     }
 
-    /// What a thin sheet between two such boundaries reflects and transmits.
+    /// The reflection and transmission of a thin sheet between two such boundaries.
     fn sheet(&self, boundary: Vec3, cos_d: f32) -> Slab {
         let inside = refracted_cosine(cos_d, self.prepared.indices.y);
         slab(boundary, oblique(self.transmission_colour, inside))
@@ -473,7 +473,8 @@ impl OpenPbr {
         above
     }
 
-    /// The light that bounces between facets, `π f cos θ_l`, before it is coloured: what single reflection loses.
+    /// The light that bounces between facets, `π f cos θ_l`, before it is coloured: the light that single reflection
+    /// loses.
     fn bounced(&self, l: Vec3, v: Vec3) -> f32 {
         let [of_l, of_v] = [l, v].map(|d| missing(self.boundaries.at(d.z).x));
         let shape = of_v * of_l * l.z / missing(self.boundaries.mean().x).max(1e-6);
@@ -550,12 +551,12 @@ impl OpenPbr {
     }
 }
 
-/// How light passes through surfaces with these parameters.
+/// The passage of light through surfaces with these parameters.
 fn passage_with(values: &Values) -> Passage {
     passage(values.number(&TRANSMISSION_WEIGHT), values.choice(&THIN_WALLED) != 0)
 }
 
-/// The same, from the two parameters that decide it.
+/// The passage of light, from the two parameters that decide it.
 fn passage(weight: f32, thin: bool) -> Passage {
     match (weight > 0.0, thin) {
         (false, _) => Passage::NONE,
@@ -564,7 +565,7 @@ fn passage(weight: f32, thin: bool) -> Passage {
     }
 }
 
-/// What an albedo leaves.
+/// The part of the light that an albedo leaves.
 fn missing(albedo: f32) -> f32 {
     (1.0 - albedo).max(0.0)
 }

@@ -1,12 +1,12 @@
-//! How light passes through a surface.
+//! The passage of light through a surface.
 
 use std::ops::BitOr;
 
 use super::Declaration;
 
-/// How light passes through surfaces: what a renderer must be ready for. Of most models it is
-/// [declared](Declaration::passage); where it depends on the parameters, a shader has only what its materials need, so
-/// that an opaque one costs nothing.
+/// The passage of light through surfaces, for which a renderer must be ready. Most models
+/// [declare](Declaration::passage) it; if it depends on the parameters, a shader contains only the code that its
+/// materials need, so that an opaque one costs nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Passage {
     /// True if light from below the surface counts.
@@ -32,7 +32,7 @@ impl Passage {
     }
 }
 
-/// What either of two surfaces needs.
+/// The needs of two surfaces together.
 impl BitOr for Passage {
     type Output = Self;
 

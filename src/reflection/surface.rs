@@ -2,7 +2,7 @@
 
 use std::{f32::consts::PI, sync::OnceLock};
 
-use glam::{Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 
 use super::{declaration::Ambient, factor::Factor, model::ReflectionModel, readout::Readout};
 use crate::{
@@ -47,6 +47,17 @@ pub trait Surface: Send + Sync {
     }
     /// The response to uniform light of 1 lx, from a formula or the albedo.
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3;
+    /// The part of uniform light above the surface that is mirrored to the viewer, without spreading.
+    fn mirrored(&self, v: Vec3, frame: &Frame) -> Vec3 {
+        let sharp = self.sharp(v, frame);
+        sharp.iter().filter(|sharp| !sharp.transmitted).map(|sharp| sharp.share).sum()
+    }
+    /// The directional albedo for a viewer in the local frame: the part of uniform light above the surface that reaches
+    /// it, spread or [mirrored](Self::mirrored).
+    fn directional_albedo(&self, v: Vec3) -> DVec3 {
+        let frame = &Frame::LOCAL;
+        albedo::directional(|l| self.response(l, v, frame), v, frame) + self.mirrored(v, frame).as_dvec3()
+    }
     /// The directional albedo over the view, for models that declare [`Ambient::Albedo`].
     fn curve(&self) -> Option<AlbedoCurve>;
     /// See [`ReflectionModel::lobe`].

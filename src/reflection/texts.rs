@@ -12,6 +12,9 @@
 //! total: I = I_d + I_s
 //! diffuse: I_d = (1 − k_s) C_b N·L
 //!
+//! # Light that does not spread, along the path of the ray of view:
+//! path specular: I_s = π F(N·V) L(R)
+//!
 //! # A quantity of the equation, its label, its source, and the choices with which it is used:
 //! where: c = 1/N·V
 //! is: division by both cosines, times N·L
@@ -36,7 +39,7 @@ struct Line {
     rest: &'static str,
 }
 
-/// What is before a mark, and what is after it.
+/// The text before a mark, and the text after it.
 const fn cut(text: &'static str, mark: &[u8]) -> (&'static str, &'static str) {
     let bytes = text.as_bytes();
     let mut at = 0;
@@ -120,17 +123,19 @@ pub(super) const fn lists<const N: usize>(
 pub(super) const fn equation<const N: usize>(text: &'static str) -> ([EquationPart; N], usize) {
     let (mut all, mut count, mut rest) = ([EquationPart::new(Term::Total, ""); N], 0, text);
     while let Some(Line { key, text, rest: after }) = line(rest) {
-        let term = match key {
-            b"total" => Some(Term::Total),
-            b"ambient" => Some(Term::Ambient),
-            b"diffuse" => Some(Term::Diffuse),
-            b"specular" => Some(Term::Specular),
-            b"transmitted" => Some(Term::Transmitted),
+        let part = match key {
+            b"total" => Some(EquationPart::new(Term::Total, text)),
+            b"ambient" => Some(EquationPart::new(Term::Ambient, text)),
+            b"diffuse" => Some(EquationPart::new(Term::Diffuse, text)),
+            b"specular" => Some(EquationPart::new(Term::Specular, text)),
+            b"transmitted" => Some(EquationPart::new(Term::Transmitted, text)),
+            b"path specular" => Some(EquationPart::along_path(Term::Specular, text)),
+            b"path transmitted" => Some(EquationPart::along_path(Term::Transmitted, text)),
             _ => None,
         };
-        if let Some(term) = term {
+        if let Some(part) = part {
             if count < N {
-                all[count] = EquationPart::new(term, text);
+                all[count] = part;
             }
             count += 1;
         }
@@ -179,7 +184,7 @@ impl Declaration {
                 b"summary" => all.summary = text,
                 b"laws" => all.laws = laws(text),
                 b"synonyms" | b"total" | b"ambient" | b"diffuse" | b"specular" | b"transmitted" => {}
-                b"where" | b"is" | b"by" | b"when" => {}
+                b"path specular" | b"path transmitted" | b"where" | b"is" | b"by" | b"when" => {}
                 _ => panic!("a line of the texts begins with another word"),
             }
             rest = after;
@@ -235,7 +240,7 @@ mod tests {
 
     const TEXT: &str = "author: A. Author 2000\nsource: A. Author (2000): Title\nsummary: It shines.\n\
         synonyms: metal, brushed metal\nlaws: reciprocal, energy conserving\n\n# The equation.\n\
-        total: I = I_d + I_t\ndiffuse: I_d = c F\ntransmitted: I_t = c\n\n\
+        total: I = I_d + I_t\ndiffuse: I_d = c F\npath transmitted: I_t = c\n\n\
         where: c = 1\nis: first: one\nby: B. Author 2001\nwhen: form = a, b\nwhen: shape = d\n\n\
         where: c = 2\nis: second\n\nwhere: F\nis: third\nwhen: form = e\n";
 
@@ -249,10 +254,10 @@ mod tests {
         assert_eq!((d.summary, d.synonyms), ("It shines.", &["metal", "brushed metal"][..]));
         assert_eq!(d.laws, Laws { reciprocal: true, energy_conserving: true, non_negative: false });
         let (parts, _) = equation::<3>(TEXT);
-        assert_eq!(
-            parts.map(|part| (part.term, part.text)),
-            [(Term::Total, "I = I_d + I_t"), (Term::Diffuse, "I_d = c F"), (Term::Transmitted, "I_t = c")]
-        );
+        let path = EquationPart::along_path(Term::Transmitted, "I_t = c");
+        let [total, diffuse] = [(Term::Total, "I = I_d + I_t"), (Term::Diffuse, "I_d = c F")];
+        let [total, diffuse] = [total, diffuse].map(|(term, text)| EquationPart::new(term, text));
+        assert_eq!(parts, [total, diffuse, path]);
         let (all, count) = quantities::<3>(TEXT, LISTS);
         assert_eq!(count, 3);
         let first = Quantity::new("c = 1", "first: one").source("B. Author 2001");

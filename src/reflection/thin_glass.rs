@@ -92,7 +92,7 @@ impl ThinGlass {
         (alpha >= MINIMUM_ALPHA).then_some(alpha)
     }
 
-    /// What the pane reflects and transmits at an angle of incidence.
+    /// The reflection and transmission of the pane at an angle of incidence.
     fn pane(&self, cosine: f32) -> Slab {
         let n = self.refractive_index;
         let left = oblique(self.transmittance_colour, refracted_cosine(cosine, n));

@@ -31,7 +31,7 @@ use crate::{
     text::template::{chosen, filled},
 };
 
-/// A generated part of sources. Its parts in turn have names that are separated by spaces.
+/// A generated part of sources. The names of its parts are separated by spaces.
 pub(crate) fn part(names: &str, places: &[(&str, &dyn Display)]) -> String {
     let wanted = |name: &str| names.split(' ').any(|wanted| wanted == name);
     filled(&chosen(include_str!("parts.wgsl"), wanted), places)
@@ -74,8 +74,8 @@ pub fn named_curves(model: &ModelEntry) -> String {
     text
 }
 
-/// The constant that tells a model whose parameters decide it, or one from a file, whether light passes through the surfaces that are drawn. What
-/// only such light needs is then no part of the shaders of other surfaces.
+/// The constant that tells a model whose parameters decide it, or one from a file, whether light passes through the
+/// surfaces that are drawn. The shaders of other surfaces then lack the code for such light.
 #[must_use]
 pub(crate) fn passes(model: &ModelEntry, passage: Passage, text: &str) -> String {
     if model.passage_varies() || text.contains("LIGHT_PASSES") {

@@ -17,7 +17,7 @@ pub struct RegistrationError {
     pub id: &'static str,
     /// The type in Rust.
     pub type_name: &'static str,
-    /// The error, where it is, and what would be right.
+    /// The error, its position, and the remedy.
     pub what: String,
     /// The error with its position in the file, if it is in the WGSL.
     pub shader: Option<Box<ShaderProblem>>,

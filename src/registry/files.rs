@@ -12,7 +12,7 @@ use crate::{reflection::ModelEntry, watch::Print};
 /// A model from a file.
 #[derive(Clone, Debug)]
 pub struct CustomModel {
-    /// The entry. Its [`Source`](crate::shader::Source) is `models/ID.wgsl`; the text built into that is a
+    /// The entry. The [`Source`](crate::shader::Source) is `models/ID.wgsl`; the text built into that is a
     /// fallback, drawn as long as the file has no valid version.
     pub entry: ModelEntry,
     /// The file.

@@ -46,7 +46,7 @@ pub struct Reported {
     tried: Option<Tick>,
 }
 
-/// Adopts what other systems changed in the entities of parts, spawned and despawned. Exclusive, since each
+/// Adopts the changes of other systems to the entities of parts, spawned and despawned. Exclusive, since each
 /// type has a different component.
 pub fn absorb(world: &mut World, mut reported: Local<Reported>) {
     let touched = noticed::take(world);

@@ -60,7 +60,7 @@ pub(super) fn plugin(app: &mut App) {
         );
 }
 
-/// The pass that puts a background behind what the tone curve gave.
+/// The pass that puts a background behind the tone-mapped picture.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct BackdropSystems;
 
@@ -226,7 +226,7 @@ fn lift(
     }
 }
 
-/// Puts the background behind what the tone curve gave.
+/// Puts the background behind the tone-mapped picture.
 fn put(
     view: ViewQuery<Parts>,
     device: Res<RenderDevice>,

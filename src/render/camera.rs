@@ -31,7 +31,7 @@ pub struct PictureCamera {
     pub fits_width: bool,
 }
 
-/// Marks a picture for display, which was spawned with [`Hdr`]. That component is added or removed as the
+/// Marks a picture for display, which was spawned with [`Hdr`]. The component is added or removed as the
 /// display settings require half floats.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct ForDisplay {

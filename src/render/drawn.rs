@@ -9,7 +9,7 @@ use crate::{optics::colour::Encoding, reflection::Passage, registry::LightSet};
 pub struct Drawn {
     pub(super) model: String,
     pub(super) shading: String,
-    /// How light passes through its surface.
+    /// The passage of light through its surface.
     pub(super) passage: Passage,
     pub(super) encoding: Encoding,
     pub(super) everywhere: bool,

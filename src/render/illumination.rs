@@ -39,8 +39,8 @@ pub const LIGHT_BYTES: usize = 48;
 /// Initial capacity of the parameter buffer, in words: four for each light.
 const WORDS: usize = 4 * MAX_LIGHTS;
 
-/// Maximum number of ways through a rough body for the channel of the light that remains, whose colours are no mean of
-/// others, so that one frame takes them all.
+/// Maximum number of ways through a rough body for the channel of the light that remains, whose colours are not a mean
+/// of others, so that one frame takes them all.
 pub const REMAINING_SAMPLES: u32 = 32;
 
 /// The displayed terms of the equation.
@@ -243,7 +243,7 @@ pub fn illumination_bytes(
     (bytes, places.words(lights).into_iter().flat_map(u32::to_le_bytes).collect())
 }
 
-/// What shaders must have too.
+/// The layout that shaders must match.
 #[cfg(test)]
 pub(crate) mod layout {
     use super::{HEADER_BYTES, SAMPLE_BYTES, SAMPLES_AT};

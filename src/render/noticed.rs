@@ -1,7 +1,7 @@
-//! What others changed in the entities of parts. [`absorb`](super::absorb::absorb) [takes](take) it, and [gives
-//! back](give_back) what it does not absorb. [`reconcile`](super::reconcile::reconcile) writes to few entities:
-//! it [keeps](keep) what others changed in them before, and [lists](wrote) them afterwards. So neither
-//! sees what it or the other wrote, and all parts are searched only once per frame.
+//! Changes that others made in the entities of parts. [`absorb`](super::absorb::absorb) [takes](take) them, and
+//! [gives back](give_back) those that it does not absorb. [`reconcile`](super::reconcile::reconcile) writes to
+//! few entities: it [keeps](keep) earlier changes by others to them, and [lists](wrote) them afterwards. So
+//! neither sees its own changes or those of the other, and all parts are searched only once per frame.
 
 use bevy::{
     camera::visibility::Visibility,
@@ -35,7 +35,7 @@ pub(super) struct Watches {
     others: Vec<Watch>,
     /// The tick of the last changes that are known.
     known: Tick,
-    /// Entities that `reconcile` wrote later, sorted. Their changes up to the tick `at` are known too.
+    /// Entities that `reconcile` wrote later, sorted. Changes to them up to the tick `at` are known too.
     written: Vec<Entity>,
     at: Tick,
 }
@@ -55,7 +55,7 @@ impl Watches {
         self.others.push(component);
     }
 
-    /// Finds what changed after a tick, in all entities or in some.
+    /// Finds the changes after a tick, in all entities or in some.
     fn find(&mut self, world: &mut World, after: Tick, among: Option<&[Entity]>, found: &mut Touched) {
         world.last_change_tick_scope(after, |world| {
             self.transforms.iter_mut().for_each(|watch| watch(world, among, &mut found.moved));
@@ -72,7 +72,7 @@ fn with_watches<T>(world: &mut World, act: impl FnOnce(&mut World, &mut Watches)
     Some(answer)
 }
 
-/// Takes what others changed. It is known from now on.
+/// Takes the changes by others. It is known from now on.
 pub(super) fn take(world: &mut World) -> Touched {
     let taken = with_watches(world, |world, watches| {
         let Touched { entities, moved, rested } = std::mem::take(&mut *world.resource_mut::<Touched>());
@@ -109,12 +109,12 @@ pub(super) fn begin(world: &mut World) -> Touched {
     }
 }
 
-/// Keeps what others changed in entities before they are written.
+/// Keeps the changes by others to entities before these are written.
 pub(super) fn keep(world: &mut World, entities: &[Entity], touched: &mut Touched) {
     with_watches(world, |world, watches| watches.find(world, watches.known, Some(entities), touched));
 }
 
-/// Ends writing: gives back what was noticed, and lists the written entities.
+/// Ends writing: gives back the noticed changes, and lists the written entities.
 pub(super) fn wrote(world: &mut World, touched: Touched, mut written: Vec<Entity>) {
     with_watches(world, |world, watches| {
         written.sort_unstable();

@@ -49,8 +49,8 @@ impl Component for PartId {
 }
 
 with_defaults! {
-    /// A light of the scene. Required by the component of its type. Its position is the translation of the
-    /// `Transform`, and it shines along −z of its rotation.
+    /// A light of the scene. Required by the component of its type. The position is the translation of the
+    /// `Transform`, and the light shines along −z of its rotation.
     #[derive(Clone, Component, Copy, Debug, PartialEq, Reflect)]
     #[reflect(Component, Default, Clone, Debug, PartialEq)]
     #[require(Transform, Visibility)]
@@ -97,7 +97,7 @@ impl Default for LightPower {
     }
 }
 
-/// An object of the scene. Required by the component of its type. Its size is the scale of the `Transform`,
+/// An object of the scene. Required by the component of its type. The size is the scale of the `Transform`,
 /// which must be uniform; `Visibility::Hidden` hides it.
 #[derive(Clone, Component, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default, Clone, Debug, PartialEq)]

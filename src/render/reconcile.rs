@@ -65,14 +65,14 @@ fn align<T: PartialEq>(
 struct Writer<'w> {
     world: &'w mut World,
     types: PartTypes,
-    /// What others changed.
+    /// The changes made by others.
     touched: Touched,
     /// The entities of the parts.
     written: Vec<Entity>,
 }
 
 impl Writer<'_> {
-    /// Keeps what others changed in entities that are written next.
+    /// Keeps the changes by others to entities that are written next.
     fn keep(&mut self, entities: &[Entity]) {
         noticed::keep(self.world, entities, &mut self.touched);
     }

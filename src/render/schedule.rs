@@ -7,7 +7,7 @@ use bevy::{
 
 /// The schedule of the lab's systems in a frame; runs after Bevy's `Update`.
 ///
-/// If two of its systems access the same data in an undefined order, a warning at the start names both.
+/// A warning at the start names any two of its systems that access the same data in an undefined order.
 /// [`strict`] turns this into an error; the systems of the lab have no such pairs, which a test checks.
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LabFrame;

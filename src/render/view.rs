@@ -1,6 +1,6 @@
 //! Views: pictures in separate textures, drawn again only when something that they show has changed.
 //!
-//! A view is a camera with a [`View`]. Its texture has the displayed size, and keeps the last picture while
+//! A view is a camera with a [`View`]. The texture has the displayed size, and keeps the last picture while
 //! nothing is drawn, so that windows can show it as often as they like.
 
 use bevy::{

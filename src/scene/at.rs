@@ -74,8 +74,8 @@ impl Place {
         matches!(self.declared, Declared::Field(Field { kind: Kind::Id(_), .. }))
     }
 
-    /// The value in a text: a number, a word, three numbers such as `[1, 2, 3]`, a colour such as `#ff8800`. Its range is
-    /// checked [in a scene](Scene::with).
+    /// The value in a text: a number, a word, three numbers such as `[1, 2, 3]`, a colour such as `#ff8800`. The range
+    /// is checked [in a scene](Scene::with).
     ///
     /// # Errors
     /// Returns the path, the text and the rule that it breaks.
@@ -336,7 +336,8 @@ impl Scene {
         if problems.is_empty() { Ok(scene) } else { Err(problems) }
     }
 
-    /// The same, without the rules of scenes: with the problems of values that have no place in it.
+    /// As [`with`](Self::with), but without checking the rules of scenes: returns the problems of values that have no
+    /// place in the scene.
     pub(crate) fn with_unchecked<'a>(
         &self,
         values: impl IntoIterator<Item = (&'a Place, &'a Value)>,

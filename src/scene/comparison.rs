@@ -108,6 +108,12 @@ impl Layout {
         matches!(self.shows(), Views::All)
     }
 
+    /// True if it has an edge between the views that moves.
+    #[must_use]
+    pub const fn has_edge(self) -> bool {
+        matches!(self.shows(), Views::Two)
+    }
+
     /// True if it is a map of differences.
     #[must_use]
     pub const fn is_map(self) -> bool {
@@ -151,6 +157,13 @@ fn letters() -> Vec<[&'static str; 3]> {
 }
 
 impl Comparison {
+    /// The same with the edge of a wipe at another place, or at the nearest one that is legal.
+    #[must_use]
+    pub fn with_split(self, split: f32) -> Self {
+        let limits = Self::split.limits();
+        Self { split: f64::from(split).clamp(limits.min, limits.max) as f32, ..self }
+    }
+
     /// The views that the layout shows for a scene with this number of variants, in the order of their
     /// positions.
     #[must_use]

@@ -17,7 +17,7 @@ use crate::{
 };
 
 choice! {
-    /// What the picture shows behind everything.
+    /// The background of the picture, behind everything.
     Background {
         #[default]
         Environment "environment" "environment" "What visible light at infinity shows: environments and suns. Where there is none, a neutral grey, which tone mapping changes.",

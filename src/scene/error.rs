@@ -94,7 +94,7 @@ pub enum LoadError {
         name: String,
         /// The position where reading stopped.
         place: Place,
-        /// What was expected there.
+        /// The content that was expected there.
         what: String,
     },
     /// A picture without a readable scene.

@@ -29,7 +29,7 @@ macro_rules! texts {
 }
 
 /// The scenes, from the simplest to those that measure something.
-const TEXTS: [(&str, &str); 34] = texts![
+const TEXTS: [(&str, &str); 35] = texts![
     "default.json",
     "shapes_and_lights.json",
     "superellipsoids.json",
@@ -47,6 +47,7 @@ const TEXTS: [(&str, &str); 34] = texts![
     "softbox_and_lamps.json",
     "studio.json",
     "under_the_sky.json",
+    "in_a_room.json",
     "glass_thin_and_solid.json",
     "glass_ball.json",
     "broken_straw.json",

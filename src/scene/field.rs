@@ -215,8 +215,8 @@ impl Field {
         }
     }
 
-    /// Checks a value by itself. Whether a position is in the room, and parameters are known, is decided by
-    /// [`check`](mod@super::check).
+    /// Checks a value by itself. [`check`](mod@super::check) decides whether a position is in the room and
+    /// whether parameters are known.
     ///
     /// # Errors
     /// Returns the broken rule as a clause.

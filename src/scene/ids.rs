@@ -34,9 +34,9 @@ texts! {
 /// Something registered.
 #[derive(Clone, Copy, Debug)]
 pub struct Listed {
-    /// Its id.
+    /// The id.
     pub id: &'static str,
-    /// Its name for people.
+    /// The name for people.
     pub name: &'static str,
     /// One sentence about it.
     pub summary: &'static str,
@@ -74,7 +74,7 @@ impl Ids {
         }
     }
 
-    /// What an id refers to.
+    /// The entry that an id refers to.
     #[must_use]
     pub fn find(self, registry: &Registry, id: &str) -> Option<Listed> {
         self.all(registry).find(|listed| listed.id == id)

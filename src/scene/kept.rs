@@ -15,12 +15,12 @@ impl Scene {
         (0..self.objects.len()).flat_map(|i| self.bring_one_into_range(i, &entry, registry)).collect()
     }
 
-    /// The same for one object.
+    /// [`bring_into_range`](Self::bring_into_range) for one object.
     pub(super) fn bring_object_into_range(&mut self, i: usize, registry: &Registry) -> Vec<String> {
         self.bring_one_into_range(i, &|scene: &Self, i| scene.place_in_file(i).0, registry)
     }
 
-    /// The same for one object; `entry` is the index in a file of an object.
+    /// Brings the material of one object into range; `entry` gives the index in a file of an object.
     fn bring_one_into_range(
         &mut self,
         i: usize,

@@ -53,6 +53,7 @@ mod views;
 mod write;
 
 pub use comparison::Comparison;
+pub use declaration::Declared;
 pub use display::{Background, Display};
 pub use field::Field;
 pub use light::{Light, emitter, has_extent, record, shines_from_everywhere};
@@ -129,7 +130,7 @@ impl Scene {
         registry.light_set(self.lights.iter().map(|light| light.light_type.as_str()))
     }
 
-    /// How light passes through the surfaces of the scene's objects with a model, all together.
+    /// The passage of light through the surfaces of all the scene's objects with a model.
     #[must_use]
     pub fn passage_of(&self, model: &ModelEntry) -> Passage {
         let own = self.objects.iter().filter(|object| self.model_of(object) == model.declaration.id);

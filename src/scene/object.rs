@@ -51,7 +51,7 @@ impl PartialEq for Repetition {
 }
 
 impl part::Held for Repetition {
-    /// That of an entry; a copy alone is written as a single object.
+    /// The row of an entry; a copy alone is written as a single object.
     fn parts(&self) -> Vec<&dyn Fields> {
         match self {
             Self::Entry(repeat) => vec![&**repeat],

@@ -124,7 +124,7 @@ pub trait Held {
         None
     }
 
-    /// The same to be changed.
+    /// The values of parameters, to be changed.
     fn values_mut(&mut self) -> Option<&mut Values> {
         None
     }
@@ -211,9 +211,9 @@ pub trait Fields {
 
 /// A declared part.
 pub trait Structure: Fields + Default {
-    /// Its name in messages: "the observer".
+    /// Name of the part in messages: "the observer".
     const WHAT: &'static str;
-    /// Its documentation.
+    /// Documentation of the part.
     const ABOUT: &'static str;
     /// The fields, in the order of writing.
     const FIELDS: &'static [&'static Field];

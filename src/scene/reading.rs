@@ -27,7 +27,7 @@ pub enum Defaults {
     Refuse,
 }
 
-/// How a scene is read. [`Defaults`] alone let it name no file outside its folder.
+/// Options for reading a scene. Made of [`Defaults`] alone, they allow it to name no file outside its folder.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading<'a> {
     /// The treatment of missing parts.

@@ -126,8 +126,8 @@ impl Repeat {
         place as usize
     }
 
-    /// Gives lists of values as many as there are steps. What is cut off stays in `known`, from where it comes back; what no
-    /// list had follows from `next`, and otherwise the last value is repeated.
+    /// Gives lists of values as many as there are steps. Values that are cut off stay in `known`, from where they come
+    /// back; values that no list had follow from `next`, and otherwise the last value is repeated.
     pub fn fit_lists(&mut self, known: &mut Lists, next: impl Fn(&Varied) -> Option<Value>) {
         let steps = [Along::Columns, Along::Rows, Along::All].map(|along| (along, self.steps(along)));
         for varied in self.vary.iter_mut().filter(|varied| !varied.values.is_empty()) {

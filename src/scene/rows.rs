@@ -30,9 +30,9 @@ const MOST_PROBLEMS: usize = 200;
 /// A value of an object that may differ from copy to copy.
 #[derive(Clone, Copy, Debug)]
 pub struct Variable {
-    /// Its key within the object.
+    /// The key within the object.
     pub key: Key,
-    /// Its declaration.
+    /// The declaration.
     pub declared: Declared,
 }
 
@@ -90,7 +90,7 @@ impl Variable {
         Err(rule.to_owned() + &did_you_mean(&path.replace("color", "colour"), spellings))
     }
 
-    /// Its path within the object.
+    /// The path within the object.
     #[must_use]
     pub fn path(self) -> Cow<'static, str> {
         match self.key {
@@ -113,6 +113,35 @@ impl Variable {
         let usable = ends.iter().all(|end| limits.allows(*end) && end.abs() < 1e6);
         let [from, to] = ends.map(|end| Some(end as f32));
         usable.then(|| Varied { parameter: self.path().into_owned(), from, to, ..Varied::default() })
+    }
+
+    /// The words that it can be, if it is a choice: ids with their names.
+    #[must_use]
+    pub fn words(self, registry: &Registry) -> Vec<(&'static str, &'static str)> {
+        match self.declared {
+            Declared::Field(Field { kind: Kind::Id(ids), .. }) => {
+                ids.all(registry).map(|listed| (listed.id, listed.name)).collect()
+            }
+            Declared::Field(Field { kind: Kind::Flag(_), .. }) => vec![("true", "yes"), ("false", "no")],
+            Declared::Field(_) => Vec::new(),
+            Declared::Parameter(p) => p.kind.options().to_vec(),
+        }
+    }
+
+    /// A list of so many values, to be changed one by one: choices in their order from the value of now on, and otherwise that
+    /// value.
+    #[must_use]
+    pub fn listed(self, now: Value, count: usize, registry: &Registry) -> Varied {
+        let words = self.words(registry);
+        let first = words.iter().position(|(id, _)| matches!(&now, Value::Choice(word) if word == id));
+        // Not every type has the parameters of another: a mesh needs a file. Yes and no take no turns.
+        let first = first.filter(|_| self.key != Object::object_type.into() && words.len() > 2);
+        let value = |i: usize| match first {
+            Some(first) => Value::Choice(words[(first + i) % words.len()].0.into()),
+            None => now.clone(),
+        };
+        let values = (0..count).map(value).collect();
+        Varied { parameter: self.path().into_owned(), values, ..Varied::default() }
     }
 
     /// The value that follows listed ones in equal steps; `None` if their steps differ, or it would not be legal.
@@ -218,12 +247,12 @@ fn of_fields(part: &dyn Fields, at: &Path, registry: &Registry, problems: &mut V
 /// The copies for which an entry stands. An object without a row is its only one.
 ///
 /// # Errors
-/// Returns the problems of the row, with their paths from the object on. What the copies have is not checked.
+/// Returns the problems of the row, with their paths from the object on. The values of the copies are not checked.
 pub fn copies(entry: &Object, registry: &Registry) -> Result<Vec<Object>, Vec<Problem>> {
     copies_of(&Arc::new(entry.clone()), registry)
 }
 
-/// The same for an entry that the copies share.
+/// The copies of an entry, which they share.
 fn copies_of(entry: &Arc<Object>, registry: &Registry) -> Result<Vec<Object>, Vec<Problem>> {
     let Repetition::Entry(repeat) = &entry.repeat else { return Ok(vec![(**entry).clone()]) };
     let at = Path::root().key(Object::repeat.key);
@@ -306,7 +335,7 @@ fn position(first: Vec3, repeat: &Repeat, number: u32) -> Vec3 {
     at(first, repeat, [Along::Columns, Along::Rows].map(|along| repeat.place(number, along)))
 }
 
-/// The position of the copy in a column and a row. Its coordinates are the numbers that a person would calculate.
+/// The position of the copy in a column and a row. The coordinates are the numbers that a person would calculate.
 fn at(first: Vec3, repeat: &Repeat, place: [usize; 2]) -> Vec3 {
     let [column, row] = place.map(|steps| steps as f64);
     let along = |axis: usize| {
@@ -507,7 +536,7 @@ impl Scene {
         if problems.is_empty() { Ok(scene) } else { Err(problems) }
     }
 
-    /// The same, where an entry whose row has problems stays a single object.
+    /// As [`expanded`](Self::expanded), but an entry whose row has problems stays a single object.
     pub(super) fn expanded_as_far(mut self, registry: &Registry) -> (Self, Vec<Problem>) {
         if !self.objects.iter().any(|object| matches!(object.repeat, Repetition::Entry(_))) {
             return (self, Vec::new());

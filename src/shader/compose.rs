@@ -41,7 +41,7 @@ pub const LIGHTS: Source = wgsl!("lights.wgsl");
 pub const SAMPLING: Source = wgsl!("sampling.wgsl");
 /// The part of the light loop for light with extent.
 pub const EXTENDED: Source = wgsl!("extended.wgsl");
-/// Where a ray meets a mesh.
+/// The intersection of a ray with a mesh.
 pub const HIERARCHY: Source = wgsl!("hierarchy.wgsl");
 /// The way of light within a solid, after [`HIERARCHY`].
 pub const INSIDE: Source = wgsl!("inside.wgsl");

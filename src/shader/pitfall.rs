@@ -95,7 +95,7 @@ impl Search<'_> {
         })
     }
 
-    /// What is wrong with a loop, if it has no end.
+    /// The reason why a loop is endless, if it is.
     fn endless(&self, body: &Block, continuing: &Block, break_if: Option<Expr>) -> Option<&'static str> {
         let written = self.written(&[body, continuing]);
         let mut exits = Exits::default();

@@ -131,7 +131,7 @@ pub struct Varying {
     pub colour: Vec3,
 }
 
-/// A shading model: the points at which the light loop runs, with their normals and tangents. Its parameters
+/// A shading model: the points at which the light loop runs, with their normals and tangents. The parameters
 /// are in the materials of objects, next to those of reflection models, with which they are shared by name.
 pub trait ShadingModel: ParameterSet {
     /// Name, source, stage, shader.

@@ -1,11 +1,11 @@
 //! Solids: meshes that part inside from outside, which light can pass through.
 //!
 //! Vertices in one place count as one, and triangles that lose their area by that are left out, so poles and the
-//! repeated vertices of files do no harm. A solid's edges each lie between as many triangles that run along them one way
-//! as the other: two, or more where parts of the surface touch. Along every line the way goes out as often as in, and never
-//! in twice: parts face outwards, lie beside each other, or bound a cavity within another part. That is tested along
-//! some lines alone, one of them through each of the first parts: a surface that passes through itself is found unless it
-//! does so in less than about a hundredth of the picture, or less deep than a thousandth of the size.
+//! repeated vertices of files do no harm. A solid's edges each lie between as many triangles that run along them one
+//! way as the other: two, or more where parts of the surface touch. Along every line the way goes out as often as in,
+//! and never in twice: parts face outwards, lie beside each other, or bound a cavity within another part. This is
+//! tested only along some lines, one of them through each of the first parts: a surface that passes through itself is
+//! found unless it does so in less than about a hundredth of the picture, or less deep than a thousandth of the size.
 
 use std::collections::HashMap;
 
@@ -28,7 +28,7 @@ const AIMED: usize = 256;
 const CROSSINGS: usize = 4096;
 /// Length within which a line may be inside twice, or outside twice: rounding, where parts touch.
 const SHALLOW: f32 = 1e-3;
-/// Volume of a part, relative to the power of its area, that is no volume but rounding.
+/// Largest volume of a part, relative to the power of its area, that is mere rounding.
 const FLAT: f64 = 1e-7;
 /// Distance of the second line that must agree before an error is reported.
 const BESIDE: f32 = 1e-4;
@@ -56,7 +56,7 @@ pub struct Rim {
     pub centre: Vec3,
 }
 
-/// Why a mesh is no solid; all numbers are those of edges, except where it says parts.
+/// The reason why a mesh is not a solid; all numbers count edges, except where parts are named.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotSolid {
     /// Without triangles.
@@ -369,7 +369,7 @@ mod tests {
         check(mesh, &Hierarchy::new(mesh))
     }
 
-    /// What is wrong with a mesh.
+    /// The result of checking a mesh, as text.
     fn said(mesh: &PolygonMesh) -> String {
         of(mesh).map_or_else(|problem| problem.to_string(), |solid| format!("{solid:?}"))
     }

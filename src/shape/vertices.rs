@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::PolygonMesh;
 
-/// What an attribute of vertices says.
+/// The meaning of an attribute of vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Says {
     /// The position.

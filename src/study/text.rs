@@ -1,9 +1,9 @@
 //! The texts of the report: HTML with places for values.
 //!
 //! `{name}` is a value as it is, `{name:2}` a number with two decimals, `{name:%1}` in per cent with one, `{name:±}` a
-//! difference in per cent with its sign. What stands between `{if name}` and `{end}`, perhaps with an `{else}`, is there if
-//! a value is true. `{figure}` and `{table}` are the next numbers of these. Line breaks are left out, and what
-//! indents lines.
+//! difference in per cent with its sign. The text between `{if name}` and `{end}`, perhaps with an `{else}`, is kept if
+//! a value is true. `{figure}` and `{table}` are the next numbers of these. Line breaks and the indentation of lines
+//! are left out.
 
 use maud::{Markup, PreEscaped, html};
 

@@ -1,4 +1,4 @@
-//! What a sweep varies: values by path, views, copies of a row, and ways through the room.
+//! The axes of a sweep: values by path, views, copies of a row, and ways through the room.
 
 use glam::Vec3;
 
@@ -24,13 +24,13 @@ const MAX_COPIES: usize = 256;
 /// One direction of a sweep: values that are set together, step by step.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// The name of what is varied: "roughness".
+    /// The name of the varied quantity: "roughness".
     pub name: String,
     /// The value of each step, in words.
     pub labels: Vec<Words>,
     /// True if something moves: films then need no values in the picture.
     pub moves: bool,
-    /// Its word in names of files, and its values there.
+    /// The word for the axis in file names, and the values there.
     pub(super) word: String,
     pub(super) written: Vec<String>,
     pub(super) sets: Vec<(Place, Vec<Value>)>,
@@ -113,7 +113,8 @@ impl Axis {
         };
         let middle = Value::from(scene.objects[row.first + row.count / 2].position);
         let sets = |i: usize| {
-            let visible = row.range().map(|shown| Value::from(shown == i)).collect();
+            let own = scene.objects[i].visible;
+            let visible = row.range().map(|shown| Value::from(own && shown == i)).collect();
             [
                 place(i, Object::visible.key).map(|place| (place, visible)),
                 place(i, Object::position.key).map(|place| (place, vec![middle.clone(); row.count])),
@@ -130,8 +131,8 @@ impl Axis {
         })
     }
 
-    /// A way through the room at constant speed: `lights[0]=[1, 8, 9]..[9, 8, 9]:12`. What has a direction looks at `aim`
-    /// all the way, if that is given. A closed way leaves out its end, which is its beginning.
+    /// A way through the room at constant speed: `lights[0]=[1, 8, 9]..[9, 8, 9]:12`. A part with a direction looks at
+    /// `aim` all the way, if that is given. A closed way leaves out its end, which is its beginning.
     ///
     /// # Errors
     /// Returns the mistake.
@@ -170,7 +171,7 @@ impl Axis {
         })
     }
 
-    /// What varies, from where to where: "roughness: r 0.1 to r 0.9 in 5 steps"; a few words one by one: "model: Phong,
+    /// The axis with its range: "roughness: r 0.1 to r 0.9, 5 values"; a few words one by one: "model: Phong,
     /// Blinn–Phong and Ward".
     pub(super) fn summary(&self) -> String {
         let words = |label: Option<&Words>| label.map(Words::words).unwrap_or_default();
@@ -182,7 +183,7 @@ impl Axis {
                 let all: Vec<_> = self.labels.iter().map(Words::words).collect();
                 format!("{name}{}", listed(&all, "and"))
             }
-            n => format!("{name}{first} to {last} in {n} steps"),
+            n => format!("{name}{first} to {last}, {n} values"),
         }
     }
 
@@ -263,6 +264,24 @@ mod tests {
         }
         let said = Axis::copies(3, &scene, &registry).expect_err("it is alone");
         assert_eq!(said, "objects[3] is in no row");
+    }
+
+    #[test]
+    fn a_hidden_copy_stays_hidden() {
+        let registry = Registry::builtin();
+        let values = [true, false, true].map(Value::from).to_vec();
+        let vary = vec![Varied { parameter: "visible".to_owned(), values, ..Varied::default() }];
+        let repeat = Repeat { columns: 3, spacing: Vec3::X, vary, ..Repeat::default() };
+        let entry = Object { repeat: Repetition::Entry(Box::new(repeat)), ..Object::default() };
+        let scene = Scene { objects: vec![entry], ..Scene::default() };
+        let scene = scene.expanded(&registry).expect("a row");
+        let axis = Axis::copies(0, &scene, &registry).expect("a row");
+        let sweep = crate::sweep::Sweep::new(&scene, 0, vec![axis], &registry).expect("valid");
+        let shown = |i: usize| {
+            let (seen, _) = sweep.seen(i).expect("valid");
+            seen.objects.iter().filter(|object| object.visible).count()
+        };
+        assert_eq!([shown(0), shown(1), shown(2)], [1, 0, 1]);
     }
 
     #[test]

@@ -54,7 +54,7 @@ impl Default for Settings {
 pub struct Drawn {
     /// Red, green, blue, row by row from the top: a picture for each combination, the first axis varying fastest.
     pub pictures: Vec<Vec<u8>>,
-    /// How lights with extent were sampled, where there are some.
+    /// The sampling of lights with extent, for pictures with such lights.
     pub sampled: Vec<Sampled>,
     /// Number of pictures that were there already.
     pub kept: usize,
@@ -175,7 +175,7 @@ impl<'a> One<'a> {
         Ok(Self { scene, settings, until, stamp, registry: sweep.registry })
     }
 
-    /// The same picture as that of `lcm render`, without the labels of rows.
+    /// Draws the picture as `lcm render` does, without the labels of rows.
     fn draw(&self, check: Check, cancelled: &AtomicBool) -> Result<(Vec<u8>, Option<Sampled>), Failure> {
         let Self { scene, settings, registry, .. } = self;
         check(scene)?;
@@ -196,7 +196,8 @@ fn ended(cancelled: Cancelled) -> Failure {
     Failure::Invalid(cancelled.to_string())
 }
 
-/// Does some work for each number, on all cores, and collects the results in order. Progress is told by the calling thread.
+/// Does some work for each number, on all cores, and collects the results in order. The calling thread reports the
+/// progress.
 fn each<T: Send>(
     count: usize,
     progress: &Progress,

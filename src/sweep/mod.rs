@@ -55,14 +55,14 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 /// Maximum number of problems named for a picture.
 const MAX_NAMED: usize = 3;
 
-/// A scene with what varies in it.
+/// A scene with its axes of variation.
 #[derive(Clone, Debug)]
 pub struct Sweep<'a> {
     /// The scene as it is.
     pub scene: &'a Scene,
     /// The view that is shown; 0 is the scene itself.
     pub view: usize,
-    /// What varies. The first one varies from picture to picture, the last one slowest.
+    /// The axes. The first one varies from picture to picture, the last one slowest.
     pub axes: Vec<Axis>,
     /// The known models and types.
     pub registry: &'a Registry,
@@ -94,7 +94,7 @@ impl<'a> Sweep<'a> {
         Ok(sweep)
     }
 
-    /// What the user should know of the pictures, a sentence each.
+    /// Remarks on the pictures for the user, a sentence each.
     #[must_use]
     pub fn remarks(&self) -> &[String] {
         &self.remarks
@@ -127,7 +127,8 @@ impl<'a> Sweep<'a> {
         self.axes.iter().zip(self.steps(picture)).map(|(axis, step)| &axis.labels[step]).collect()
     }
 
-    /// The scene that a picture shows, and its terms; `None` if there is no such view. Its rules were checked before.
+    /// The scene that a picture shows, and its terms; `None` if there is no such view. The rules of the scene were
+    /// checked before.
     #[must_use]
     pub fn seen(&self, picture: usize) -> Option<(Scene, TermSelection)> {
         let (scene, view, _) = self.set(picture);
@@ -181,7 +182,7 @@ impl<'a> Sweep<'a> {
         self.seen(0).map_or(Ground::DARK, |(seen, _)| Ground::of(&seen.display))
     }
 
-    /// The caption of all pictures together: what they share, and what varies.
+    /// The caption of all pictures together: the common facts, and the axes.
     #[must_use]
     pub fn caption(&self) -> Caption {
         let of = |i: usize| {
@@ -202,7 +203,7 @@ impl<'a> Sweep<'a> {
         caption
     }
 
-    /// What varies, in one line.
+    /// The names of the axes, in one line.
     #[must_use]
     pub fn summary(&self) -> String {
         listed(&self.axes.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>(), "and")
@@ -277,7 +278,7 @@ mod tests {
         let words: Vec<_> = made.labels(4).into_iter().map(Words::words).collect();
         assert_eq!(words, ["size 2 m", "Phong"]);
         let facts = caption::line(&made.caption().facts);
-        assert!(facts.contains("size 1 m to size 3 m in 3 steps"), "{facts}");
+        assert!(facts.contains("size 1 m to size 3 m, 3 values"), "{facts}");
         assert!(
             !facts.starts_with("Lambert") && facts.contains("Gouraud"),
             "what varies is not shared: {facts}"

@@ -16,15 +16,15 @@ use crate::{
     scene::{Scene, save::to_json},
 };
 
-/// The keyword of the text in a picture that names what was drawn.
+/// The keyword of the text in a picture that identifies its inputs.
 pub(super) const KEYWORD: &str = "Sweep";
 /// Pictures of shorter work are not kept: drawing them again takes less time than writing them.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// The end of the name of the folder.
 const END: &str = ".parts";
 
-/// What a picture depends on: the scene, the settings and the program; empty if that is not all, since a scene with files, or
-/// with models and shaders from files, may be drawn differently another time.
+/// A stamp of the inputs of a picture: the scene, the settings and the program; empty if these are not all, since a
+/// scene with files, or with models and shaders from files, may be drawn differently another time.
 pub(super) fn stamp(scene: &Scene, settings: &Settings, until: Until, registry: &Registry) -> String {
     let from_files = registry.has_foreign() || registry.sources().edited().next().is_some();
     if from_files || scene.files().next().is_some() {

@@ -50,7 +50,10 @@ impl Grid {
     }
 }
 
-/// What a sheet adds below each picture: the difference from that of one column.
+/// The note on the numbers below maps; those of the window are over the pixels that objects cover.
+const OVER_ALL: &str = "numbers over all pixels";
+
+/// The reference of the maps below the pictures of a sheet: each shows the difference from the picture of one column.
 #[derive(Clone, Copy, Debug)]
 pub struct Against<'a> {
     /// The column, counted from 0; of a single axis the picture.
@@ -59,7 +62,7 @@ pub struct Against<'a> {
     pub comparison: &'a Comparison,
 }
 
-/// The map below a picture: its colours, and its numbers. That of the column itself is the legend.
+/// The map below a picture: its colours, and its numbers. The map of the column itself is the legend.
 type Map = (Vec<u8>, String);
 
 /// The maps of all pictures of a sheet, or of all sheets of a film, which have one scale.
@@ -95,7 +98,8 @@ pub fn maps(
     let (names, ground) = (["this".to_owned(), column], sweep.ground());
     let one = |i: usize| {
         if i == reference(i) {
-            return Ok((legend_alone(size, ground.colour, &comparison, factor, &names), String::new()));
+            let legend = legend_alone(size, ground.colour, &comparison, factor, &names);
+            return Ok((legend, OVER_ALL.to_owned()));
         }
         let Some([a, b]) = with(i) else { return Ok(Map::default()) };
         let pair = Pair::new(&a, &b)?;
@@ -121,7 +125,7 @@ pub struct Page<'a> {
     left: u32,
     columns: Vec<&'a Words>,
     rows: Vec<&'a Words>,
-    /// True if a line above all says what time it is in a film.
+    /// True if a line above all gives the time in a film.
     is_dated: bool,
     has_maps: bool,
     /// The ground between pictures, as that of the strip of a caption.
@@ -167,7 +171,7 @@ impl<'a> Page<'a> {
         self
     }
 
-    /// Adds a line above all, for what varies in a film.
+    /// Adds a line above all, for the axis that varies in a film.
     #[must_use]
     pub fn dated(self) -> Self {
         Self { is_dated: true, ..self }
@@ -183,7 +187,7 @@ impl<'a> Page<'a> {
         if self.columns.is_empty() { 0 } else { self.line }
     }
 
-    /// The height of a picture with what belongs to it.
+    /// The height of a picture with everything that belongs to it.
     fn block(&self) -> u32 {
         let maps = if self.has_maps { self.gap + self.cell[1] + self.line } else { 0 };
         self.cell[1] + maps + if self.grid.wrapped { self.head() } else { 0 }
@@ -216,7 +220,7 @@ impl<'a> Page<'a> {
             let x = self.left + self.gap + column as u32 * (width + self.gap);
             let y = above + self.gap + row as u32 * (self.block() + self.gap);
             if let Some(label) = self.columns.get(i).filter(|_| self.grid.wrapped || row == 0) {
-                let top = if self.grid.wrapped { y } else { self.date() };
+                let top = if self.grid.wrapped { y } else { self.date() + self.gap };
                 self.write(&mut paper, label, [x, top], width);
             }
             if let Some(label) = self.rows.get(row).filter(|_| column == 0) {
@@ -345,7 +349,7 @@ mod tests {
         let comparison = Comparison::default();
         let against = Against { column: 0, comparison: &comparison };
         let maps = maps(&sweep, &pictures, size, against).expect("comparable");
-        assert_eq!(maps[0].1, "");
+        assert_eq!(maps[0].1, OVER_ALL);
         assert!(maps[0].0 != Ground::DARK.colour.repeat(240 * 160), "there is a legend");
         // The same difference has the same colour.
         assert!(maps[1].0 == maps[2].0 && maps[1].1.starts_with("RMSE 0.0392, FLIP "), "{:?}", maps[1].1);

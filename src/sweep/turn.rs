@@ -1,4 +1,4 @@
-//! Turns about the vertical, and what to do where one leaves the room.
+//! Turns about the vertical, with suggestions where one leaves the room.
 
 use glam::{Quat, Vec3};
 
@@ -17,7 +17,7 @@ use crate::{
 
 /// Maximum number of places of all parts that turn, in all pictures together: they are in memory at once.
 const MAX_PLACES: usize = 1_000_000;
-/// What turns unless something else is named.
+/// The thing that turns by default.
 const OBSERVER: &str = "observer";
 /// The angles that are tried in place of one that is too large, degrees.
 const SMALLER: [f32; 9] = [180.0, 120.0, 90.0, 60.0, 45.0, 30.0, 20.0, 10.0, 5.0];
@@ -34,7 +34,7 @@ impl Axis {
     }
 }
 
-/// A turn as written: what turns, by how much, in how many pictures.
+/// A turn as written: the turning things, the angle, and the number of pictures.
 #[derive(Clone, Copy, Debug)]
 struct Turn<'a> {
     what: &'a str,
@@ -109,8 +109,8 @@ impl<'a> Turn<'a> {
     }
 }
 
-/// What to write in place of a turn that leaves the room, or breaks another rule of scenes; `None` if the turn itself is
-/// not to blame.
+/// The suggestion in place of a turn that leaves the room, or breaks another rule of scenes; `None` if the turn itself
+/// is not to blame.
 #[must_use]
 pub fn instead_of_turn(text: &str, scene: &Scene, registry: &Registry) -> Option<String> {
     let turn = Turn::read(text).ok().filter(|turn| !turn.works(scene, registry))?;
@@ -127,7 +127,7 @@ pub fn instead_of_turn(text: &str, scene: &Scene, registry: &Registry) -> Option
     })
 }
 
-/// What the parts have in each picture.
+/// The values of the parts in each picture.
 fn sets(
     what: &str,
     parts: &[Part],

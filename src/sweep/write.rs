@@ -52,7 +52,7 @@ impl Format {
     }
 }
 
-/// How a sheet or a film looks.
+/// The appearance of a sheet or a film.
 #[derive(Clone, Copy, Debug)]
 pub struct Look {
     /// The format of the file.
@@ -76,7 +76,7 @@ pub struct Plan<'a> {
     look: Look,
     settings: Settings,
     page: Page<'a>,
-    /// What varies from picture to picture of a film, if it is to be said.
+    /// The axis that varies from picture to picture of a film, if the film is to name it.
     time: Option<&'a Axis>,
     /// Number of pictures of each sheet.
     each: usize,

@@ -133,12 +133,19 @@ pub fn reciprocal(model: &ModelEntry) -> Outcome {
     }
 }
 
-/// The fraction of light from direction `v` that leaves a surface in any direction, largest channel, by a
-/// quadrature with this many rows.
+/// The fraction of light from direction `v` that leaves a surface in any direction, on both sides and without spreading
+/// too, largest channel, by a quadrature with this many rows.
 #[must_use]
 pub fn albedo(surface: &dyn Surface, v: Vec3, frame: &Frame, rows: usize) -> f32 {
-    let directions = laws::albedo_directions(v, frame, rows);
-    laws::albedo(&directions, directions.iter().map(|(l, _)| surface.response(*l, v, frame)))
+    let mut directions = laws::albedo_directions(v, frame, rows);
+    if surface.transmits() {
+        let below = laws::directions_below(&surface.lobes(), frame.to_local(v), (rows * rows) as u32);
+        let room = |l: Vec3| l.x * frame.t + l.y * frame.b + l.z * frame.n;
+        directions.extend(below.into_iter().map(|(l, weight)| (room(l), weight)));
+    }
+    let sharp: Vec3 = surface.sharp(v, frame).iter().map(|sharp| sharp.share).sum();
+    let spread = laws::albedo(&directions, directions.iter().map(|(l, _)| surface.response(*l, v, frame)));
+    spread + sharp.max_element()
 }
 
 /// Checks that samples of the model's lobes yield the directional albedo of quadrature.

@@ -104,9 +104,10 @@ pub fn assert_parity<M: ReflectionModel>() {
     assert_model::<M>(|model| parity::all(model, &Sources::default()));
 }
 
-/// Asserts that a light type is equal in Rust and in WGSL, that its light is finite, not negative,
-/// proportional to the intensity and the product of its factors, and that its luminous flux is its light in
-/// all directions.
+/// Asserts that a light type is equal in Rust and in WGSL, and that its light is finite, not negative and
+/// proportional to the intensity. Without extent, its light is the product of its factors, and its luminous
+/// flux is its light in all directions; with extent, a sample is seen again in its direction, with its
+/// radiance and its density.
 ///
 /// # Panics
 /// Panics if any of this is not true.

@@ -1,5 +1,7 @@
 //! Evaluates equations: the notation of [`mathematics`](super::mathematics), parsed as expressions with
-//! values.
+//! values. The evaluator is our own, since it must read the equations as they are displayed, with products by
+//! juxtaposition, scalar products N·L, colours and degrees as a unit, rather than the syntax of a general
+//! expression library.
 //!
 //! ```text
 //! expression  sum ["if" condition ["else" expression]]
@@ -299,7 +301,7 @@ fn orders(sign: &str) -> Option<&'static [Ordering]> {
     Some(orders)
 }
 
-/// The order of two values; `None` for what is not a number.
+/// The order of two values; `None` for values that are not numbers.
 fn compare(a: Value, b: Value) -> Result<Option<Ordering>, String> {
     a.common(b)?;
     if !a.is_grey() || !b.is_grey() {

@@ -16,7 +16,7 @@ pub fn items(text: &str) -> Vec<(usize, &str)> {
     raw.into_iter().map(str::trim).map(|item| (place(item), item)).collect()
 }
 
-/// Every item of a list as a number; `None` if one of them is none.
+/// Every item of a list as a number; `None` if one of them is not a number.
 #[must_use]
 pub fn numbers<T: FromStr>(text: &str) -> Option<Vec<T>> {
     items(text).into_iter().map(|(_, item)| item.parse().ok()).collect()

@@ -17,7 +17,7 @@ pub(crate) fn chosen(text: &str, wanted: impl Fn(&str) -> bool) -> String {
     chosen
 }
 
-/// A text with its `{{places}}` filled. What is filled in is not looked at again.
+/// A text with its `{{places}}` filled. The inserted text is not searched for places.
 pub(crate) fn filled(text: &str, places: &[(&str, &dyn Display)]) -> String {
     let mut filled = String::new();
     let mut parts = text.split("{{");

@@ -31,7 +31,7 @@ pub(super) struct Work<'w> {
 }
 
 impl Work<'_> {
-    /// Reports what has ended. Shows the folder of an export to the user, if there is one.
+    /// Reports the tasks that have ended. Shows the folder of an export to the user, if there is one.
     fn report(&self, session: &mut ResMut<Session>, registry: &Registry, unattended: bool) {
         for complaint in self.editors.take() {
             session.say(Severity::Error, complaint);
@@ -49,7 +49,7 @@ impl Work<'_> {
         self.sheets.report(session);
     }
 
-    /// Begins or stops what an effect asks for. Returns any other effect.
+    /// Begins or stops the task that an effect asks for. Returns any other effect.
     fn begin(&self, effect: Effect, session: &mut ResMut<Session>, registry: &Registry) -> Option<Effect> {
         let wake = watching::wake(self.proxy.as_deref());
         match effect {
@@ -66,7 +66,9 @@ impl Work<'_> {
             }
             Effect::CancelMatch => self.matches.0.cancel(),
             Effect::WritePlot(path) => self.plots.begin(path, session, registry, wake),
-            Effect::WriteSheet { row, path } => self.sheets.begin((row, path), session, registry, wake),
+            Effect::WriteSheet { subject, path } => {
+                self.sheets.begin((subject, path), session, registry, wake)
+            }
             Effect::CancelSheet => self.sheets.0.cancel(),
             Effect::CheckLaws(model) => self.laws.begin(&model, registry.folders(), wake),
             other => return Some(other),

@@ -73,7 +73,7 @@ fn pick(
     let reach = LIGHT_REACH * area.zoom * window.scale_factor();
     let light = session
         .view
-        .show_gizmos
+        .show_markers
         .then(|| nearest_light(&scene, &session, &registry, &area, cell, camera, place, end, reach))
         .flatten();
     let selection = light.map(Selection::Light).or_else(|| {

@@ -184,7 +184,7 @@ impl Pictures {
 }
 
 impl Wanted {
-    /// The options of the picture. What goes to the clipboard is as it is shown.
+    /// The options of the picture; the clipboard gets it as shown.
     fn options(&self, session: &Session) -> PictureOptions {
         let kept = &session.settings.picture;
         if self.file.is_some() { kept.clone() } else { kept.as_shown() }
@@ -200,8 +200,8 @@ struct Begun<'a> {
 }
 
 impl Begun<'_> {
-    /// True if it is not what the window shows, so that its views are drawn off screen. Lines over a channel are drawn by
-    /// the panels, and are no part of the views.
+    /// True if it is not what the window shows, so that its views are drawn off screen. Lines over a channel are drawn
+    /// by the panels, and do not belong to the views.
     fn is_off_screen(&self) -> bool {
         let Self { wanted, numbers, session, .. } = self;
         let options = wanted.options(session);
@@ -323,7 +323,7 @@ struct Drawn {
     /// The RGB pixels.
     rgb8: Vec<u8>,
     size: [u32; 2],
-    /// How lights with extent were sampled, in words; empty without them.
+    /// The sampling of lights with extent, in words; empty without them.
     light: String,
     renderer: &'static str,
 }

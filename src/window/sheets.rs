@@ -1,4 +1,4 @@
-//! Saves sheets of the views, or of the copies of a row, to files in the background.
+//! Saves sheets and films to files in the background.
 
 use std::path::{Path, PathBuf};
 
@@ -9,13 +9,13 @@ use crate::files::Shown as _;
 use crate::{
     export::write::inputs,
     failure::Failure,
-    files::{self, PNG},
-    panel::state::{Session, Severity, SheetOptions},
+    files,
+    panel::state::{Session, Severity, SheetOf, SheetOptions},
     progress::Progress,
     reference,
     registry::Registry,
     scene::{Comparison, Scene, comparison::Compared},
-    sweep::{Axis, Format, Look, Parts, Plan, Settings, Sweep},
+    sweep::{Axis, Format, Look, Parts, Plan, Settings, Sweep, instead_of_turn},
 };
 
 /// The sheet being written: its file, and the error if it failed.
@@ -23,10 +23,10 @@ use crate::{
 pub(super) struct SheetFiles(pub(super) Background<(), (PathBuf, Result<(), String>)>);
 
 impl SheetFiles {
-    /// Starts to write a sheet of the row of an object, or of the views, and returns at once. Calls `wake` at each step.
+    /// Starts to write a sheet, or a film, and returns at once. Calls `wake` at each step.
     pub(super) fn begin(
         &self,
-        (row, path): (Option<usize>, PathBuf),
+        (subject, path): (SheetOf, PathBuf),
         session: &mut Session,
         registry: &Registry,
         wake: impl Fn() + Send + 'static,
@@ -40,21 +40,25 @@ impl SheetFiles {
         let file = if asked { path } else { path.with_extension("png") };
         let mut scene = session.document.scene().clone();
         let inputs = inputs(session.path.as_deref(), [&scene], registry);
-        let is_png = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
-        let allowed = match is_png {
-            true => files::may_replace(&file, PNG, asked, &inputs).map_err(|refused| refused.to_string()),
-            false => Err(format!("{} is not the name of a PNG file", file.shown())),
+        let format = match format_of(&file) {
+            Ok(format) => format,
+            Err(why) => return session.sheet_written(&file, Err(why)),
         };
-        if allowed.is_err() {
-            return session.sheet_written(&file, allowed);
+        if let Err(refused) = files::may_replace(&file, format.signature(), asked, &inputs) {
+            return session.sheet_written(&file, Err(refused.to_string()));
+        }
+        if subject != SheetOf::Views && session.observer_problem().is_some() {
+            let why = "the camera is outside the room, or in the place of a light or an object; move it";
+            return session.sheet_written(&file, Err(why.to_owned()));
         }
         // As seen from the current camera.
         scene.observer = session.facts.observer(scene.observer);
         let options = session.settings.sheet.clone();
+        let view = session.active();
         let (source, registry) = (session.title(), registry.clone());
         let broken = (file.clone(), Err("an internal error".to_owned()));
         self.0.begin((), wake, broken, move |progress| {
-            let job = Job { scene: &scene, registry: &registry, options: &options, row };
+            let job = Job { scene: &scene, registry: &registry, options: &options, subject, view, format };
             let outcome = job.write(&file, &source, progress);
             (file, outcome)
         });
@@ -69,33 +73,59 @@ impl SheetFiles {
     }
 }
 
-/// A sheet to write.
+/// The format of a sheet or a film, by its name.
+fn format_of(file: &Path) -> Result<Format, String> {
+    let extension = file.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    match extension.as_deref() {
+        Some("png") => Ok(Format::Sheet),
+        Some("gif") => Ok(Format::Gif),
+        Some("apng") => Ok(Format::Apng),
+        _ => Err(format!("{} is the name of no sheet (.png) and no film (.gif, .apng)", file.shown())),
+    }
+}
+
+/// A sheet or a film to write.
 struct Job<'a> {
     scene: &'a Scene,
     registry: &'a Registry,
     options: &'a SheetOptions,
-    /// An object of the row whose copies it shows; `None` for the views.
-    row: Option<usize>,
+    subject: SheetOf,
+    /// The view that is shown, unless each has a picture.
+    view: usize,
+    format: Format,
 }
 
 impl Job<'_> {
     /// Draws the sheet and writes it. Finished pictures that took long are kept for another try.
     fn write(&self, file: &Path, source: &str, progress: &Progress) -> Result<(), String> {
-        let Self { scene, registry, options, row } = *self;
-        let axis = match row {
-            Some(object) => Axis::copies(object, scene, registry)?,
-            None => Axis::views(&(0..=scene.variants.len()).collect::<Vec<_>>(), scene, registry)?,
+        let Self { scene, registry, options, subject, view, format } = *self;
+        let axis = match subject {
+            SheetOf::Row(object) => Axis::copies(object, scene, registry)?,
+            SheetOf::Views => Axis::views(&(0..=scene.variants.len()).collect::<Vec<_>>(), scene, registry)?,
+            SheetOf::Turn(what) => {
+                let turn = format!("{}=360:{}", what.id(), options.turn);
+                if instead_of_turn(&turn, scene, registry).is_some() {
+                    return Err(format!(
+                        "on its way something would leave the room; move it nearer to the middle, or choose another turn \
+                         than that of {}",
+                        what.name().to_lowercase()
+                    ));
+                }
+                Axis::turn(&turn, scene, registry)?
+            }
         };
-        let compares = options.differences && row.is_none() && axis.count() > 1;
-        let sweep = Sweep::new(scene, 0, vec![axis], registry)?;
+        let compares =
+            options.differences && subject == SheetOf::Views && axis.count() > 1 && !format.is_film();
+        let column = (options.against as usize).min(axis.count().saturating_sub(1));
+        let sweep = Sweep::new(scene, view, vec![axis], registry)?;
         let compared = Comparison { values: Compared::Codes, ..scene.comparison };
         let look = Look {
-            format: Format::Sheet,
+            format,
             size: Some(options.size),
-            columns: (options.columns > 0).then_some(options.columns as usize),
-            against: compares.then_some((0, compared)),
+            columns: self.columns(),
+            against: compares.then_some((column, compared)),
             words: options.labels,
-            rate: 1,
+            rate: options.rate,
         };
         let settings = Settings { samples: options.samples(), ..Settings::default() };
         let plan = Plan::new(&sweep, look, settings)?;
@@ -110,6 +140,19 @@ impl Job<'_> {
                 false => failure.to_string(),
             }
         })
+    }
+
+    /// The number of columns of a sheet: as chosen, or those of a grid.
+    fn columns(&self) -> Option<usize> {
+        let of_grid = || match self.subject {
+            SheetOf::Row(object) => {
+                let repeat = self.scene.row(object)?.repeat;
+                (repeat.rows > 1).then_some(repeat.columns as usize)
+            }
+            _ => None,
+        };
+        let chosen = (self.options.columns > 0).then_some(self.options.columns as usize);
+        chosen.or_else(of_grid).filter(|_| !self.format.is_film())
     }
 
     /// Fails if the CPU renderer cannot draw a scene.

@@ -1,4 +1,4 @@
-//! Notices about objects of solid models whose meshes are no solids.
+//! Notices about objects of solid models whose meshes are not solids.
 
 use bevy::ecs::prelude::*;
 

@@ -108,7 +108,7 @@ pub(super) fn set_views(
     }
 }
 
-/// Gives a view what it overrides.
+/// Gives a view its overrides.
 fn override_view(view: Entity, now: Option<&Overrides>, wanted: Option<Overrides>, commands: &mut Commands) {
     match wanted {
         wanted if wanted.as_ref() == now => {}

@@ -1,4 +1,4 @@
-//! What commands ask of the window and the GPU. In a program that was built without them, [`engine`] says so.
+//! The requests of commands to the window and the GPU. In a program built without them, [`engine`] reports that.
 
 use std::path::{Path, PathBuf};
 

@@ -1,12 +1,12 @@
 //! ꟻLIP: how different two pictures look to someone who flips between them. P. Andersson, J. Nilsson,
 //! T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild (2020), *ꟻLIP: A Difference Evaluator for Alternating
 //! Images*, Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), with the separable filters
-//! of its later implementations.
+//! of its later implementations. The code is our own, since the crate nv-flip builds C++.
 //!
-//! Two differences of each pixel are joined. That of colour: both pictures are blurred as the eye does from this
-//! distance (contrast sensitivity of an achromatic, a red–green and a blue–yellow channel), and compared in CIELAB,
-//! whose chroma grows with lightness (Hunt), by the distance HyAB. That of features: edges and points, the first and
-//! second derivatives of lightness. ꟻLIP is c^(1 − f), from 0 to 1.
+//! Two differences of each pixel are joined. The difference of colour: both pictures are blurred as the eye does from
+//! this distance (contrast sensitivity of an achromatic, a red–green and a blue–yellow channel), and compared in
+//! CIELAB, whose chroma grows with lightness (Hunt), by the distance HyAB. The difference of features: edges and
+//! points, the first and second derivatives of lightness. ꟻLIP is c^(1 − f), from 0 to 1.
 
 use std::sync::LazyLock;
 

@@ -1,7 +1,7 @@
 //! The calculation of metrics.
 //!
 //! The picture is taken in tiles. A tile that is equal in both pictures, with everything that the filters reach, needs
-//! no filter: what its numbers are is declared.
+//! no filter: its numbers are declared.
 
 use std::ops::Range;
 

@@ -61,7 +61,7 @@ pub type Measure = Box<dyn FnMut(&Place<'_>, &mut Tile) + Send>;
 /// A metric as the window shows it, over the pixels that objects cover.
 #[derive(Debug)]
 pub struct InWindow {
-    /// Where there is little room, metrics with the largest places are omitted.
+    /// The rank of the metric: in a narrow space, metrics with the largest places are omitted.
     pub place: usize,
     /// The display name.
     pub name: &'static str,

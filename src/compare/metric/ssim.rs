@@ -3,6 +3,8 @@
 //!
 //! SSIM of luma in a window of 11 × 11 pixels around each pixel, weighted by a Gaussian of 1.5 pixels: (2 μ_A
 //! μ_B + C₁)(2 σ_AB + C₂) / ((μ_A² + μ_B² + C₁)(σ_A² + σ_B² + C₂)), C₁ = 0.01², C₂ = 0.03².
+//!
+//! The code is our own, since the crate image-compare takes SSIM over blocks of 8 × 8 pixels instead of this window.
 
 use std::sync::LazyLock;
 

@@ -1,4 +1,5 @@
-//! Figures as SVG.
+//! Figures as SVG. The elements are written directly, since four kinds of them suffice, and the figures share one
+//! [`Pen`] with those in pixels; a library for SVG would only replace the format strings.
 
 use std::fmt::Write as _;
 

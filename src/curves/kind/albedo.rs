@@ -3,10 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::{Declaration, Horizontal, Kind};
-use crate::{
-    curves::angles::{GRAZING, grid},
-    optics::{Frame, albedo::directional},
-};
+use crate::curves::angles::{GRAZING, grid};
 
 pub(super) static KIND: Declaration = Declaration {
     id: "albedo",
@@ -28,7 +25,7 @@ pub(super) static KIND: Declaration = Declaration {
     rises: |_| true,
     value: |subject, setup, angle| {
         let v = view(angle, setup.phi_i);
-        directional(|l| subject.response(l, v), v, &Frame::LOCAL).as_vec3()
+        subject.directional_albedo(v)
     },
     angles: |_, fine| match fine {
         true => grid(0, 88, 2, &[87.0, 88.5, 89.0, 89.5, GRAZING]),

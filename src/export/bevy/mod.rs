@@ -4,7 +4,9 @@
 //! through.
 
 use self::bodies::Bodies;
-use super::{Export, ExportError, File, Form, Makes, Progress, Request, lit::Lit, shader::Host};
+use super::{
+    Export, ExportError, File, Form, Makes, Progress, Request, lit::Lit, shader::Host, view::without_labels,
+};
 use crate::{
     optics::tone::{ToneMapping, exposure_factor},
     text::template::filled,
@@ -67,6 +69,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     }
     let mut notes = lit.notes();
     notes.extend(bodies.notes);
+    notes.extend(without_labels(request.scene));
     if display.backdrop().is_some() && display.tone_mapping != ToneMapping::None {
         let tone = display.tone_mapping.id();
         notes.push(format!(

@@ -19,7 +19,7 @@ use crate::{
         object_path,
         shader::LIGHT_SAMPLES,
         shaders::alone,
-        view::called,
+        view::{called, without_labels},
     },
     optics::{TermSelection, colour::srgb_encode},
     parameter::{Parameter, Value, json as value, layout, stride},
@@ -39,7 +39,7 @@ pub struct Data {
     pub meshes: Vec<u8>,
     /// Explanations of a point's colour, by the letters of the views; empty unless requested.
     pub points: Map<String, Json>,
-    /// What the models recalculate when a parameter changes: curves, and the inside of solid bodies.
+    /// The script that recalculates curves and the inside of solid bodies when a parameter changes.
     pub script: String,
     /// Sentences about differences from the picture in the lab.
     pub notes: Vec<String>,
@@ -212,6 +212,7 @@ fn view(
         })
         .collect();
     shared.note(lit.notes());
+    shared.note(without_labels(lit.request.scene));
     shared.note(normals(lit));
     shared.note(open);
     let observer = &scene.observer;
@@ -382,8 +383,8 @@ fn fixed(of_model: &Program, registry: &Registry) -> Option<&'static str> {
     )
 }
 
-/// The parameters of a model that may change how light passes, which the shaders of a page cannot follow. Where no light
-/// passes, the others of their group have no effect either.
+/// The parameters of a model that may change how light passes, which the shaders of a page cannot follow. If no light
+/// passes, the other parameters of their group have no effect either.
 fn deciding(of_model: &Program, scene: &Scene) -> Vec<&'static str> {
     let (entry, passage) = (of_model.model, of_model.passage);
     if !entry.passage_varies() {

@@ -1,7 +1,7 @@
 //! The form `html`: a page that shows the scene in a browser, in a single self-contained file.
 //!
-//! The page draws with WebGPU and the scene's own WGSL, or with WebGL 2 and the WGSL translated to GLSL. Its
-//! texts are `page.html`, `page.css` and `js/`; this module inserts the scene.
+//! The page draws with WebGPU and the scene's own WGSL, or with WebGL 2 and the WGSL translated to GLSL. The
+//! texts of the page are `page.html`, `page.css` and `js/`; this module inserts the scene.
 
 use std::io::Write as _;
 

@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use super::{through::Through, xml::Xml};
 use crate::{
-    optics::{colour::Encoding, distribution::MINIMUM_ALPHA},
+    optics::{colour::Encoding, distribution::MINIMUM_ALPHA, refraction::is_matched},
     parameter::{Value, Values},
     reflection::{Ambient, ModelEntry},
 };
@@ -31,7 +31,7 @@ pub(super) struct Bsdf {
     pub(super) xml: Xml,
     /// True if it depends on the brush direction of the surface.
     pub(super) brushed: bool,
-    /// Where the light goes that is not reflected.
+    /// The path of the light that is not reflected.
     pub(super) through: Through,
     /// A remaining difference.
     pub(super) note: Option<&'static str>,
@@ -183,6 +183,7 @@ fn glass(m: &Material) -> Result<Bsdf, String> {
     }
     let xml = match alpha(m) {
         Some(alpha) => {
+            bends(m)?;
             dielectric(m, "roughdielectric").set("string", "distribution", "ggx").float("alpha", alpha)
         }
         None => dielectric(m, "dielectric"),
@@ -191,7 +192,16 @@ fn glass(m: &Material) -> Result<Bsdf, String> {
     Ok(Bsdf { through: Through::Body, note: Some(note), ..Bsdf::of(xml) })
 }
 
+/// Fails for a body of the index of air, which `roughdielectric` refuses.
+fn bends(m: &Material) -> Result<(), String> {
+    match is_matched(m.number("refractive_index")) {
+        true => Err("Mitsuba's roughdielectric needs a refractive_index other than 1".to_owned()),
+        false => Ok(()),
+    }
+}
+
 fn rough_dielectric(m: &Material) -> Result<Bsdf, String> {
+    bends(m)?;
     let facets = m.choice("facets");
     let [x, y] = ["alpha_x", "alpha_y"].map(|name| m.number(name));
     let xml = dielectric(m, "roughdielectric").set("string", "distribution", &facets);
@@ -272,6 +282,12 @@ mod tests {
                 .is_ok_and(|xml| xml.contains("\"roughdielectric\"") && xml.contains("\"0.25\""))
         );
         assert!(written("thin_glass", &[]).is_ok_and(|xml| xml.contains("\"thindielectric\"")));
+        let air = ("refractive_index", Value::Number(1.0));
+        assert!(written("glass", std::slice::from_ref(&air)).is_ok());
+        for (id, values) in [("glass", vec![air.clone(), rough(0.5)]), ("rough_dielectric", vec![air])] {
+            let said = of(id, &values, false).expect_err(id);
+            assert!(said.contains("needs a refractive_index other than 1"), "{id}: {said}");
+        }
         let tinted = ("transmittance_colour", Value::Colour([200, 255, 220]));
         for (id, value) in [
             ("glass", tinted.clone()),

@@ -17,6 +17,7 @@ use self::{
 };
 use super::{
     Export, ExportError, File, Form, Makes, Progress, Request, light_path, object_path, refusals::Refusals,
+    view::without_labels,
 };
 use crate::{
     light::Incident,
@@ -95,6 +96,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         file = file.says(&name).with(shape.with(to_world(object.room_from_object())).with(bsdf.xml));
     }
     notes.extend(differences(request));
+    notes.extend(without_labels(request.scene));
     let title = scene.name.as_deref().unwrap_or(request.stem);
     let about = format!(
         "{title}, by Lights, Camera, Models! {}, for Mitsuba 3: mitsuba -m scalar_rgb scene.xml writes scene.exr, in linear light.",
@@ -189,7 +191,8 @@ fn objects<'a>(request: &'a Request, refused: &mut Refusals) -> Vec<Counterpart<
     found
 }
 
-/// How light is followed, in words and for Mitsuba: from the lamps to the observer, or through the inside of a body.
+/// The light transport, in words and as a Mitsuba integrator: from the lamps to the observer, or through the inside of
+/// a body.
 fn integrator(within: bool) -> (&'static str, Xml) {
     let (said, xml) = if within {
         let xml = Xml::plugin("integrator", "path").set("integer", "max_depth", &DEPTH.to_string());

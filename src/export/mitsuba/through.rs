@@ -10,7 +10,7 @@ use crate::{
     shape::{Hierarchy, PolygonMesh, closed},
 };
 
-/// Where the light of a material goes.
+/// The path of the light that meets a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Through {
     /// It is reflected.

@@ -1,4 +1,5 @@
-//! Writes XML: nested, indented elements.
+//! Writes XML: nested, indented elements. The writer is our own, since a few lines suffice: nothing is read back, and
+//! the export needs only elements, attributes and comments.
 
 use std::fmt::Write as _;
 
@@ -92,7 +93,7 @@ pub(super) fn to_world(matrix: Mat4) -> Xml {
     Xml::element("transform name=\"to_world\"").with(matrix)
 }
 
-/// The transform of what stands at a place and looks in a direction.
+/// The transform of a thing at a position that looks in a direction.
 pub(super) fn look_at(position: Vec3, direction: Vec3, up: Vec3) -> Xml {
     let [origin, target, up] = [position, position + direction, up].map(triple);
     let look = Xml::element(format!("lookat origin=\"{origin}\" target=\"{target}\" up=\"{up}\""));

@@ -222,7 +222,8 @@ fn text(sources: &Sources, source: &Source) -> Result<String, ExportError> {
     }
 }
 
-/// The light loop, with a known number of lights and all terms. Of the built-in one, what the scene does not need goes.
+/// The light loop, with a known number of lights and all terms. The built-in one loses the code that the scene does not
+/// need.
 fn light_loop(sources: &Sources, lights: &Lights, passage: Passage) -> Result<String, ExportError> {
     let extent = lights.has_extent();
     let all = if extent { &[LOOP, EXTENDED][..] } else { &[LOOP] };

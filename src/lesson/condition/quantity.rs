@@ -113,7 +113,7 @@ fn number(number: impl Into<f64>) -> Result<Value, String> {
     Ok(Value::Number(number.into()))
 }
 
-/// What a quantity says of a situation, and the texts that it may be.
+/// The texts that a quantity may be, and its value in a situation.
 type Answer = (fn(&Registry) -> Vec<&'static str>, fn(&Situation, &Argument) -> Result<Value, String>);
 
 macro_rules! answers {

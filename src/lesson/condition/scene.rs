@@ -161,7 +161,7 @@ fn rest_of(scene: &Scene) -> Json {
     Json::Object(map)
 }
 
-/// What a variant overrides. A value missing from it is inherited: null, not the default.
+/// The overrides of a variant. A missing value is inherited: null, not the default.
 fn variant(variant: &Variant, registry: &Registry) -> Json {
     let mut map = map_of(variant);
     let value = |p: &Parameter| variant.material.0.get(p.name).map_or(Json::Null, of);

@@ -6,7 +6,6 @@ use super::{Command, Group, List, command};
 use crate::{
     channel::DebugChannel,
     panel::state::{Action, CompareCommand, Effect, LessonCommand, MODEL_SLOTS, Steer, ViewChange},
-    scene::{Comparison, comparison::Layout},
 };
 
 /// One press turns by so much, degrees.
@@ -81,13 +80,13 @@ fn comparison(to: &mut List) {
         compare("next_view", "Next view", next).keys("Ctrl+K").unless(views == 1, "There is only one view"),
     );
     let now = session.document.comparison;
-    let other = views == 1 || now.layout != Layout::Wipe;
+    let other = views == 1 || !now.layout.has_edge();
     for (id, key, name, step) in [
         ("edge_back", "Comma", "Edge of the wipe left or up", -EDGE),
         ("edge_on", "Period", "Edge of the wipe right or down", EDGE),
     ] {
-        let split = (now.split + step).clamp(0.0, 1.0);
-        let set = compare(id, name, CompareCommand::Set(Comparison { split, ..now })).keys(key);
+        let moved = now.with_split(now.split + step);
+        let set = compare(id, name, CompareCommand::Set(moved)).keys(key);
         to.add(set.unless(other, "The views are not compared by a wipe"));
     }
 }

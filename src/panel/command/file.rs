@@ -7,9 +7,11 @@ use crate::{
     files::Shown as _,
     panel::{
         export,
-        state::{Action, Effect, ExportCommand, Pick, Session, TakeCommand, Taken, ViewChange},
+        state::{
+            Action, Effect, ExportCommand, Pick, Session, SheetOf, TakeCommand, Taken, Turning, ViewChange,
+        },
     },
-    scene::{Repetition, variant::LETTERS},
+    scene::variant::LETTERS,
 };
 
 pub(super) fn file(to: &mut List) {
@@ -68,13 +70,11 @@ fn pictures(to: &mut List) {
         let name = format!("Save view {letter} alone…");
         let save = command("save_view", name, ask(Taken::Picture(Some(view))));
         to.add(save.tip(help).absent(!alone));
-        let help = "Write the views beside each other to a PNG file, or the copies of a row, with labels, and below each the \
-                    difference from the first as a map with numbers. The CPU renderer draws them, as seen now.";
-        let save = command("save_sheet", "Save sheet…", ask(Taken::Sheet(row_of_sheet(to.session))));
-        let save = save.says("Save a sheet of the views or of a row…").tip(help);
-        let has_row = to.session.document.objects.iter().any(|object| matches!(object.repeat, Repetition::Copy { .. }));
-        let why = "The scene has one view alone and no row; add a view (Ctrl+B) or a row (Edit › Row…)";
-        to.add(save.unless(!alone && !has_row, why));
+        let help = "Write the views beside each other to a PNG file, the copies of a row, or a turn, with labels, and below \
+                    each view the difference from one of them as a map with numbers; or a film of them. The CPU renderer \
+                    draws them, as seen now.";
+        let save = command("save_sheet", "Save sheet or film…", ask(Taken::Sheet(of_sheet(to.session))));
+        to.add(save.says("Save a sheet or a film of the views, a row or a turn…").tip(help));
         let copy = command("copy_picture", copy, copied(None));
         let help = "Put the picture as it is shown on the clipboard";
         to.add(copy.says("Copy the picture").keys("Ctrl+Shift+P").tip(help));
@@ -89,16 +89,17 @@ fn pictures(to: &mut List) {
     });
 }
 
-/// An object of the row of which a sheet is offered first: that of the selected object, or the first one if there is only
-/// one view.
-fn row_of_sheet(session: &Session) -> Option<usize> {
+/// The default subject of a sheet: the row of the selected object, the views, the first row, or a turn.
+fn of_sheet(session: &Session) -> SheetOf {
     let scene = &session.document;
-    let selected = match session.selection {
-        Selection::Object(i) => scene.row(i).map(|_| i),
-        _ => None,
-    };
-    let first = || scene.rows().next().map(|row| row.first);
-    selected.or_else(|| if scene.variants.is_empty() { first() } else { None })
+    match session.selection {
+        Selection::Object(i) if scene.row(i).is_some() => SheetOf::Row(i),
+        _ if !scene.variants.is_empty() => SheetOf::Views,
+        _ => {
+            let first = scene.rows().next().map(|row| SheetOf::Row(row.first));
+            first.unwrap_or(SheetOf::Turn(Turning::default()))
+        }
+    }
 }
 
 /// An entry for each form.

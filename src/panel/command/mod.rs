@@ -388,6 +388,21 @@ pub fn with_keys(root: &Menu) -> Vec<(Vec<&'static str>, &Command)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        lesson,
+        panel::{Panels, Place},
+    };
+
+    #[test]
+    fn lessons_point_at_the_menus_of_the_bar_and_at_tabs_of_the_strip() {
+        assert_eq!(BAR.map(|(_, name)| name), lesson::MENUS);
+        let panels = Panels::builtin();
+        let tabs: Vec<_> =
+            panels.infos().filter(|panel| panel.place == Place::Bottom).map(|panel| panel.id).collect();
+        for tab in lesson::TABS {
+            assert!(tabs.contains(tab), "{tab} is not one of {tabs:?}");
+        }
+    }
 
     #[test]
     fn a_default_key_that_cannot_be_read_is_reported_and_the_others_stay() {

@@ -1,5 +1,5 @@
-//! The keys that the settings give to commands, checked against all commands. What is wrong is reported, and the usual
-//! keys stay.
+//! The keys that the settings give to commands, checked against all commands. Mistakes are reported, and the usual keys
+//! stay.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -123,8 +123,8 @@ fn compare(to: &mut List) {
 fn marks(to: &mut List) {
     let v = &to.session.view;
     to.menu(Menu::new("Marks"), |to| {
-        let lights = ViewChange::Gizmos(!v.show_gizmos);
-        let lights = switch("light_markers", "Show light markers", v.show_gizmos, lights).at_desk();
+        let lights = ViewChange::Markers(!v.show_markers);
+        let lights = switch("light_markers", "Show light markers", v.show_markers, lights).at_desk();
         to.add(lights.says("Show light markers"));
         let room = switch("room_outline", "Outline of the room", v.show_room, ViewChange::Room(!v.show_room));
         to.add(room.says("Outline of the room").at_desk());

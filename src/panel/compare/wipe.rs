@@ -64,13 +64,14 @@ fn wipe(ui: &mut Ui, rect: Rect, context: &mut PanelContext<'_>) -> Rect {
         split = if upright { t.x } else { t.y };
     }
     if response.double_clicked() {
-        split = 0.5;
+        split = Comparison::default().split;
     }
     let steps = focus::steps(ui, &response, [upright, !upright])[usize::from(!upright)];
     split += STEP * steps.clamp(-1.0, 1.0) as f32;
     if split != comparison.split {
-        let split = (split.clamp(0.0, 1.0) * 1000.0).round() / 1000.0;
-        context.act(Action::Compare(CompareCommand::Set(Comparison { split, ..*comparison })));
+        let moved = comparison.with_split(split);
+        let split = (moved.split * 1000.0).round() / 1000.0;
+        context.act(Action::Compare(CompareCommand::Set(Comparison { split, ..moved })));
     }
     response.on_hover_cursor(cursor).on_hover_text(
         "Drag the edge between the views. With the focus, arrow keys move it; double-click: the middle.",

@@ -343,12 +343,13 @@ fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, re
     if seen.model.interpreted {
         theme::note(ui, "The CPU interprets the WGSL of this model.");
     }
+    // First where there is any: it is what such a model is about.
+    refraction::refraction(ui, seen);
     ui.add_space(2.0);
     if let Some(shading) = registry.shading_model(seen.shading.id) {
         super::inspector::model::stage(ui, shading);
     }
     point::point(ui, seen, sight.is_some());
-    refraction::refraction(ui, seen);
 }
 
 fn seen_light(ui: &mut Ui, lamp: &Lamp, name: &dyn Fn(usize) -> String) {

@@ -51,7 +51,7 @@ pub(super) enum Unfolded {
 /// The level of detail of an explanation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Level {
-    /// A sentence that says what happened.
+    /// A sentence that reports the event.
     Sentence,
     /// The equation with numbers.
     #[default]

@@ -71,8 +71,8 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
 }
 
 /// Paints the vectors of the explained point into a view, while the point is pinned or under the pointer; those of a
-/// pinned point also into the other views. Their letters keep clear of what is written over the picture. Returns the
-/// rectangle of the legend of the lobe.
+/// pinned point also into the other views. The letters keep clear of the text over the picture. Returns the rectangle
+/// of the legend of the lobe.
 pub fn vectors(ui: &Ui, view: usize, sight: Sight<'_>) -> Option<Rect> {
     let Sight { rect, written, session, registry } = sight;
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());

@@ -1,4 +1,4 @@
-//! The arrows along the axes of the room, which move what is selected.
+//! The arrows along the axes of the room, which move the selection.
 
 use bevy_egui::egui::Pos2;
 use glam::Vec3;

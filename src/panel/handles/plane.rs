@@ -1,4 +1,4 @@
-//! The disc that moves what is selected in the plane of the picture.
+//! The disc that moves the selection in the plane of the picture.
 
 use bevy_egui::egui::{Pos2, Vec2, vec2};
 use glam::Vec3;

@@ -56,14 +56,9 @@ pub(super) fn light(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     if light.position.is_some() || light.direction.is_some() {
         section(ui, "Position", true, |ui| {
             let room = session.document.scene_size;
-            let mut knob = |field, value: Option<Vec3>, help| {
-                let edit = value.and_then(|value| vector(ui, part, field, help, value, room));
-                context.edits(edit);
-            };
-            let help = "Position of the light; y is up, the origin is a corner of the room.";
-            knob(Light::position, light.position, help);
-            let help = "Direction in which the light shines; its length does not matter.";
-            knob(Light::direction, light.direction, help);
+            for (field, value) in [(Light::position, light.position), (Light::direction, light.direction)] {
+                context.edits(value.and_then(|value| vector(ui, part, field, value, room)));
+            }
         });
     }
 }
@@ -74,7 +69,7 @@ fn equation(ui: &mut Ui, entry: &LightEntry) {
     if !d.summary.is_empty() {
         theme::note(ui, d.summary);
     }
-    maths::equation(ui, &[EquationPart { term: Term::Total, text: d.equation }], |symbol| match symbol {
+    maths::equation(ui, &[EquationPart::new(Term::Total, d.equation)], |symbol| match symbol {
         "I" => Some("the intensity of the light".to_owned()),
         other => {
             let own = entry.parameters.iter().find(|p| maths::same_symbol(p.symbol, other));
@@ -87,7 +82,8 @@ fn equation(ui: &mut Ui, entry: &LightEntry) {
 fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Option<Edit> {
     let d = entry.declaration;
     let intensity = f64::from(light.intensity_as(entry));
-    let caption = Caption { symbol: "I", unit: d.unit, ..Caption::of(&Light::intensity, unit_help(d.unit)) };
+    let help = unit_help(d.unit);
+    let caption = Caption { symbol: "I", unit: d.unit, help, ..Caption::of(&Light::intensity) };
     let default = f64::from(d.default_intensity);
     let limits = limits::intensity(d);
     let Some(solid_angle) = entry.solid_angle(&light.parameters) else {
@@ -118,8 +114,8 @@ fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Opt
     let units = [[d.unit, word], ["lm", "lumen"]];
     let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, usize::from(as_flux), &units);
     let (field, caption, value, default, limits) = if as_flux {
-        let caption = Caption::of(&Light::luminous_flux, unit_help("lm"));
-        let caption = Caption { salt: "flux", symbol: "Φ", ..caption };
+        let help = unit_help("lm");
+        let caption = Caption { salt: "flux", symbol: "Φ", help, ..Caption::of(&Light::luminous_flux) };
         let default = limits::significant(default * solid_angle, 3);
         (Light::luminous_flux, caption, flux, default, limits::luminous_flux(d))
     } else {
@@ -176,8 +172,8 @@ fn light_colour(ui: &mut Ui, part: Part, light: &Light) -> Option<Edit> {
             let help = "The colour of a black body of this temperature: a candle has 1900 K, a light bulb 2700 K, the \
                         midday sun about 5500 K, a blue sky 10 000 K and more; 6500 K is white. The luminance stays \
                         that of a white light of this intensity.";
-            let caption = Caption::of(&Light::colour_temperature, help);
-            let caption = Caption { salt: "temperature", symbol: "T", ..caption };
+            let caption = Caption::of(&Light::colour_temperature);
+            let caption = Caption { salt: "temperature", symbol: "T", help, ..caption };
             let default = Some(f64::from(temperature::WHITE_TEMPERATURE));
             let limits = Light::colour_temperature.limits();
             knob::number_knob(ui, &caption, Amount::new(kelvin.into(), default, &limits))
@@ -186,7 +182,7 @@ fn light_colour(ui: &mut Ui, part: Part, light: &Light) -> Option<Edit> {
         None => {
             let help = "The colour of the light; white leaves the materials as they are. Other colours are a filter: blue \
                         alone has 7 % of the luminance of white.";
-            let caption = Caption::of(&Light::colour, help);
+            let caption = Caption { help, ..Caption::of(&Light::colour) };
             knob::colour_knob(ui, &caption, light.colour, Some([255; 3]))
                 .map(|rgb| Edit::set(part, Light::colour, rgb))
         }

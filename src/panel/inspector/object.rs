@@ -60,7 +60,7 @@ pub(super) struct Shown<'a> {
     pub(super) part: Part,
     pub(super) object: &'a Object,
     pub(super) model: Option<&'a ModelEntry>,
-    /// What differs from copy to copy of its row.
+    /// The fields that differ from copy to copy of the object's row.
     pub(super) varied: Vec<Key>,
 }
 
@@ -127,8 +127,8 @@ impl Shown<'_> {
     }
 
     /// The caption of a field of the object.
-    fn caption<'c>(&self, field: Field, help: &'c str) -> Caption<'c> {
-        Caption { disabled: self.fixed(field), ..Caption::of(&field, help) }
+    fn caption(&self, field: Field) -> Caption<'static> {
+        Caption { disabled: self.fixed(field), ..Caption::of(&field) }
     }
 
     /// The object type, its size and its place.
@@ -146,13 +146,14 @@ impl Shown<'_> {
         self.shape(ui, context);
         let room = session.document.scene_size;
         let [size, default] = [object.size, Object::default().size].map(f64::from);
-        let caption = self.caption(Object::size, "The largest extent.");
+        let caption = self.caption(Object::size);
         let limits = limits::object_size(room);
         let size = knob::number_knob(ui, &caption, Amount::new(size, Some(default), &limits));
         context.edits(size.map(|v| Edit::set(part, Object::size, v as f32)));
-        let help = "Position of the centre; y is up, the origin is a corner of the room.";
-        context.edits(vector(ui, part, Object::position, help, object.position, room));
-        let caption = self.caption(Object::rotation, "Turned about x first, then y, then z of the room.");
+        context.edits(vector(ui, part, Object::position, object.position, room));
+        // The axes are those of the room, which the documentation of the field leaves open.
+        let help = "Turned about x first, then y, then z of the room.";
+        let caption = Caption { help, ..self.caption(Object::rotation) };
         let limits = [0, 1, 2].map(|_| Object::rotation.limits());
         let rotation = knob::vector_knob(ui, &caption, object.rotation, &limits);
         context.edits(rotation.map(|v| Edit::set(part, Object::rotation, v)));

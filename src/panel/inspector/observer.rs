@@ -3,26 +3,23 @@
 use super::part::{number, section, vector};
 use crate::{
     panel::{keys, prelude::*, state::Effect},
-    scene::Observer,
+    parameter::Value,
+    scene::{
+        Field, Observer, SceneSize,
+        part::{Fields as _, Structure as _},
+    },
 };
 
 pub(super) fn observer(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let session = context.session();
-    let o = session.document.observer;
+    let observer = session.document.observer;
     ui.label(RichText::new("Observer").heading());
     ui.label(theme::small(ui, "The camera of the scene"));
     ui.add_space(6.0);
     section(ui, "Position", true, |ui| {
-        let (part, room) = (Part::Observer, session.document.scene_size);
-        let help = "Position of the eye; y is up, the origin is a corner of the room.";
-        let position = vector(ui, part, Observer::position, help, o.position, room);
-        let help = "Viewing direction; its length does not matter.";
-        let direction = vector(ui, part, Observer::direction, help, o.direction, room);
-        let help = "The angle between the lower and the upper edge of the picture.";
-        let field = Observer::field_of_view;
-        let angles = [o.field_of_view, Observer::default().field_of_view];
-        let angle = number(ui, part, field, help, angles, &field.limits());
-        context.edits([position, direction, angle].into_iter().flatten());
+        for field in Observer::FIELDS {
+            context.edits(knob_of_field(ui, **field, &observer, session.document.scene_size));
+        }
         ui.horizontal_wrapped(|ui| {
             let tip = keys::hint(ui.ctx(), "Move the camera to the observer", "home");
             let button = ui.button("View as observer").on_hover_text(tip);
@@ -38,4 +35,14 @@ pub(super) fn observer(ui: &mut Ui, context: &mut PanelContext<'_>) {
             }
         });
     });
+}
+
+/// The knob of a field of the observer, by the type of its value.
+fn knob_of_field(ui: &mut Ui, field: Field, now: &Observer, room: SceneSize) -> Option<Edit> {
+    let [value, default] = [now, &Observer::default()].map(|observer| observer.value(field.into()));
+    match (value?, default?) {
+        (Value::Triple(v), _) => vector(ui, Part::Observer, field, v.into(), room),
+        (Value::Number(v), Value::Number(default)) => number(ui, Part::Observer, field, [v, default]),
+        _ => None,
+    }
 }

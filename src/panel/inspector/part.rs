@@ -12,11 +12,7 @@ use crate::{
     },
     parameter::{Parameter, Value, Values},
     reflection::usage,
-    scene::{
-        Field, Light, SceneSize,
-        field::Kind,
-        limits::{self, Limits},
-    },
+    scene::{Field, Light, SceneSize, field::Kind, limits},
 };
 
 /// A group with a heading; folds.
@@ -122,34 +118,19 @@ pub(super) fn text_field(
 }
 
 /// The knob of a vector of a part.
-pub(super) fn vector(
-    ui: &mut Ui,
-    part: Part,
-    field: Field,
-    help: &str,
-    value: Vec3,
-    room: SceneSize,
-) -> Option<Edit> {
+pub(super) fn vector(ui: &mut Ui, part: Part, field: Field, value: Vec3, room: SceneSize) -> Option<Edit> {
     let limits = [0, 1, 2].map(|axis| match field.kind {
         Kind::Position => limits::position(room, axis),
         _ => field.limits(),
     });
-    let caption = Caption::of(&field, help);
-    knob::vector_knob(ui, &caption, value, &limits).map(|v| Edit::set(part, field, v))
+    knob::vector_knob(ui, &Caption::of(&field), value, &limits).map(|v| Edit::set(part, field, v))
 }
 
 /// The knob of a number of a part, with its default.
-pub(super) fn number(
-    ui: &mut Ui,
-    part: Part,
-    field: Field,
-    help: &str,
-    [value, default]: [f32; 2],
-    limits: &Limits,
-) -> Option<Edit> {
-    let caption = Caption::of(&field, help);
-    let amount = Amount::new(value.into(), Some(default.into()), limits);
-    knob::number_knob(ui, &caption, amount).map(|v| Edit::set(part, field, v as f32))
+pub(super) fn number(ui: &mut Ui, part: Part, field: Field, [value, default]: [f32; 2]) -> Option<Edit> {
+    let limits = field.limits();
+    let amount = Amount::new(value.into(), Some(default.into()), &limits);
+    knob::number_knob(ui, &Caption::of(&field), amount).map(|v| Edit::set(part, field, v as f32))
 }
 
 /// The choice of a type from the id, name and summary of each. Returns the id of another one. `fixed` is the reason why it

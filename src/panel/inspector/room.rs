@@ -51,16 +51,13 @@ pub(super) fn room(ui: &mut Ui, context: &mut PanelContext<'_>) {
 /// Exposure, tone mapping and encoding, which a view may override.
 fn display(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let d = context.session().scene().display;
-    let help = "Each EV doubles the brightness of the picture, as a stop of a camera does.";
-    let limits = Display::exposure.limits();
     let edit = marked(ui, Variant::exposure, context, |ui| {
-        number(ui, Part::Display, Display::exposure, help, [d.exposure, 0.0], &limits)
+        number(ui, Part::Display, Display::exposure, [d.exposure, Display::default().exposure])
     });
     context.edits(edit);
     let options: Vec<_> = ToneMapping::ALL.iter().map(|t| [t.name(), t.author(), t.summary()]).collect();
     let chosen = ToneMapping::ALL.iter().position(|t| *t == d.tone_mapping).unwrap_or(0);
-    let help = "How light brighter than the display can show is brought into its range. None: it is cut off, and values stay comparable.";
-    let caption = Caption::of(&Display::tone_mapping, help);
+    let caption = Caption::of(&Display::tone_mapping);
     if let Some(i) = marked(ui, Variant::tone_mapping, context, |ui| {
         knob::choice_with_help(ui, &caption, chosen, &options)
     }) {
@@ -73,7 +70,7 @@ fn display(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
     let chosen = Encoding::ALL.iter().position(|e| *e == d.encoding).unwrap_or(0);
     let help = "sRGB: colours are decoded to linear light, the picture is encoded for the display. Off: neither; deliberately wrong, for comparison.";
-    let caption = Caption::of(&Variant::encoding, help);
+    let caption = Caption { help, ..Caption::of(&Variant::encoding) };
     if let Some(i) =
         marked(ui, Variant::encoding, context, |ui| knob::choice_knob(ui, &caption, chosen, &names))
     {
@@ -81,18 +78,18 @@ fn display(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// What all views show behind everything.
+/// The background of all views.
 fn background(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let d = context.session().scene().display;
     let options: Vec<_> = Background::ALL.iter().map(|b| [b.name(), "", b.summary()]).collect();
     let chosen = Background::ALL.iter().position(|b| *b == d.background).unwrap_or(0);
     let help = "What the picture shows behind everything, in all views. It lights nothing.";
-    let caption = Caption { salt: "background", ..Caption::of(&Display::background, help) };
+    let caption = Caption { salt: "background", help, ..Caption::of(&Display::background) };
     if let Some(i) = knob::choice_with_help(ui, &caption, chosen, &options) {
         context.edit(Edit::set(Part::Display, Display::background, Background::ALL[i]));
     }
-    let mut colour = |field: Field, label: &str, help: &str, now: [u8; 3], default: [u8; 3]| {
-        let caption = Caption { salt: field.key, label, ..Caption::of(&field, help) };
+    let mut colour = |field: Field, label: &str, now: [u8; 3], default: [u8; 3]| {
+        let caption = Caption { salt: field.key, label, ..Caption::of(&field) };
         let new = knob::colour_knob(ui, &caption, now, Some(default));
         context.edits(new.map(|rgb| Edit::set(Part::Display, field, rgb)));
     };
@@ -101,15 +98,12 @@ fn background(ui: &mut Ui, context: &mut PanelContext<'_>) {
     match d.background {
         Background::Environment => {}
         Background::Colour => {
-            let help = "Shown as it is picked: neither exposure nor tone mapping changes it.";
-            colour(Display::background_colour, "colour", help, top, top_default);
+            colour(Display::background_colour, "colour", top, top_default);
         }
         Background::Gradient => {
-            let help = "The colour at the upper edge of the picture, shown as it is picked. The codes change evenly towards the lower edge.";
-            colour(Display::background_colour, "colour at the top", help, top, top_default);
-            let help = "The colour at the lower edge of the picture, shown as it is picked.";
+            colour(Display::background_colour, "colour at the top", top, top_default);
             let (bottom, default) = (d.background_bottom, usual.background_bottom);
-            colour(Display::background_bottom, "colour at the bottom", help, bottom, default);
+            colour(Display::background_bottom, "colour at the bottom", bottom, default);
         }
     }
 }

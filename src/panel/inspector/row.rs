@@ -8,7 +8,7 @@ use crate::{
     },
     parameter::Value,
     scene::{
-        Field, Key, Object, Repeat, Repetition, Varied,
+        Declared, Field, Key, Object, Repeat, Repetition, Varied,
         held::Word,
         limits::Limits,
         repeat::{Along, MAX_VARIED, Scale},
@@ -65,7 +65,7 @@ struct Shown<'a> {
     row: Row<'a>,
     document: &'a Document,
     registry: &'a Registry,
-    /// Its reflection model and its shading model.
+    /// The reflection model and the shading model of the row.
     models: (&'a str, &'a str),
 }
 
@@ -104,7 +104,7 @@ impl Shown<'_> {
             let most = f64::from(self.row.most(along, self.document));
             let limits = Limits::between(1.0, most).whole().slider(1.0, SLIDER.min(most.max(2.0)));
             let limits = Limits { because: Some("there is room for no more".to_owned()), ..limits };
-            let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
+            let caption = Caption { salt: field.key, ..Caption::of(&field) };
             knob::number_knob(ui, &caption, Amount::new(value.into(), None, &limits)).map(|v| v as u32)
         };
         let columns = count(ui, Repeat::columns, repeat.columns, Along::Columns);
@@ -120,7 +120,7 @@ impl Shown<'_> {
         let repeat = self.row.repeat;
         let step = |ui: &mut Ui, field: Field, value: Vec3, along: Along| {
             let limits = [0, 1, 2].map(|axis| self.limits_of_step(along, axis, value[axis].into(), field));
-            let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
+            let caption = Caption { salt: field.key, ..Caption::of(&field) };
             knob::vector_knob(ui, &caption, value, &limits)
         };
         let mut edit = step(ui, Repeat::spacing, repeat.spacing, Along::Columns)
@@ -145,8 +145,8 @@ impl Shown<'_> {
         }
     }
 
-    /// The numbers that may vary: those of the object, and of its model.
-    fn numbers(&self) -> Vec<Variable> {
+    /// The values that may vary, of the object and of its model: numbers first, which have ranges.
+    fn variables(&self) -> Vec<Variable> {
         let entry = self.row.entry;
         let model = self.registry.model(self.models.0);
         let shading = self.registry.shading_model(self.models.1);
@@ -157,17 +157,45 @@ impl Shown<'_> {
             }
             Key::Own(_) => true,
         };
-        let all = Variable::all(&entry.object_type, self.registry);
-        let mut numbers: Vec<_> = all.filter(|one| one.declared.limits().is_some()).filter(used).collect();
+        // Files are named in scene files.
+        let is_file = |one: &Variable| matches!(self.value(*one), Some(Value::File(_)));
+        let all = Variable::all(&entry.object_type, self.registry).filter(used);
+        let mut all: Vec<_> = all.filter(|one| !is_file(one)).collect();
         // Those of the material are asked for most.
-        numbers.sort_by_key(|one| !matches!(one.key, Key::Material(_)));
-        numbers
+        let is_own = |one: &Variable| !matches!(one.key, Key::Material(_));
+        all.sort_by_key(|one| (one.declared.limits().is_none(), is_own(one)));
+        all
+    }
+
+    /// The value of the shown copy.
+    fn value(&self, one: Variable) -> Option<Value> {
+        let inherited = [
+            (Key::from(Object::reflection_model), self.models.0),
+            (Key::from(Object::shading_model), self.models.1),
+        ];
+        let own = self.document.objects.get(self.i).and_then(|object| one.of_object(object));
+        let model = inherited.into_iter().find(|(key, _)| *key == one.key);
+        own.or_else(|| model.map(|(_, id)| Value::Choice(id.to_owned().into())))
+    }
+
+    /// Lets a value vary: over its range, or, if it is not a number, in a list.
+    fn start(&self, one: Variable, along: Along) -> Option<Varied> {
+        let listed = || {
+            let steps = usize::try_from(self.row.repeat.steps(along)).ok()?;
+            Some(one.listed(self.value(one)?, steps, self.registry))
+        };
+        one.over_its_range().or_else(listed).map(|varied| Varied { along, ..varied })
     }
 
     /// A value that could vary, too.
     fn free(&self) -> Option<Varied> {
         let varies = |one: &Variable| self.row.repeat.vary.iter().any(|v| v.parameter == one.path());
-        self.numbers().into_iter().filter(|one| !varies(one)).find_map(Variable::over_its_range)
+        let free: Vec<_> = self.variables().into_iter().filter(|one| !varies(one)).collect();
+        let ranges = || free.iter().find_map(|one| one.over_its_range());
+        // A model without numbers has colours.
+        let of_material = || free.iter().find(|one| matches!(one.key, Key::Material(_)));
+        let listed = || self.start(*of_material().or(free.first())?, Along::Columns);
+        ranges().or_else(listed)
     }
 
     /// The knobs of a varied value.
@@ -191,18 +219,19 @@ impl Shown<'_> {
 
     /// The value that varies, and a button that lets it be the same everywhere.
     fn which_value(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
-        let numbers = self.numbers();
-        let now = numbers.iter().position(|one| one.path() == varied.parameter);
-        let mut names: Vec<_> = numbers.iter().map(|one| one.declared.label()).collect();
+        let taken = |one: &Variable| {
+            let path = one.path();
+            path != varied.parameter && self.row.repeat.vary.iter().any(|v| v.parameter == path)
+        };
+        let all: Vec<_> = self.variables().into_iter().filter(|one| !taken(one)).collect();
+        let now = all.iter().position(|one| one.path() == varied.parameter);
+        let mut names: Vec<_> = all.iter().map(|one| one.declared.label()).collect();
         let other = now.is_none().then(|| self.name_of_other(varied));
         names.extend(other.as_deref());
         let caption = Caption::new("varies", "", Varied::parameter.help.trim());
-        let line = ui.scope(|ui| knob::choice_knob(ui, &caption, now.unwrap_or(numbers.len()), &names));
-        let new = line.inner.and_then(|k| numbers.get(k)).and_then(|one| one.over_its_range());
-        let chosen = new.map(|new| {
-            let along = varied.along;
-            self.varying("Varied value", j, |known| *known = Varied { along, ..new })
-        });
+        let line = ui.scope(|ui| knob::choice_knob(ui, &caption, now.unwrap_or(all.len()), &names));
+        let new = line.inner.and_then(|k| all.get(k)).and_then(|one| self.start(*one, varied.along));
+        let chosen = new.map(|new| self.varying("Varied value", j, |known| *known = new));
         // In the column of the units, so that the choice is in line with those below.
         let place = Rect::from_min_size(
             line.response.rect.right_top() + vec2(-icon::SIZE, 2.0),
@@ -214,26 +243,23 @@ impl Shown<'_> {
         chosen.or(same)
     }
 
-    /// The name of a varied value that is none of the numbers: only a file can choose it, or the model does not use it.
+    /// The name of a varied value that cannot be chosen: the model does not use it.
     fn name_of_other(&self, varied: &Varied) -> String {
-        let known = Variable::with_path(&varied.parameter, &self.row.entry.object_type, self.registry);
-        known.map_or_else(
+        self.known(varied).map_or_else(
             || varied.parameter.clone(),
             |one| match one.key {
-                Key::Material(_) if one.declared.limits().is_some() => {
-                    format!("{} (not used)", one.declared.label())
-                }
-                _ => one.declared.label().to_owned(),
+                Key::Material(_) => format!("{} (not used)", one.declared.label()),
+                Key::Own(_) => one.declared.label().to_owned(),
             },
         )
     }
 
     /// The ends of a range, and its scale.
     fn range(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
-        let known = self.numbers().into_iter().find(|one| one.path() == varied.parameter);
-        let limits = known.and_then(|one| one.declared.limits()).unwrap_or_else(|| Varied::from.limits());
+        let limits = self.known(varied).and_then(|one| one.declared.limits());
+        let limits = limits.unwrap_or_else(|| Varied::from.limits());
         let end = |ui: &mut Ui, field: Field, value: Option<f32>| {
-            let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
+            let caption = Caption { salt: field.key, ..Caption::of(&field) };
             let value = f64::from(value.unwrap_or_default());
             knob::number_knob(ui, &caption, Amount::new(value, None, &limits)).map(|v| v as f32)
         };
@@ -255,37 +281,65 @@ impl Shown<'_> {
         from.or(to).or(scale).or(list)
     }
 
-    /// The listed values, each with a knob if they are numbers, and a button that makes a range of them.
+    /// The listed values, each with a knob, and a button that makes a range of numbers.
     fn list(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
-        let known = self.numbers().into_iter().find(|one| one.path() == varied.parameter);
-        let limits = known.and_then(|one| one.declared.limits().map(|limits| (one.declared, limits)));
+        let known = self.known(varied);
         let mut changed = None;
-        let mut words = Vec::new();
         for (k, value) in varied.values.iter().take(MOST_LISTED).enumerate() {
-            let Some(((declared, limits), number)) = limits.as_ref().zip(number_of(value)) else {
-                words.push(self.in_words(varied, value));
-                continue;
-            };
             let name = format!("value {}", k + 1);
-            let caption = Caption::new(&name, "", declared.label());
-            let new = ui.push_id(k, |ui| knob::number_knob(ui, &caption, Amount::new(number, None, limits)));
-            if let Some(new) = new.inner.and_then(|new| declared.of_number(new)) {
+            let new = ui.push_id(k, |ui| match known {
+                Some(one) => self.listed(ui, one, &name, value),
+                None => {
+                    ui.label(theme::small(ui, format!("{name}: {value}")));
+                    None
+                }
+            });
+            if let Some(new) = new.inner {
                 changed = Some(self.varying("Listed value", j, |varied| varied.values[k] = new));
             }
         }
-        words.extend(
-            (varied.values.len() > MOST_LISTED).then(|| format!("… ({} in all)", varied.values.len())),
-        );
-        if !words.is_empty() {
-            ui.add(Label::new(theme::small(ui, format!("Values: {}", words.join(", ")))).wrap());
+        if varied.values.len() > MOST_LISTED {
+            let rest = format!("… ({} values in all; a file can change the others)", varied.values.len());
+            ui.add(Label::new(theme::small(ui, rest)).wrap());
         }
         changed.or_else(|| self.range_instead(ui, j, varied))
     }
 
-    /// A listed value as people write it.
-    fn in_words(&self, varied: &Varied, value: &Value) -> String {
-        let known = Variable::with_path(&varied.parameter, &self.row.entry.object_type, self.registry);
-        known.map_or_else(|| value.to_string(), |one| one.declared.shown(value, self.registry))
+    /// The knob of a listed value. Returns another one.
+    fn listed(&self, ui: &mut Ui, one: Variable, name: &str, value: &Value) -> Option<Value> {
+        let caption = Caption::new(name, "", one.declared.label());
+        if let Some((number, limits)) = number_of(value).zip(one.declared.limits()) {
+            let new = knob::number_knob(ui, &caption, Amount::new(number, None, &limits))?;
+            return one.declared.of_number(new);
+        }
+        match (value, one.declared) {
+            (Value::Colour(rgb), _) => knob::colour_knob(ui, &caption, *rgb, None).map(Value::Colour),
+            (Value::Triple(v), Declared::Parameter(parameter)) => {
+                let new = knob::triple_knob(ui, &caption, *v, *v, &parameter.kind.limits()?);
+                new.map(Value::Triple)
+            }
+            (Value::Triple(v), Declared::Field(field)) => {
+                let limits = [(); 3].map(|()| field.limits());
+                knob::vector_knob(ui, &caption, (*v).into(), &limits).map(|v| Value::Triple(v.into()))
+            }
+            (Value::Choice(word), _) => {
+                let words = one.words(self.registry);
+                let names: Vec<_> = words.iter().map(|(_, name)| *name).collect();
+                let now = words.iter().position(|(id, _)| **id == **word).unwrap_or(words.len());
+                let new = knob::choice_knob(ui, &caption, now, &names)?;
+                words.get(new).map(|(id, _)| Value::Choice((*id).into()))
+            }
+            _ => {
+                let shown = one.declared.shown(value, self.registry);
+                ui.add(Label::new(theme::small(ui, format!("{name}: {shown}"))).wrap());
+                None
+            }
+        }
+    }
+
+    /// The declaration of a varied value, if there is one.
+    fn known(&self, varied: &Varied) -> Option<Variable> {
+        Variable::with_path(&varied.parameter, &self.row.entry.object_type, self.registry)
     }
 
     /// The button that makes a range of listed values.
@@ -316,6 +370,6 @@ fn number_of(value: &Value) -> Option<f64> {
 fn choice<T: Word + PartialEq>(ui: &mut Ui, field: Field, now: T, all: &[T]) -> Option<T> {
     let options: Vec<_> = all.iter().map(|one| one.about()).map(|[_, name, help]| [name, "", help]).collect();
     let chosen = all.iter().position(|one| *one == now).unwrap_or(0);
-    let caption = Caption { salt: field.key, ..Caption::of(&field, field.help.trim()) };
+    let caption = Caption { salt: field.key, ..Caption::of(&field) };
     knob::choice_with_help(ui, &caption, chosen, &options).and_then(|k| all.get(k)).copied()
 }

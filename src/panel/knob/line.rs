@@ -43,10 +43,10 @@ impl<'a> Caption<'a> {
         Self { salt: label, label, unit, help, ..Self::default() }
     }
 
-    /// The caption of a field of a scene.
+    /// The caption of a field of a scene, with its documentation as description.
     #[must_use]
-    pub fn of(field: &Field, help: &'a str) -> Self {
-        Self::new(field.label(), field.unit, help)
+    pub fn of(field: &Field) -> Self {
+        Self::new(field.label(), field.unit, field.help.trim())
     }
 }
 

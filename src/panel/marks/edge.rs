@@ -60,7 +60,7 @@ fn paint(painter: &Painter, at: Pos2, way: Vec2, count: usize, colour: Color32) 
     }
 }
 
-/// The arrows. Where many would overlap, one stands for them and says how many.
+/// The arrows. A single arrow stands for many that would overlap, and gives their number.
 pub(super) fn arrows(
     ui: &Ui,
     Sight { rect, written, session, registry }: Sight<'_>,

@@ -27,7 +27,7 @@ impl Ray {
     }
 }
 
-/// The way from the room to the picture, and back: what the camera of the window shows in a rectangle.
+/// The mapping from the room to the picture and back, as the camera of the window shows the room in a rectangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
     /// The place of the camera.
@@ -113,7 +113,7 @@ impl Lens {
         convex(ahead.into_iter().map(|p| self.flat(p)).collect())
     }
 
-    /// A line through the room as lines in the picture, without what is behind the camera.
+    /// A line through the room as lines in the picture, without the part behind the camera.
     pub(in crate::panel) fn path(&self, points: &[Vec3]) -> Vec<Vec<Pos2>> {
         let mut runs = vec![Vec::new()];
         let mut last: Option<Vec3> = None;

@@ -35,7 +35,7 @@ pub use place::{anchor, places};
 
 /// Okabe–Ito yellow: lights.
 const LIGHT: Color32 = Color32::from_rgb(0xf0, 0xe4, 0x42);
-/// Okabe–Ito sky blue, lightened: what is selected.
+/// Okabe–Ito sky blue, lightened: the selection.
 const SELECTED: Color32 = Color32::from_rgb(0x7c, 0xc8, 0xff);
 /// Okabe–Ito bluish green, lightened: the observer.
 const OBSERVER: Color32 = Color32::from_rgb(0x5f, 0xe3, 0xb5);
@@ -61,7 +61,7 @@ const FRAME: f32 = 7.0;
 /// A picture on the screen.
 #[derive(Clone, Copy)]
 pub struct Sight<'a> {
-    /// Its rectangle.
+    /// Rectangle of the picture.
     pub rect: Rect,
     /// The rectangles that are written over it.
     pub written: &'a [Rect],
@@ -71,13 +71,13 @@ pub struct Sight<'a> {
     pub registry: &'a Registry,
 }
 
-/// What was asked for, and the places that can be clicked, which do not belong to the picture.
+/// The requested actions, and the clickable places, which do not belong to the picture.
 pub type Asked = (Vec<Action>, Vec<Rect>);
 
 /// Paints the marks into a picture.
 pub fn marks(ui: &Ui, sight: Sight<'_>) -> Asked {
     let Sight { rect, written, session, registry } = sight;
-    if !session.view.show_gizmos {
+    if !session.view.show_markers {
         return (Vec::new(), Vec::new());
     }
     let scene = &session.document;

@@ -78,7 +78,7 @@ fn variable(letter: &str) -> egui::FontFamily {
     if capital { theme::maths() } else { theme::maths_italic() }
 }
 
-/// The runs of an index or an exponent: words, and what is between them.
+/// The runs of an index or an exponent: words, and the text between them.
 fn runs(script: &str) -> impl Iterator<Item = &str> {
     let mut rest = script;
     std::iter::from_fn(move || {

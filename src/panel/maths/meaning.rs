@@ -67,10 +67,10 @@ mod tests {
             }
         }
         assert_eq!(unexplained, [""; 0], "neither a parameter nor explained in `meaning`");
-        let parts = [EquationPart { term: Term::Diffuse, text: "x = H·T / H·N , y_{ab} = x + z" }];
+        let parts = [EquationPart::new(Term::Diffuse, "x = H·T / H·N , y_{ab} = x + z")];
         assert!(definition(&parts, "x").is_some() && definition(&parts, "y_ab").is_some());
         assert!(definition(&parts, "z").is_none() && definition(&parts, "H").is_none());
-        let parts = [EquationPart { term: Term::Diffuse, text: "I_d = H(μ_l) C_b, H(μ) = 1 + μ" }];
+        let parts = [EquationPart::new(Term::Diffuse, "I_d = H(μ_l) C_b, H(μ) = 1 + μ")];
         assert_eq!(definition(&parts, "H"), Some("H(μ) = 1 + μ"), "not the half vector");
     }
 }

@@ -258,7 +258,7 @@ mod tests {
         ctx.set_fonts(crate::lettering::fonts());
         for width in [120.0, 270.0] {
             for text in HARD {
-                let parts = [EquationPart { term: Term::Total, text }];
+                let parts = [EquationPart::new(Term::Total, text)];
                 let mut lines = 0.0;
                 let mut shapes = Vec::new();
                 for _ in 0..2 {

@@ -17,7 +17,7 @@ pub(in crate::panel) fn file_name(session: &Session) -> String {
     format!("{}_{}.svg", session.stem(), session.plots.kind.id())
 }
 
-/// Lets a dialog offer the formats. It gives what is typed the extension of the one that is chosen.
+/// Lets a dialog offer the formats. It adds the extension of the chosen one to the typed name.
 pub(in crate::panel) fn offer(dialog: &mut FileDialog) {
     let name = |format: Format| match format {
         Format::Svg => "Vector graphics",
@@ -32,7 +32,7 @@ pub(in crate::panel) fn offer(dialog: &mut FileDialog) {
     *dialog.config_mut() = config;
 }
 
-/// The file that is meant by what was typed: vector graphics if it has no extension.
+/// The file that a typed name means: vector graphics if it has no extension.
 #[must_use]
 pub fn file_of(typed: &Path) -> PathBuf {
     match (typed.extension(), typed.file_stem().map(Path::new)) {
@@ -45,8 +45,8 @@ pub fn file_of(typed: &Path) -> PathBuf {
     }
 }
 
-/// Calculates a plot and writes it to a file; the name says the format. Returns what is to be said of it. What is in its
-/// place is replaced if `replace`, and if it is such a file and none of `inputs`.
+/// Calculates a plot and writes it to a file; the name determines the format. Returns the message about it. An existing
+/// file is replaced only with `replace`, and only if it is such a file and none of `inputs`.
 ///
 /// # Errors
 /// The reason why there is no file.

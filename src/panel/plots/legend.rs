@@ -1,4 +1,4 @@
-//! The list of the curves: what is shown, its colour and dash, its value where the plot is read.
+//! The list of the curves: the subject, its colour and dash, its value where the plot is read.
 
 use bevy_egui::egui::PopupCloseBehavior;
 

@@ -1,4 +1,4 @@
-//! The plot itself, and what is read from it.
+//! The plot itself, and the values read from it.
 
 use super::{
     Built, PlotPanel, Request, handle,
@@ -182,7 +182,7 @@ fn walked(
     Some(Reading::Angle((angle + step).clamp(from, to)))
 }
 
-/// Marks what is read.
+/// Marks the values that are read.
 fn mark(ui: &Ui, screen: &Screen, ground: &Ground, built: &Built, reading: Reading) {
     let palette = Palette::here(ui);
     let painter = ui.painter();

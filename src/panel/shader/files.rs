@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::missing_model;
+use super::{missing_model, open_in_editor};
 use crate::{
     panel::{
         prelude::*,
@@ -52,15 +52,7 @@ pub(super) fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
                 Some(folder) => watched(ui, folder, context),
                 None => export(ui, context),
             }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let label = Label::new(theme::strong(ui, title)).truncate();
-                ui.add(label).on_hover_text("The picture is made of these files.");
-                let text = origin(&files, registry);
-                let folder = &session.shaders.folders.shaders;
-                if folder.is_none() && theme::small_width(ui, text) <= ui.available_width() {
-                    ui.label(theme::small(ui, text));
-                }
-            });
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| heading(ui, title, &files, context));
         });
     });
     // Paths are aligned, after the longest name.
@@ -77,6 +69,17 @@ pub(super) fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
             self::file(ui, &file, names, context);
         }
     });
+}
+
+/// What the files belong to, and, if there is room beside the button that exports them, where they come from.
+fn heading(ui: &mut Ui, title: String, files: &[File], context: &PanelContext<'_>) {
+    let label = Label::new(theme::strong(ui, title)).truncate();
+    ui.add(label).on_hover_text("The picture is made of these files.");
+    let text = origin(files, context.registry());
+    let is_watched = context.session().shaders.folders.shaders.is_some();
+    if !is_watched && theme::small_width(ui, text) <= ui.available_width() {
+        ui.label(theme::small(ui, text));
+    }
 }
 
 /// The button that exports the shaders to a folder.
@@ -145,10 +148,7 @@ fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(file) = &on_disk {
                 let open = icon::button(ui, Icon::Pencil, &format!("Open {path} in an editor"));
-                if open.clicked() {
-                    let line = session.line_of_trouble(path);
-                    context.act(Action::Do(Effect::OpenInEditor { path: file.clone(), line }));
-                }
+                context.on_click(&open, || open_in_editor(file, session.line_of_trouble(path)));
             }
             if let Some(t) = trouble {
                 ui.label(RichText::new(format!("line {}", t.problem.line)).small().color(palette.error));

@@ -1,6 +1,8 @@
 //! The shader panel: the files behind the picture, and their errors.
 
-use super::{author, export, laws, prelude::*};
+use std::path::Path;
+
+use super::{author, export, laws, prelude::*, state::Effect};
 use crate::{custom::source_path, text::sentence};
 use {files::files, trouble::troubles};
 
@@ -37,6 +39,11 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
             troubles(ui, context);
         }
     });
+}
+
+/// The action that opens a file in an editor, at a line.
+fn open_in_editor(path: &Path, line: usize) -> Action {
+    Action::Do(Effect::OpenInEditor { path: path.to_owned(), line })
 }
 
 /// The message about a missing model that a scene refers to.

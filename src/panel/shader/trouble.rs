@@ -1,5 +1,6 @@
 //! Errors in shader files, each with its source line.
 
+use super::open_in_editor;
 use crate::{
     library::status::{Trouble, shown_instead},
     panel::{prelude::*, state::Effect},
@@ -98,9 +99,7 @@ fn trouble(ui: &mut Ui, trouble: &Trouble, context: &mut PanelContext<'_>) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(path) = &trouble.path {
                 let open = ui.button("Open in editor").on_hover_text(path.shown().to_string());
-                if open.clicked() {
-                    context.act(Action::Do(Effect::OpenInEditor { path: path.clone(), line: p.line }));
-                }
+                context.on_click(&open, || open_in_editor(path, p.line));
             }
             let button = ui.button("Copy").on_hover_text("Copy place, message and line");
             context.on_click(&button, || Action::Do(Effect::CopyText(report(trouble))));

@@ -123,7 +123,7 @@ impl Session {
         desk.disk.lacks_document() || document.differs()
     }
 
-    /// True if the user's own document is shown and differs from its file. Changes to a scene of a lesson are no loss.
+    /// True if the user's own document is shown and differs from its file. Changes to a scene of a lesson do not count.
     #[must_use]
     pub fn shows_unsaved(&self) -> bool {
         self.lesson.is_none() && self.is_dirty()

@@ -109,7 +109,7 @@ impl Session {
         self.seen.is_stale(&self.document, self.active())
     }
 
-    /// Updates [`scene`](Self::scene) to the active view. Where little has changed since, it costs as little.
+    /// Updates [`scene`](Self::scene) to the active view, at a cost that grows with the changes since the last update.
     pub fn look(&mut self, registry: &Registry) {
         self.view.active = self.active();
         self.seen.look(&self.document, self.view.active, registry);
@@ -149,8 +149,8 @@ impl Session {
         }
     }
 
-    /// The edit that has the effect of `edit` in the active view. What a variant cannot override is changed in the scene
-    /// itself.
+    /// The edit that has the effect of `edit` in the active view. Fields that a variant cannot override are changed in
+    /// the scene itself.
     pub(super) fn redirected(&self, edit: Edit, registry: &Registry) -> Edit {
         let Some(i) = self.active().checked_sub(1) else { return edit };
         let overrides = |(key, _): &(Key, Option<Value>)| match key {
@@ -183,14 +183,7 @@ impl Session {
     pub(super) fn compare(&mut self, command: CompareCommand, registry: &Registry) {
         let comparison = self.document.comparison;
         match command {
-            CompareCommand::Activate(view) => {
-                if view <= self.document.variants.len() {
-                    self.view.active = view;
-                    if view > 0 && view != comparison.with && comparison.layout.shows_two() {
-                        self.set(Comparison { with: view, ..comparison }, registry);
-                    }
-                }
-            }
+            CompareCommand::Activate(view) => self.activate(view, registry),
             CompareCommand::Add => self.add_view(comparison.layout, registry),
             CompareCommand::Layout(layout)
                 if self.document.variants.is_empty() && layout != Layout::Single =>
@@ -225,6 +218,18 @@ impl Session {
             }
         }
         self.look(registry);
+    }
+
+    /// Makes a view the active one, and the one that is compared with view A where two are.
+    fn activate(&mut self, view: usize, registry: &Registry) {
+        if view > self.document.variants.len() {
+            return;
+        }
+        self.view.active = view;
+        let comparison = self.document.comparison;
+        if view > 0 && view != comparison.with && comparison.layout.shows_two() {
+            self.set(Comparison { with: view, ..comparison }, registry);
+        }
     }
 
     fn set(&mut self, comparison: Comparison, registry: &Registry) {

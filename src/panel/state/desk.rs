@@ -1,8 +1,8 @@
-//! What belongs to the open document besides its scene and file; a lesson sets it aside with the document.
+//! The state of the open document besides its scene and file; a lesson sets it aside with the document.
 
 use super::{ModelSlots, OnDisk, Plots, StashedValues};
 
-/// What belongs to the open document besides its scene and file.
+/// The state of the open document besides its scene and file.
 #[derive(Clone, Debug, Default)]
 pub struct Desk {
     /// State of the document's file on disk.

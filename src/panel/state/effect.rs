@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use bevy::ecs::message::Message;
 use glam::Vec3;
 
+use super::SheetOf;
 use crate::{document::Selection, matching::What, parameter::Parameter, scene::load::Stamp};
 
 /// Work that needs files, entities or the operating system: a message to the systems that carry it out.
@@ -106,10 +107,10 @@ pub enum Effect {
     },
     /// Save the plot to a file.
     WritePlot(PathBuf),
-    /// Save a sheet to a file.
+    /// Save a sheet or a film to a file.
     WriteSheet {
-        /// An object of the row whose copies it shows; `None` for the views.
-        row: Option<usize>,
+        /// The pictures of the sheet or film.
+        subject: SheetOf,
         /// The file.
         path: PathBuf,
     },
@@ -135,7 +136,7 @@ pub enum Effect {
     ExportShaders(PathBuf),
 }
 
-/// What a dialog selects.
+/// The purpose of a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pick {
     /// A file to open.
@@ -150,8 +151,8 @@ pub enum Pick {
     Picture(Option<usize>),
     /// A file for the plot.
     Plot,
-    /// A file for a sheet of the row of an object, or of the views.
-    Sheet(Option<usize>),
+    /// A file for a sheet or a film.
+    Sheet(SheetOf),
     /// A lesson.
     Lesson,
     /// A folder for the shaders.

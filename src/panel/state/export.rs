@@ -70,9 +70,13 @@ impl Session {
 
     /// Reports the result of saving a sheet of the views.
     pub fn sheet_written(&mut self, path: &Path, outcome: Result<(), String>) {
+        let is_film = path
+            .extension()
+            .is_some_and(|extension| ["gif", "apng"].iter().any(|film| extension.eq_ignore_ascii_case(film)));
+        let what = if is_film { "film" } else { "sheet" };
         match outcome {
-            Ok(()) => self.note_file(format!("Saved the sheet to {}.", path.shown()), path),
-            Err(why) => self.say(Severity::Error, format!("The sheet was not saved: {why}.")),
+            Ok(()) => self.note_file(format!("Saved the {what} to {}.", path.shown()), path),
+            Err(why) => self.say(Severity::Error, format!("The {what} was not saved: {why}.")),
         }
     }
 

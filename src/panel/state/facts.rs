@@ -88,7 +88,7 @@ impl Converging {
 /// A running task.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Running<L> {
-    /// What it is about.
+    /// The subject of the task.
     pub label: L,
     /// Completed fraction.
     pub done: f32,

@@ -70,7 +70,7 @@ impl Session {
         }
     }
 
-    /// Records what happened in the open lesson.
+    /// Records the events in the open lesson.
     fn record(&mut self, what: impl FnOnce(&mut OpenLesson, &mut Progress) -> Vec<Effect>) {
         let effects = self.lesson.as_mut().map(|open| what(open, &mut self.progress));
         self.requested.extend(effects.into_iter().flatten());

@@ -15,7 +15,7 @@ pub const MAX_MESSAGES: usize = 500;
 pub struct Note {
     /// Severity of the message.
     pub severity: Severity,
-    /// What happened, where, and how to fix it.
+    /// The event, its place, and the remedy.
     pub text: String,
     /// A button beside the message, and its action.
     pub offer: Option<(&'static str, Box<Action>)>,

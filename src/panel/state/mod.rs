@@ -33,6 +33,7 @@ pub use progress::{Past, Progress};
 pub use question::{MissingPart, Offer, Question, Questions};
 pub use settings::{RECENT_FILES, SCALES, Settings, ThemeChoice, nearest_scale};
 pub use severity::Severity;
+pub use sheet_of::{SheetOf, Turning};
 pub use shortcut::Shortcut;
 pub use slots::{MODEL_SLOTS, ModelSlots};
 pub use stash::StashedValues;
@@ -84,6 +85,7 @@ mod seen;
 mod selection;
 mod settings;
 mod severity;
+mod sheet_of;
 mod shortcut;
 mod shown;
 mod slots;
@@ -93,7 +95,7 @@ mod terms;
 mod view;
 
 with_defaults! {
-    /// The state of the window. What belongs to the open document besides its scene and file stands in the [`Desk`].
+    /// The state of the window. The [`Desk`] holds the state of the open document besides its scene and file.
     #[derive(Clone, Debug, Deref, DerefMut, Resource)]
     pub struct Session {
         /// The document: the scene and its edit history.
@@ -120,7 +122,7 @@ with_defaults! {
         pub questions: Questions = Questions::default(),
         /// The files outside their folders that scenes may name.
         pub outside: Outside = Outside::default(),
-        /// What is kept between sessions.
+        /// The settings, which are kept between sessions.
         pub settings: Settings = Settings::default(),
         /// The keys of the user's own that are in force.
         pub keys: OwnKeys = OwnKeys::default(),

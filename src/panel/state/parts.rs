@@ -1,5 +1,7 @@
 //! Adding, copying and removing lights and objects.
 
+use std::ops::Range;
+
 use super::{Session, Severity, placing::Stand};
 use crate::{
     document::{Selection, names::free_name},
@@ -121,19 +123,7 @@ impl Session {
                 };
                 let text = format!("Deleted “{name}”.");
                 self.document.remove(part, registry);
-                // Keeps the selection; if the part was deleted, selects its neighbour.
-                let (lights, left) = (self.document.lights.len(), self.document.objects.len());
-                self.select_new(match (self.selection, part) {
-                    (Selection::Light(at), Selection::Light(gone)) => {
-                        Selection::Light((at - usize::from(at > gone)).min(lights - 1))
-                    }
-                    (Selection::Object(at), Selection::Object(_)) => {
-                        let after =
-                            if at >= objects.end { objects.len() } else { at.saturating_sub(objects.start) };
-                        Selection::Object((at - after).min(left - 1))
-                    }
-                    (other, _) => other,
-                });
+                self.select_new(self.selection_without(part, &objects));
                 self.renaming = None;
                 self.messages.offer_undo(text, self.last_step());
             }
@@ -141,6 +131,21 @@ impl Session {
                 self.say(Severity::Info, "Can’t delete the observer: a scene needs exactly one.");
             }
             _ => self.say(Severity::Info, "Select a light or an object to remove it."),
+        }
+    }
+
+    /// The selection after a part was deleted, with all `objects` of its row: the same, or a neighbour of what was deleted.
+    fn selection_without(&self, part: Selection, objects: &Range<usize>) -> Selection {
+        let (lights, left) = (self.document.lights.len(), self.document.objects.len());
+        match (self.selection, part) {
+            (Selection::Light(at), Selection::Light(gone)) => {
+                Selection::Light((at - usize::from(at > gone)).min(lights - 1))
+            }
+            (Selection::Object(at), Selection::Object(_)) => {
+                let gone = if at >= objects.end { objects.len() } else { at.saturating_sub(objects.start) };
+                Selection::Object((at - gone).min(left - 1))
+            }
+            (other, _) => other,
         }
     }
 

@@ -9,7 +9,7 @@ use crate::{
     scene::{Scene, Variant},
 };
 
-/// What is known of the scene as seen in the active view.
+/// The scene as seen in the active view, with its known terms.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Seen {
     /// The scene, unless it is that of the document itself.
@@ -18,7 +18,7 @@ pub(super) struct Seen {
     pub(super) terms: KnownTerms,
 }
 
-/// What a view showed at a revision of the document.
+/// The scene that a view showed at a revision of the document.
 #[derive(Clone, Debug)]
 struct InView {
     at: (Revision, usize),
@@ -43,7 +43,7 @@ impl Seen {
         self.in_view.as_ref().map(|seen| seen.at) != now
     }
 
-    /// Looks at a view. Where little has changed since, it costs as little.
+    /// Looks at a view, at a cost that grows with the changes since the last look.
     pub(super) fn look(&mut self, document: &Document, view: usize, registry: &Registry) {
         let before = self.in_view.take();
         let Some(variant) = document.overrides(view) else { return };

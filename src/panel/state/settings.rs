@@ -1,4 +1,4 @@
-//! What is kept of the state between sessions.
+//! The part of the state that is kept between sessions.
 
 use std::path::PathBuf;
 

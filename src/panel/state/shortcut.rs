@@ -59,7 +59,7 @@ impl Shortcut {
     /// Reads the usual spelling, such as `Ctrl+Shift+S`, `F4`, `Alt+Right` or `Ctrl++`.
     ///
     /// # Errors
-    /// The part that is no key or no modifier, and what is.
+    /// The part that is not a key or modifier, and the possible ones.
     pub fn read(text: &str) -> Result<Self, String> {
         let text = text.trim();
         let plus = text.strip_suffix('+').map(str::trim_end);
@@ -82,7 +82,7 @@ impl Shortcut {
         Ok(shortcut)
     }
 
-    /// True if this is what was pressed.
+    /// True if this shortcut was pressed.
     #[must_use]
     pub fn matches(self, key: Key, modifiers: Modifiers) -> bool {
         let Modifiers { alt, shift, command, .. } = modifiers;

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Effect, Pick, Session, Severity};
-use crate::{channel::LayerKind, declared::with_defaults, reference::MAX_SIDE};
+use super::{Effect, Pick, Session, Severity, SheetOf};
+use crate::{channel::LayerKind, declared::with_defaults, reference::MAX_SIDE, sweep::MAX_RATE};
 
 /// A command for saved pictures.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,19 +18,19 @@ pub enum TakeCommand {
     Close,
 }
 
-/// What is saved.
+/// The subject to be saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
     /// The picture of a single view, or of all as shown.
     Picture(Option<usize>),
-    /// A sheet: of the row to which an object belongs, or of the views.
-    Sheet(Option<usize>),
+    /// A sheet or a film.
+    Sheet(SheetOf),
 }
 
 /// The options in the window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TakeDraft {
-    /// What is saved.
+    /// The subject to be saved.
     pub of: Taken,
     /// True with a caption.
     pub caption: bool,
@@ -44,7 +44,7 @@ pub struct TakeDraft {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PictureSize {
-    /// That of the view.
+    /// The size of the view.
     #[default]
     AsView,
     /// 1280×720.
@@ -161,8 +161,14 @@ with_defaults! {
         pub columns: u32 = 0,
         /// True with labels and a caption.
         pub labels: bool = true,
-        /// True with maps of the differences from the first picture.
+        /// True with maps of the differences from one picture.
         pub differences: bool = true,
+        /// The number of that picture, counted from 0.
+        pub against: u32 = 0,
+        /// Number of pictures of a turn.
+        pub turn: u32 = 24,
+        /// Pictures of a film per second.
+        pub rate: u32 = 12,
         /// True for four samples per pixel, which smooth edges.
         pub smooth: bool = true,
     }
@@ -171,6 +177,8 @@ with_defaults! {
 impl SheetOptions {
     /// Maximum number of columns.
     pub const MAX_COLUMNS: u32 = 100;
+    /// Maximum number of pictures of a turn.
+    pub const MAX_TURN: u32 = 360;
 
     /// Samples per pixel.
     #[must_use]
@@ -181,6 +189,8 @@ impl SheetOptions {
     pub(super) fn tidy(&mut self) {
         self.size = sides(self.size).unwrap_or(Self::default().size);
         self.columns = self.columns.min(Self::MAX_COLUMNS);
+        self.turn = self.turn.clamp(2, Self::MAX_TURN);
+        self.rate = self.rate.clamp(1, MAX_RATE);
     }
 }
 
@@ -224,7 +234,7 @@ impl Session {
                 }
                 self.request(Effect::Pick(match of {
                     Taken::Picture(view) => Pick::Picture(view),
-                    Taken::Sheet(row) => Pick::Sheet(row),
+                    Taken::Sheet(subject) => Pick::Sheet(subject),
                 }));
             }
             TakeCommand::Close => self.take_draft = None,

@@ -61,7 +61,7 @@ with_defaults! {
         /// Value of `fullscreen` before the presentation started.
         pub fullscreen_before: bool = false,
         /// True if lights have markers in the picture.
-        pub show_gizmos: bool = true,
+        pub show_markers: bool = true,
         /// True if the selection has handles in the picture.
         pub show_handles: bool = true,
         /// Effect of the handles.
@@ -124,8 +124,8 @@ pub enum ViewChange {
     Presenting(bool),
     /// See [`View::fullscreen`].
     Fullscreen(bool),
-    /// See [`View::show_gizmos`].
-    Gizmos(bool),
+    /// See [`View::show_markers`].
+    Markers(bool),
     /// See [`View::show_handles`] and [`View::handles`].
     Handles(HandleChange),
     /// See [`View::show_room`].
@@ -217,7 +217,7 @@ impl View {
             }
             ViewChange::Presenting(_) => {}
             ViewChange::Fullscreen(on) => self.fullscreen = on,
-            ViewChange::Gizmos(on) => self.show_gizmos = on,
+            ViewChange::Markers(on) => self.show_markers = on,
             ViewChange::Handles(HandleChange::Show(on)) => self.show_handles = on,
             ViewChange::Handles(HandleChange::Mode(mode)) => {
                 (self.handles, self.show_handles) = (mode, true);

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::text::{did_you_mean, json::Ast, quoted};
 
-/// What a value holds: the name in files.
+/// The content of a value: the name in files.
 pub type Given = Cow<'static, str>;
 /// The field of a struct of parameters: the index.
 pub type Field = u32;

@@ -9,7 +9,7 @@ use super::{
     Value, Vec3, header, joined, text,
 };
 
-/// What a value holds: an sRGB-encoded colour.
+/// The content of a value: an sRGB-encoded colour.
 pub type Given = [u8; 3];
 /// The field of a struct of parameters: linear.
 pub type Field = Vec3;
@@ -84,7 +84,7 @@ impl Kind for Colour {
         Value::Colour(numbers.map(|v| v as u8))
     }
 
-    /// Numbers that are no colour become a triple.
+    /// Numbers that are not a colour become a triple.
     fn of_field(&self, numbers: [f32; 3], encoding: Encoding) -> Value {
         match numbers.iter().all(|v| LINEAR.contains(v)) {
             true => Value::Colour(encoding.encode(numbers.into())),

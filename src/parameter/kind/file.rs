@@ -10,7 +10,7 @@ use super::{
 };
 use crate::text::quoted;
 
-/// What a value holds.
+/// The content of a value.
 pub type Given = NamedFile;
 /// The field of a struct of parameters.
 pub type Field = Table;

@@ -1,4 +1,4 @@
-//! Declarations of parameters in custom models: what those of several kinds have in common.
+//! Declarations of parameters in custom models: the code common to several kinds.
 
 use super::{ABOVE_ZERO, Cursor, Fields, Json, ParameterKind, Reader, text};
 
@@ -6,10 +6,10 @@ use super::{ABOVE_ZERO, Cursor, Fields, Json, ParameterKind, Reader, text};
 pub struct Type {
     /// The name.
     pub name: &'static str,
-    /// Its keys, besides the default.
+    /// The keys of the type, besides the default.
     pub keys: &'static [&'static str],
-    /// True if a declaration that names no type is of this one. If it may be of several, it must name one; if it fits
-    /// none, it is of the first.
+    /// True if a declaration that names no type is of this one. A declaration that fits several types must name one;
+    /// one that fits none is of the first.
     pub fits: fn(&Fields) -> bool,
     /// Reads a declaration.
     pub read: fn(&mut Header) -> Option<ParameterKind>,
@@ -21,7 +21,7 @@ pub struct Header<'h> {
     pub reader: &'h mut dyn Declarations,
     /// The given keys.
     pub fields: &'h Fields<'h, 'h>,
-    /// That of a parameter of built-in models with the same name, from which the rest is taken.
+    /// The kind of the built-in parameter with the same name, from which the rest is taken.
     pub shared: Option<&'h ParameterKind>,
 }
 

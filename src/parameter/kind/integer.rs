@@ -9,7 +9,7 @@ use super::{
     Value,
 };
 
-/// What a value holds.
+/// The content of a value.
 pub type Given = i64;
 /// The field of a struct of parameters.
 pub type Field = f32;

@@ -1,5 +1,5 @@
-//! The kinds of parameters, a file each: what the program does with a value, except for its knob in the window, which is
-//! in the file of the same name in `panel/knob`.
+//! The kinds of parameters, a file each: all operations on a value, except for its knob in the window, which is in the
+//! file of the same name in `panel/knob`.
 
 use std::{fmt, ops::Deref, path::Path};
 
@@ -47,9 +47,9 @@ pub const RGB: [&str; 3] = ["red", "green", "blue"];
 /// The folder of a scene file, and the files outside it that the scene may name.
 pub type Place<'a> = (&'a Path, &'a Outside);
 
-/// What the program does with a kind of parameter. Values that are passed are of the kind, and perhaps not legal.
+/// The operations of a kind of parameter. Values passed to them are of the kind, but perhaps not legal.
 pub trait Kind {
-    /// Its name in messages and in the declarations of custom models.
+    /// Name of the kind in messages and in the declarations of custom models.
     fn name(&self) -> &'static str;
 
     /// The value if the scene gives none.
@@ -64,10 +64,10 @@ pub trait Kind {
     /// The value in a scene file, which may be out of range. A value of another type is reported.
     fn read(&self, reader: &mut dyn Reader, value: Cursor, rule: &str, place: Place) -> Option<Value>;
 
-    /// Its part of the schema of scene files.
+    /// The part of the schema of scene files for the parameter.
     fn schema(&self) -> Json;
 
-    /// Its keys in the declaration of a custom model, besides the default.
+    /// The keys in the declaration of a custom model, besides the default.
     fn keys(&self) -> Vec<(&'static str, Json)> {
         Vec::new()
     }
@@ -85,7 +85,7 @@ pub trait Kind {
         None
     }
 
-    /// How many numbers it has.
+    /// The number of numbers in a value.
     fn components(&self) -> usize {
         lanes(self.wgsl())
     }
@@ -230,7 +230,7 @@ pub trait Kind {
     }
 }
 
-/// What a [`Value`] holds.
+/// The content of a [`Value`].
 pub trait Payload {
     /// As typed on the command line: `0.5`, `255,128,0`.
     fn text(&self) -> String;
@@ -244,7 +244,7 @@ pub trait Payload {
         if text.contains(',') { format!("[{}]", text.replace(',', ", ")) } else { text }
     }
 
-    /// Its numbers, the last of them repeated; of a choice or a file, zeros.
+    /// The numbers of the value, the last of them repeated; zeros for a choice or a file.
     fn numbers(&self) -> [f64; 3] {
         [0.0; 3]
     }
@@ -266,7 +266,7 @@ pub trait Member: Sized {
 
 macro_rules! define {
     ($($file:ident::$Kind:ident),+) => {
-        /// Type, range and default of a parameter. What depends on the kind are the methods of [`Kind`].
+        /// Type, range and default of a parameter. The methods of [`Kind`] give everything that depends on the kind.
         #[derive(Clone, Debug, PartialEq)]
         pub enum ParameterKind {
             $(#[doc = concat!("See [`", stringify!($Kind), "`](", stringify!($file), "::", stringify!($Kind), ").")]

@@ -9,7 +9,7 @@ use super::{
     Payload, Place, Reader, Type, Value, check_range, header, text::number,
 };
 
-/// What a value holds.
+/// The content of a value.
 pub type Given = f32;
 /// The field of a struct of parameters.
 pub type Field = f32;

@@ -10,7 +10,7 @@ use super::{
     text::{self, number},
 };
 
-/// What a value holds.
+/// The content of a value.
 pub type Given = [f32; 3];
 /// The field of a struct of parameters.
 pub type Field = Vec3;

@@ -120,9 +120,9 @@ impl<const S: usize, const E: usize> Tile<S, E> {
                 let mut visible = false;
                 for s in 0..S {
                     if covered[s] {
-                        let near: f64 =
-                            (0..3).map(|e| (here[e] + offsets[e][s]) as f64 * per_area * w[e]).sum();
-                        let near = near as f32;
+                        // Written out: a sum over an iterator becomes a call for each sample.
+                        let part = |e: usize| (here[e] + offsets[e][s]) as f64 * per_area * w[e];
+                        let near = (part(0) + part(1) + part(2)) as f32;
                         covered[s] = near > nearness[s];
                         if covered[s] {
                             nearness[s] = near;

@@ -12,7 +12,7 @@ pub const TOLERANCE: f32 = 1e-3;
 /// Checks that a mesh can be drawn as a scene requests it.
 ///
 /// # Errors
-/// Returns the first problem, and what would be right.
+/// Returns the first problem and its remedy.
 pub fn check(mesh: &PolygonMesh) -> Result<(), String> {
     let count = mesh.positions.len();
     if count == 0 || mesh.polygons.is_empty() {

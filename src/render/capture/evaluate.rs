@@ -16,7 +16,7 @@ use std::{sync::Arc, time::Duration};
 
 use super::gpu::{GpuError, device, read_back, vector};
 use crate::{
-    optics::{Terms, albedo::directional_in_batches, colour::Encoding},
+    optics::{Frame, Terms, albedo::directional_in_batches, colour::Encoding},
     parameter::Values,
     reflection::{ModelEntry, Surface, ends::ends},
     registry::compose::compose_evaluation,
@@ -95,6 +95,8 @@ pub struct Evaluator {
     row: Buffer,
     /// The model on the CPU, if it is interpreted there.
     on_cpu: Option<Arc<dyn Surface>>,
+    /// The model on the CPU, if it mirrors light without spreading it, which its response leaves out.
+    mirror: Option<Arc<dyn Surface>>,
     patience: Duration,
 }
 
@@ -117,8 +119,8 @@ impl Evaluator {
         if let Some(error) = block_on(scope.pop()) {
             return Err(GpuError::Invalid(refused(&composed, &error)));
         }
-        let mut evaluator =
-            Self { model: model.clone(), device, queue, pass, row, on_cpu: None, patience: PATIENCE };
+        let (model, patience) = (model.clone(), PATIENCE);
+        let mut evaluator = Self { model, device, queue, pass, row, on_cpu: None, mirror: None, patience };
         evaluator.set(&Values::default(), Encoding::Srgb);
         Ok(evaluator)
     }
@@ -127,6 +129,7 @@ impl Evaluator {
     pub fn set(&mut self, values: &Values, encoding: Encoding) {
         self.row = row(&self.device, &self.model, values, encoding);
         self.on_cpu = self.model.is_interpreted().then(|| self.model.instantiate(values, encoding));
+        self.mirror = self.model.declaration.sharp.then(|| self.model.instantiate(values, encoding));
     }
 
     /// The responses to pairs of directions, in as many passes as they need.
@@ -154,7 +157,11 @@ impl Evaluator {
         const VIEWS: usize = 64;
         let mut albedos = Vec::with_capacity(views.len());
         for views in views.chunks(VIEWS) {
-            albedos.extend(directional_in_batches(views, |pairs| self.evaluate(pairs))?);
+            let mirrored = |v: &Vec3| {
+                self.mirror.as_ref().map_or(DVec3::ZERO, |of| of.mirrored(*v, &Frame::LOCAL).as_dvec3())
+            };
+            let spread = directional_in_batches(views, |pairs| self.evaluate(pairs))?;
+            albedos.extend(spread.into_iter().zip(views).map(|(spread, v)| spread + mirrored(v)));
         }
         Ok(albedos)
     }

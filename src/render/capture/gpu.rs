@@ -66,7 +66,7 @@ pub enum GpuError {
     TimedOut {
         /// The longest time.
         limit: Duration,
-        /// What was not ready.
+        /// The part that was not ready.
         waiting: String,
     },
     /// A shader could not be compiled.

@@ -196,7 +196,7 @@ impl GpuRenderer {
         Ok(())
     }
 
-    /// What is not ready yet, for an error.
+    /// The part that is not ready yet, for an error.
     fn missing(&self) -> String {
         if self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying) {
             return "the trial of a shader".to_owned();

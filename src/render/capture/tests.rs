@@ -238,7 +238,7 @@ fn the_stack_of_the_shader_is_as_long_as_the_hierarchy_is_deep() {
 }
 
 /// The way within a solid: the sums of the parts that leave, of their directions and of their places, each weighted by
-/// the part in red; and what remains.
+/// the part in red; and the part that remains.
 const WAY: &str = "
 struct Question {
     position: vec3<f32>,
@@ -306,7 +306,7 @@ fn entries(solid: &Solid, seed: &mut u64) -> Vec<Entry> {
     (0..1000).map(|_| entry(seed)).filter(seen).collect()
 }
 
-/// The same by the Rust function.
+/// The sums by the Rust function.
 fn way(solid: &Solid, interior: &Interior, entry: &Entry) -> [Vec3; 4] {
     let mut sums = [Vec3::ZERO; 4];
     sums[3] = follow(solid, interior, entry, |place, direction, part| {

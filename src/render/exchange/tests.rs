@@ -59,7 +59,7 @@ fn submit(
     said.0.extend(answer.err());
 }
 
-/// What a system does after [`reconcile`] and before [`absorb`].
+/// The action of a system between [`reconcile`] and [`absorb`].
 #[derive(Default, Resource)]
 struct Between(Option<fn(&mut World)>);
 

@@ -3,8 +3,8 @@
 //!
 //! Each reflection model in each shading model has a separate shader: a change of a shared file that breaks
 //! one model does not affect the others. A shader is exchanged only after it was tried
-//! ([`trial`]). Its asset stays the same, so cameras, materials and objects are not affected.
-//! The files are managed by the [`Library`].
+//! ([`trial`]). The asset stays the same, so cameras, materials and objects are not affected. The files are
+//! managed by the [`Library`].
 //!
 //! Until a shader is ready, an object keeps its old one ([`AwaitsShader`](super::swap::AwaitsShader)); a broken custom
 //! model is drawn as grey Lambert (see [`custom`](crate::custom)).

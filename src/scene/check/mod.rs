@@ -1,8 +1,8 @@
 //! Every constraint of a scene, once: for the reader, the writer and each edit.
 //!
-//! A [rule](Rule) is a clause that can end a sentence: "k_d is 0.2, but **the diffuse coefficient must be between 0.5 and
-//! 1**". That of a value by itself follows from its [declaration](super::Field::check). [`scene`] applies all rules to a
-//! whole scene; [`Parts`] and [`change`] to one part and what it can meet.
+//! A [rule](Rule) is a clause that can end a sentence: "k_d is 0.2, but **the diffuse coefficient must be between 0.5
+//! and 1**". The rule for a value by itself follows from its [declaration](super::Field::check). [`scene`] applies all
+//! rules to a whole scene; [`Parts`] and [`change`] to one part and what it can meet.
 
 use std::{collections::HashMap, fmt, mem, ops::Range};
 
@@ -47,7 +47,7 @@ pub fn scene(scene: &Scene, registry: &Registry) -> Vec<Problem> {
 }
 
 /// Checks one part after another, without going through all lights each time. Each part's check reports its conflicts
-/// with others; those of a missing part are none.
+/// with others; a missing part has none.
 pub struct Parts<'a>(Check<'a>);
 
 impl<'a> Parts<'a> {

@@ -1,4 +1,4 @@
-//! What pictures with a scene in them have in common, whatever their format.
+//! The common code of pictures with an embedded scene, whatever their format.
 
 use super::{Parsed, Source, json};
 use crate::{
@@ -47,7 +47,7 @@ pub(super) fn text(bytes: &[u8], most: u64) -> Result<String, String> {
     String::from_utf8(bytes.to_vec()).map_err(|_| format!("the scene in the picture {NOT_TEXT}"))
 }
 
-/// The end of a message about a scene that is no text.
+/// The end of a message about a scene that is not text.
 pub(super) const NOT_TEXT: &str = "is damaged: it is not UTF-8 text";
 
 /// The end of a message about a scene that is larger than allowed.

@@ -1,5 +1,5 @@
-//! The parts of a scene, each read from its JSON object by the declarations of its fields. What cannot be read is not a
-//! number, or has its default.
+//! The parts of a scene, each read from its JSON object by the declarations of its fields. A value that cannot be read
+//! becomes not-a-number or the default.
 
 use glam::Vec3;
 

@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl Reader<'_> {
-    /// A declared parameter, if the value has its type. Its range is checked later.
+    /// A declared parameter, if the value has its type. The range is checked later.
     pub(super) fn parameter(&mut self, value: Cursor, parameter: &'static Parameter) -> Option<Value> {
         let files = (self.folder, self.outside);
         parameter.kind.read(self, value, &parameter.clause(), files)

@@ -1,4 +1,5 @@
-//! Runs WGSL on the CPU: a function of a validated module becomes a program for a small virtual machine.
+//! Runs WGSL on the CPU: a function of a validated module becomes a program for a small virtual machine. The
+//! interpreter is our own, since naga parses and validates WGSL but does not run it.
 //!
 //! Custom models have no Rust twin. This interpreter evaluates them for the CPU renderer, the tables of the
 //! command line and the curves of directional albedo.

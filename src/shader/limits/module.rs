@@ -235,7 +235,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// What a model has no use for and might hang.
+/// The name of a statement that models have no use for and that might hang.
 fn unavailable(statement: &Statement) -> Option<&'static str> {
     use Statement as S;
     match statement {

@@ -95,7 +95,7 @@ struct Part<'a> {
     items: &'a mut [Item],
     /// The number of the first.
     first: usize,
-    /// Where they are divided; `None` for a leaf.
+    /// Number of triangles before the division; `None` for a leaf.
     middle: Option<usize>,
 }
 
@@ -193,7 +193,7 @@ impl Bin {
     }
 }
 
-/// How centres are assigned to bins.
+/// The assignment of centres to bins.
 #[derive(Clone, Copy)]
 struct Grid {
     low: Vec3A,

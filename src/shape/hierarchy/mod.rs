@@ -1,4 +1,4 @@
-//! A bounding-volume hierarchy of a mesh's triangles: where a ray first meets the mesh.
+//! A bounding-volume hierarchy of a mesh's triangles, for the first intersection of a ray with the mesh.
 //!
 //! Built here since both renderers read one flat layout with one bound on the depth: of the crates, `bvh` is written for
 //! nalgebra, and `obvhs` needs a later glam and has no such bound.

@@ -14,9 +14,9 @@ use super::{CHILDREN, COUNT_SHIFT, Hierarchy, LEAF, NO_CHILD, NODE_ROWS, NODES, 
 /// A ray in the units of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it begins.
+    /// The origin.
     pub origin: Vec3,
-    /// Its direction, of any length; distances are multiples of it.
+    /// The direction, of any length; distances are in units of that length.
     pub direction: Vec3,
 }
 
@@ -37,7 +37,7 @@ pub enum Sides {
     Inside,
 }
 
-/// Where a ray meets a triangle.
+/// The intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The distance.
@@ -50,7 +50,7 @@ pub struct Hit {
     pub leaves: bool,
 }
 
-/// Smallest component of a direction by which boxes are divided; a smaller one is no different within a mesh.
+/// Smallest component of a direction by which boxes are divided; a smaller one makes no difference within a mesh.
 const LEAST_COMPONENT: f32 = 1e-20;
 
 /// A ray, prepared for boxes.
@@ -74,7 +74,8 @@ impl Slabs {
         }
     }
 
-    /// Where the ray enters the boxes of the four children, and which of them it meets within a range.
+    /// The distances at which the ray enters the boxes of the four children, and true for those that it meets within a
+    /// range.
     #[inline]
     fn enter(&self, node: &[Row; NODE_ROWS], range: &Range<f32>) -> (Vec4, BVec4A) {
         let along = |row: usize, axis: usize| (floats(node[row]) - self.origin[axis]) * self.inverse[axis];
@@ -109,7 +110,7 @@ impl Shear {
         }
     }
 
-    /// Where the ray meets a triangle: the distance and the weights, and true from inside.
+    /// The intersection of the ray with a triangle: the distance, the weights, and true from inside.
     #[inline]
     fn meet(&self, triangle: &[Row; 3], sides: Sides) -> Option<(f32, Vec3, bool)> {
         let [x, y, z] = [0, 1, 2].map(|i| {
@@ -168,7 +169,8 @@ impl Stack {
 }
 
 impl Hierarchy {
-    /// Where a ray first meets a triangle within a range of distances. Of triangles at one distance, as at a shared edge, any.
+    /// The first intersection of a ray with a triangle within a range of distances. Of triangles at equal distance, as
+    /// at a shared edge, any.
     #[must_use]
     pub fn nearest(&self, ray: &Ray, range: Range<f32>, sides: Sides) -> Option<Hit> {
         let (slabs, shear) = (Slabs::new(ray), Shear::new(ray));

@@ -1,4 +1,4 @@
-//! What the feature `window` brings is used behind boundaries alone: a few files declare the modules that belong to it, and
+//! The feature `window` is confined behind boundaries: a few files declare the modules that belong to it, and
 //! everything else is built without it.
 
 use std::{

@@ -63,7 +63,7 @@ fn drawn(folder: &Path, more: &[&str]) -> (Vec<u8>, String) {
     (read_png(&folder.join("p.png")).expect("a picture").2, run.err)
 }
 
-/// What a PNG file says of its lights with extent.
+/// The note of a PNG file about its lights with extent.
 fn light_text(file: &Path) -> Option<String> {
     let bytes = std::io::BufReader::new(fs::File::open(file).expect("a picture"));
     let picture = png::Decoder::new(bytes).read_info().expect("a PNG file");

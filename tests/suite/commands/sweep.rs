@@ -71,6 +71,11 @@ fn a_folder_gets_a_picture_with_its_scene_for_each_value() {
     let run = done(folder.path(), &["--vary", SIZES, "-o", "all"]);
     assert_eq!(run.err.trim(), "wrote 1 picture into all; 2 were there already");
     assert!(fs::read(all.join("2_size_2.png")).expect("there") == before);
+    let run = done(folder.path(), &["--vary", "objects[0].size=4,5", "-o", "all"]);
+    assert_eq!(
+        run.err.trim(),
+        "wrote 2 pictures into all\nall has 3 more pictures that this sweep did not write"
+    );
 }
 
 #[test]

@@ -266,7 +266,14 @@ fn worked_examples(registry: &Registry) -> Vec<(&'static str, String)> {
         let explained = explain::pixel(&scene, registry, &settings, [600, 330]).expect("in the picture");
         (id, format!("```text\n{}```\n", explained.to_text()))
     };
-    ["blinn_phong", "ashikhmin_shirley", "oren_nayar", "microfacet", "openpbr"].map(example).to_vec()
+    let mut all =
+        ["blinn_phong", "ashikhmin_shirley", "oren_nayar", "microfacet", "openpbr"].map(example).to_vec();
+    // Light through a body comes from what is around it.
+    let file = root().join("scenes/glass_ball.json");
+    let scene = load::file(&file, registry, Defaults::Refuse).expect("shipped").scene;
+    let explained = explain::pixel(&scene, registry, &settings, [600, 300]).expect("in the picture");
+    all.push(("glass", format!("```text\n{}```\n", explained.to_text())));
+    all
 }
 
 /// The numbers for the difference between two pictures.
@@ -591,7 +598,7 @@ fn scene_limits() -> String {
     table(&["limit of", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
 }
 
-/// What a channel shows.
+/// The kind of picture that a channel shows.
 fn shows(channel: DebugChannel) -> String {
     let what = match channel {
         wires if wires.has_wires() => "lines and dots",

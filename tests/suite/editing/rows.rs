@@ -1,6 +1,6 @@
 //! Rows in the window: made, edited as one, undone in one step, and broken up.
 
-use bevy_egui::egui::{Event, Key, Modifiers, Shape, accesskit::Role, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Shape, accesskit::Role, vec2};
 use glam::Vec3;
 use lights_camera_models::{
     document::{Document, Edit, Selection},
@@ -328,6 +328,37 @@ fn a_range_becomes_a_list_whose_values_are_changed_one_by_one() {
     bench.key(Key::Enter, Modifiers::NONE);
     bench.type_into("value 2", "7");
     assert_eq!(listed(&bench)[1], Value::Number(0.77), "beyond the range of the roughness");
+}
+
+/// Opens a list and chooses one of its entries.
+fn choose(bench: &mut Bench, list: &str, entry: &str) {
+    bench.click(list);
+    let at = bench.tree.iter().rev().find(|seen| seen.label == entry).expect(entry).rect.center();
+    bench.click_at(at, PointerButton::Primary);
+}
+
+#[test]
+fn colours_and_models_are_listed_and_changed_one_by_one() {
+    let mut bench = Bench::new(Session::new(scene()));
+    bench.apply(Action::Select(Selection::Object(1)));
+    bench.settle();
+    let listed = |bench: &Bench| row(&bench.session.document).repeat.vary[0].values.clone();
+    choose(&mut bench, "varies: roughness", "base colour");
+    let colours = listed(&bench);
+    assert!(colours.len() == 5 && colours.iter().all(|v| *v == colours[0]), "{colours:?}");
+    bench.type_into("value 2 in hexadecimal", "#ff8000");
+    assert_eq!(listed(&bench)[1], Value::Colour([255, 128, 0]));
+    let material = &bench.session.document.objects[2].material;
+    assert_eq!(material.0.get("base_colour"), Some(&Value::Colour([255, 128, 0])));
+    choose(&mut bench, "varies: base colour", "reflection model");
+    // Models in their order, from that of the row on.
+    let models = listed(&bench);
+    let word = |i: usize| models[i].to_string();
+    assert!(word(0).contains("metallic_roughness") && word(1) != word(0), "{models:?}");
+    let registry = Registry::builtin();
+    let name = |i: usize| registry.model(&word(i)).map_or("", |model| model.declaration.name);
+    choose(&mut bench, &format!("value 3: {}", name(2)), "Lambert");
+    assert_eq!(bench.session.document.objects[3].reflection_model.as_deref(), Some("lambert"));
 }
 
 #[test]

@@ -80,8 +80,11 @@ fn adds_up(explained: &Explanation, spot: &Spot) -> Result<(), String> {
             return Err(format!("the factors make {intensity}, but the intensity is {}", lit.intensity));
         }
         let response = lit.response.select(explained.terms);
-        if !near(response * lit.arriving, lit.contribution, 1e-4) {
-            return Err(format!("{response} × {} is not {}", lit.arriving, lit.contribution));
+        if !near(response * lit.arriving + lit.through, lit.contribution, 1e-4) {
+            return Err(format!(
+                "{response} × {} + {} is not {}",
+                lit.arriving, lit.through, lit.contribution
+            ));
         }
         sum += lit.contribution;
     }

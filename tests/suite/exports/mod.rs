@@ -1,4 +1,4 @@
-//! Exports: each form, and what they share.
+//! Exports: each form, and their common properties.
 
 mod bevy;
 mod bodies;

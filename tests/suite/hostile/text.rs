@@ -34,8 +34,8 @@ use crate::helpers::support::root;
 
 /// The stack size of a Bevy thread.
 const STACK: usize = 2 << 20;
-/// Maximum time for one input. What should take two seconds takes ten times as long without optimisation on a
-/// busy machine; a quadratic reader takes minutes, and an endless one forever.
+/// Maximum time for one input. A task of two seconds takes ten times as long without optimisation on a busy
+/// machine; a quadratic reader takes minutes, and an endless one forever.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// The size of the inputs.
 const SIZE: usize = 1 << 20;

@@ -1,6 +1,6 @@
 //! Models in single files: the contents of a file, messages about errors, and the picture.
 
-use std::path::Path;
+use std::{path::Path, sync::atomic::AtomicBool};
 
 use glam::Vec3;
 use lights_camera_models::{
@@ -12,7 +12,7 @@ use lights_camera_models::{
         lobes::{Lobe, Lobes},
     },
     parameter::{BASE_COLOUR, Parameter, ParameterKind, Value, Values, kind::integer::Integer},
-    reference,
+    reference::{self, LightSamples},
     reflection::{
         Ambient, ModelEntry,
         laws::{self, Effort, Findings, RECIPROCITY_TOLERANCE, Random},
@@ -467,7 +467,10 @@ fn every_built_in_model_as_a_file_has_the_same_knobs_and_the_same_numbers() {
             (theirs.author, theirs.source, theirs.summary),
             "{id}"
         );
-        assert_eq!(ours.equation, theirs.equation, "{id}");
+        // What light does along a path is not the file's.
+        let spread = theirs.equation.iter().filter(|part| !part.along_path);
+        assert!(ours.equation.iter().eq(spread), "{id}: {:?}", ours.equation);
+        assert_eq!((ours.transmits, ours.sharp, ours.solid), (theirs.transmits, theirs.sharp, false), "{id}");
         assert_eq!(copy.entry.not_on_cpu(), None, "{id}");
         let mut told_apart = false;
         for set in 0..3 {
@@ -484,9 +487,12 @@ fn every_built_in_model_as_a_file_has_the_same_knobs_and_the_same_numbers() {
             assert_eq!(surface.lobes(), lobes, "{id} {values:?}");
             for ((l, v), gpu) in pairs.iter().zip(&copied) {
                 let cpu = surface.response(*l, *v, &Frame::LOCAL);
-                for (g, c) in
-                    [(gpu.ambient, cpu.ambient), (gpu.diffuse, cpu.diffuse), (gpu.specular, cpu.specular)]
-                {
+                for (g, c) in [
+                    (gpu.ambient, cpu.ambient),
+                    (gpu.diffuse, cpu.diffuse),
+                    (gpu.specular, cpu.specular),
+                    (gpu.transmitted, cpu.transmitted),
+                ] {
                     let error = |c: Vec3| ((g - c).abs() / c.abs().max(Vec3::splat(1e-2))).max_element();
                     assert!(error(c) <= 2e-4, "{id} {values:?} l {l} v {v}: GPU {g}, CPU {c}");
                     told_apart |= error(c * 1.001) > 2e-4;
@@ -529,6 +535,73 @@ fn a_built_in_model_as_a_file_gives_the_same_picture_in_every_shading_model() {
             assert!(d.wrong == 0 && d.edges * 20 <= d.covered, "{id} {}: {d:?}", shading.declaration.id);
         }
     }
+}
+
+/// A leaf after the documents: it reflects one colour and lets another through, where a line of its header says so.
+fn leaf(line: &str) -> String {
+    format!(
+        "/* lcm {{ {line} \"parameters\": [\"base_colour\", \"transmittance_colour\"] }} */
+fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {{
+    let cos_l = dot(frame.n, l);
+    let colour = select(m.base_colour, m.transmittance_colour, cos_l < 0.0);
+    return Terms(vec3(0.0), 0.5 * abs(cos_l) * colour, vec3(0.0));
+}}"
+    )
+}
+
+#[test]
+fn a_file_lets_light_through_by_one_line_of_its_header() {
+    let mut scene = close_up("sphere", "point");
+    scene.reflection_model = "leaf".to_owned();
+    scene.shading_model = "phong".to_owned();
+    scene.objects[0].material.set("transmittance_colour", Value::Colour([90, 200, 40]));
+    let at = scene.lights[0].position.expect("a point light has a place");
+    scene.lights[0].position = Some(Vec3::new(at.x, at.y, 10.0 - at.z));
+    let settings =
+        reference::Settings { width: 64, height: 64, samples: 1, terms: TermSelection::Transmitted };
+    for (line, goes_through) in [("\"transmits\": true,", true), ("", false)] {
+        let registry = with("leaf", &leaf(line));
+        let declared = registry.model("leaf").expect("read").declaration;
+        assert_eq!(declared.transmits, goes_through);
+        let picture = reference::render(&scene, &registry, &settings);
+        let mut gpu = renderer(&registry);
+        gpu.set_terms(TermSelection::Transmitted);
+        let d = compare(&on_gpu(&mut gpu, &scene), &picture, Encoding::Srgb.decode(BACKGROUND), 1e-3);
+        assert!(d.wrong == 0 && d.edges * 20 <= d.covered, "{line}: {d:?}");
+        // Green light from behind.
+        let green = picture.pixels.iter().filter(|p| p.w > 0.5 && p.y > 3.0 * p.x && p.y > 0.01).count();
+        assert!(if goes_through { green > 300 } else { green == 0 }, "{line}: {green}");
+    }
+    let wrong = "{ \"transmits\": \"yes\" }";
+    assert!(said(wrong).contains("transmits is \"yes\", but it must be true or false"), "{}", said(wrong));
+}
+
+#[test]
+fn a_file_is_lit_by_every_light_with_extent_on_both_renderers() {
+    const SAMPLES: u32 = 16;
+    let registry = with("mine", &custom::template("mine", "mine"));
+    let mut gpu = renderer(&registry);
+    gpu.set_light_samples(SAMPLES);
+    let settings = reference::Settings { width: 64, height: 64, samples: 1, terms: TermSelection::All };
+    let light_types = registry.lights().iter().filter(|light| light.declaration.extent);
+    let mut lit = 0;
+    for light in light_types.map(|light| light.declaration.id) {
+        let mut scene = close_up("sphere", light);
+        scene.lights[0].parameters.set("visible", Value::flag(false));
+        scene.reflection_model = "mine".to_owned();
+        scene.shading_model = "phong".to_owned();
+        let samples = LightSamples::of(SAMPLES);
+        let picture =
+            reference::render_samples(&scene, &registry, &settings, samples, &AtomicBool::default());
+        let d = compare(&on_gpu(&mut gpu, &scene), &picture, Encoding::Srgb.decode(BACKGROUND), 1e-3);
+        assert!(d.wrong * 200 <= d.covered && d.edges * 20 <= d.covered, "{light}: {d:?}");
+        // The wrong twin: a lamp that is a fifth brighter.
+        scene.lights[0].intensity *= 1.2;
+        let twin = compare(&on_gpu(&mut gpu, &scene), &picture, Encoding::Srgb.decode(BACKGROUND), 1e-3);
+        assert!(twin.wrong * 5 > twin.covered, "{light}: {twin:?}");
+        lit += 1;
+    }
+    assert_eq!(lit, 6);
 }
 
 /// The GPU's findings about a model.

@@ -3,10 +3,12 @@
 
 use glam::Vec3;
 use lights_camera_models::{
-    optics::{Frame, colour::Encoding},
-    parameter::{Value, Values},
-    reflection::{ModelEntry, laws::Random},
-    registry::Registry,
+    optics::{Frame, Terms, colour::Encoding, lobes::Lobes},
+    parameter::{Parameter, Value, Values},
+    parameters,
+    reflection::{self, ModelEntry, ReflectionModel, laws::Random},
+    registry::{Register as _, Registry},
+    shader::Source,
     testing::{self, laws::albedo},
 };
 
@@ -35,6 +37,60 @@ fn light_may_go_backwards_where_that_is_declared_and_somewhere_it_may_not_where_
 #[test]
 fn no_light_is_made_where_that_is_declared_and_somewhere_it_is_where_not() {
     hold(testing::laws::energy_conserving);
+}
+
+const SHARE: Parameter =
+    Parameter::number("share", 0.0..=1.0, 0.5).label("share").help("Of the light from behind.");
+
+parameters! {
+    /// A sheet that reflects 0.3 of the light and lets through as much as it says.
+    pub struct Sheet {
+        /// The fraction that is let through.
+        share: number = SHARE,
+    }
+}
+
+impl ReflectionModel for Sheet {
+    const DECLARATION: reflection::Declaration =
+        reflection::Declaration::new("sheet", "Sheet", Source::new("reflection/sheet.wgsl", ""))
+            .transmitting()
+            .energy_conserving();
+
+    fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let (l, v) = (frame.n.dot(l), frame.n.dot(v));
+        match (l > 0.0, v > 0.0) {
+            (true, true) => Terms::of(Vec3::splat(0.3 * l), Vec3::ZERO),
+            (false, true) => Terms::through(Vec3::splat(-self.share * l)),
+            _ => Terms::default(),
+        }
+    }
+
+    fn lobes(&self) -> Lobes {
+        Lobes::cosine()
+    }
+}
+
+#[test]
+fn light_that_a_sheet_lets_through_is_counted_too() {
+    let mut registry = Registry::builtin();
+    registry.add_reflection_model::<Sheet>();
+    let model = registry.model("sheet").expect("added");
+    // Up to 1.3 of the light.
+    let said = testing::laws::energy_conserving(model).expect_err("it makes light");
+    assert!(said.contains("declares that it conserves energy, but reflects 1."), "{said}");
+    let mut values = Values::default();
+    for share in [0.0, 0.5, 0.7] {
+        values.set("share", Value::Number(share));
+        let surface = model.instantiate(&values, Encoding::Srgb);
+        let frame = Frame::from_normal(Vec3::new(0.3, -0.5, 0.7).normalize());
+        let found = albedo(&*surface, (frame.n + frame.t).normalize(), &frame, 64);
+        assert!((found - 0.3 - share).abs() < 5e-3, "{share}: {found}");
+    }
+    // A clear pane reflects and lets through all light, without spreading any.
+    let pane =
+        registry.model("thin_glass").expect("built in").instantiate(&Values::default(), Encoding::Srgb);
+    let whole = albedo(&*pane, Vec3::new(0.6, 0.0, 0.8), &Frame::LOCAL, 48);
+    assert!((whole - 1.0).abs() < 1e-5, "{whole}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Solid models on meshes that are no solids: every command and the window say so, with the reason.
+//! Solid models on meshes that are not solids: every command and the window say so, with the reason.
 
 use std::fs;
 

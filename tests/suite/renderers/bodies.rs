@@ -124,8 +124,8 @@ fn both_renderers_bring_light_of_lamps_through_rough_bodies() {
     );
 }
 
-/// A body that refracts nothing is not there, black glass lets nothing through, and neither the observer nor a lamp inside
-/// makes numbers that are none.
+/// A body that refracts nothing is not there, black glass lets nothing through, and neither the observer nor a lamp
+/// inside leads to not-a-number.
 #[test]
 fn odd_bodies_are_finite() {
     let uniform = |values: &[(&'static str, Value)]| {

@@ -121,7 +121,7 @@ pane!(Minus, "minus", |s| Sample { pdf: -1.0, ..s }, |s, _| s);
 pane!(Less, "less", |s| s, |s, _| Seen { pdf: -0.5, ..s });
 pane!(Nowhere, "nowhere", |s| s, |s, _| Seen { distance: f32::NAN, ..s });
 
-/// The panes with what is wrong with them.
+/// The panes with their faults.
 const PANES: [(&str, &str); 8] = [
     ("glare", "radiance in sample at (1, ∞, 0); it must be finite"),
     ("needle", "density in sample at ∞; it must be finite"),

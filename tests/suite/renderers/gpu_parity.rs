@@ -302,6 +302,48 @@ fn terms_alone_and_many_lights_give_the_same_picture() {
 }
 
 #[test]
+fn the_terms_of_models_that_light_passes_through_give_the_same_picture() {
+    let mut renderer = renderer();
+    let rough = ("roughness", Value::Number(0.4));
+    let sheet = [
+        ("transmission_weight", Value::Number(1.0)),
+        ("geometry_thin_walled", Value::flag(true)),
+        rough.clone(),
+    ];
+    let mut seen = 0;
+    for (id, values) in [
+        ("glass", vec![]),
+        ("thin_glass", vec![rough]),
+        ("diffuse_transmission", vec![]),
+        ("rough_dielectric", vec![]),
+        ("openpbr", sheet.to_vec()),
+    ] {
+        let mut scene = close_up("sphere", "rectangle");
+        let mut behind = scene.lights[0].clone();
+        // One lamp before the ball, one behind it, and light from everywhere.
+        behind.position = behind.position.map(|p| Vec3::new(p.x, p.y, 10.0 - p.z));
+        behind.direction = behind.direction.map(|d| Vec3::new(d.x, d.y, -d.z));
+        scene.lights.push(behind);
+        scene.lights.push(close_up("sphere", "ambient").lights[0].clone());
+        scene.reflection_model = id.to_owned();
+        scene.shading_model = "phong".to_owned();
+        values.into_iter().for_each(|(name, value)| scene.objects[0].material.set(name, value));
+        for terms in TermSelection::ALL {
+            let picture = cpu(&scene, terms);
+            let d = compare(&gpu(&mut renderer, &scene, terms), &picture, background(), 2e-3);
+            assert!(d.wrong * 100 <= d.covered && d.edges * 20 <= d.covered, "{id}, {terms:?}: {d:?}");
+            if terms == TermSelection::Transmitted {
+                // The wrong twin: the sum of all terms is another picture.
+                let all = gpu(&mut renderer, &scene, TermSelection::All);
+                let twin = compare(&all, &picture, background(), 2e-3);
+                seen += usize::from(twin.wrong * 20 > twin.covered);
+            }
+        }
+    }
+    assert!(seen >= 4, "{seen}");
+}
+
+#[test]
 fn exposure_tone_mapping_and_gamma_naive_display_agree_to_the_last_bit_but_one() {
     let mut renderer = displaying();
     for (exposure, encoding) in [(0.0, Encoding::Srgb), (2.5, Encoding::Srgb), (-1.0, Encoding::Off)] {

@@ -47,7 +47,7 @@ fn lit() -> Scene {
     scene
 }
 
-/// The same with a lamp in sight.
+/// The scene of [`lit`] with a lamp in sight.
 fn with_lamp() -> Scene {
     let mut scene = lit();
     let registry = Registry::builtin();
@@ -81,7 +81,7 @@ fn off(channels: &Channels, layers: &[&str]) -> f32 {
     off_where(channels, layers, |_| true)
 }
 
-/// The same in some of the pixels.
+/// The largest such difference in some of the pixels.
 fn off_where(channels: &Channels, layers: &[&str], counts: impl Fn(usize) -> bool) -> f32 {
     let picture = colours(channels, "");
     let mut sum = vec![Vec3::ZERO; picture.len()];
@@ -283,7 +283,7 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// Draws a small picture; returns what was said.
+/// Draws a small picture; returns the messages.
 fn render(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let usual = ["render", "--size", "96x96", "--light-samples", "16"];
     let run = lcm_in(folder, &[&usual, arguments].concat(), b"");

@@ -21,7 +21,7 @@ fn five() -> Scene {
     read(example.text)
 }
 
-/// The same scene with single objects.
+/// The scene with single objects in place of rows.
 fn singles(scene: &Scene) -> Scene {
     let single = |object: &Object| Object { repeat: Repetition::None, ..object.clone() };
     Scene { objects: scene.objects.iter().map(single).collect(), ..scene.clone() }

@@ -100,9 +100,9 @@ fn every_line_stands_out_of_every_picture() {
         bench.apply(Action::View(ViewChange::Theme(theme)));
         let colour = Color32::from_rgb(ground[0], ground[1], ground[2]);
         let with = shown(&mut bench, colour);
-        bench.apply(Action::View(ViewChange::Gizmos(false)));
+        bench.apply(Action::View(ViewChange::Markers(false)));
         let without = shown(&mut bench, colour);
-        bench.apply(Action::View(ViewChange::Gizmos(true)));
+        bench.apply(Action::View(ViewChange::Markers(true)));
         let rect = bench.area.rect.shrink(4.0);
         let columns = rect.left() as u32..rect.right() as u32;
         let pixels: Vec<_> = (rect.top() as u32..rect.bottom() as u32)

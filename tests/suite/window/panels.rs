@@ -95,23 +95,17 @@ impl ReflectionModel for Everything {
             .published("K. E. Torrance, E. M. Sparrow 1967", "a test")
             .summary("A model of many parameters.")
             .equation(&[
-                EquationPart { term: Term::Total, text: "I = I_d + I_s" },
-                EquationPart {
-                    term: Term::Diffuse,
-                    text: "I_d = (1 − m) (1 − F) ρ/π N·L (1 + (F_{90} − 1)(1 − N·L)^5)",
-                },
-                EquationPart {
-                    term: Term::Specular,
-                    text: "I_s = π D(H) G(L, V) F(V·H) / (4 (N·L) (N·V)) N·L",
-                },
-                EquationPart {
-                    term: Term::Specular,
-                    text: "D = α^2 / (π ((N·H)^2 (α^2 − 1) + 1)^2), α = r^2, Λ = (√(1 + α² tan² θ_h) − 1)/2",
-                },
-                EquationPart {
-                    term: Term::Specular,
-                    text: "E(μ) = ∫ f_r ⟨N·L⟩ dω ≤ 1, α_{GGX} = √(2/(n + 2))",
-                },
+                EquationPart::new(Term::Total, "I = I_d + I_s"),
+                EquationPart::new(
+                    Term::Diffuse,
+                    "I_d = (1 − m) (1 − F) ρ/π N·L (1 + (F_{90} − 1)(1 − N·L)^5)",
+                ),
+                EquationPart::new(Term::Specular, "I_s = π D(H) G(L, V) F(V·H) / (4 (N·L) (N·V)) N·L"),
+                EquationPart::new(
+                    Term::Specular,
+                    "D = α^2 / (π ((N·H)^2 (α^2 − 1) + 1)^2), α = r^2, Λ = (√(1 + α² tan² θ_h) − 1)/2",
+                ),
+                EquationPart::new(Term::Specular, "E(μ) = ∫ f_r ⟨N·L⟩ dω ≤ 1, α_{GGX} = √(2/(n + 2))"),
             ])
             .reciprocal()
             .energy_conserving()

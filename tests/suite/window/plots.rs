@@ -20,7 +20,7 @@ use lights_camera_models::{
     panel::{
         plots::{Request, file_of, write},
         state::{
-            Action, EXPLAIN_TAB, Effect, Of, PLOTS_TAB, PlotCommand, Session, Severity, ThemeChoice,
+            Action, EXPLAIN_TAB, Effect, Of, PLOTS_TAB, PlotCommand, Session, Severity, SheetOf, ThemeChoice,
             ViewChange,
         },
         theme,
@@ -626,7 +626,7 @@ fn pictures_of_the_plots() -> Result<(), Box<dyn std::error::Error>> {
 fn a_sheet_of_the_views_is_written_from_the_window() {
     let mut session = Session::default();
     let path = PathBuf::from("/somewhere/a.png");
-    let write = |path: PathBuf| Effect::WriteSheet { row: None, path };
+    let write = |path: PathBuf| Effect::WriteSheet { subject: SheetOf::Views, path };
     let asked = session.apply(Action::Do(write(path.clone())), &Registry::builtin());
     assert_eq!(asked, [write(path)]);
     let folder = tempfile::tempdir().expect("a folder");

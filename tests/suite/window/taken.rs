@@ -7,7 +7,7 @@ use bevy_egui::egui::{Event, Key, Modifiers, Rect, pos2, vec2};
 use lights_camera_models::{
     panel::state::{
         Action, Cell, Effect, PictureArea, PictureOptions, PictureSize, Question, Running, Session, Severity,
-        SheetOptions, TakeCommand, Taken, ViewChange,
+        SheetOf, SheetOptions, TakeCommand, Taken, Turning, ViewChange,
     },
     parameter::Value,
     registry::Registry,
@@ -399,7 +399,8 @@ fn the_window_of_options_fits() {
         bench.size = vec2(1280.0, 720.0);
         bench.apply(Action::View(ViewChange::Scale(scale)));
         let whole = Rect::from_min_size(pos2(0.0, 0.0), bench.size / (f32::from(scale) / 100.0));
-        for of in [Taken::Picture(None), Taken::Sheet(None)] {
+        let turn = SheetOf::Turn(Turning::Objects);
+        for of in [Taken::Picture(None), Taken::Sheet(SheetOf::Views), Taken::Sheet(turn)] {
             bench.apply(Action::Take(TakeCommand::Ask(of)));
             bench.settle();
             for label in ["Choose a file…", "Cancel", "Smooth edges"] {
@@ -420,7 +421,7 @@ fn on_a_low_screen_the_options_scroll_and_the_buttons_stay_in_sight() {
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::View(ViewChange::Scale(200)));
     let whole = Rect::from_min_size(pos2(0.0, 0.0), bench.size / 2.0);
-    for (of, last) in [(Taken::Picture(None), "Depth"), (Taken::Sheet(None), "Smooth edges")] {
+    for (of, last) in [(Taken::Picture(None), "Depth"), (Taken::Sheet(SheetOf::Views), "Smooth edges")] {
         bench.apply(Action::Take(TakeCommand::Ask(of)));
         bench.settle();
         let buttons = ["Choose a file…", "Cancel"].map(|label| bench.find(label).expect(label).rect);
@@ -478,10 +479,10 @@ fn the_progress_of_a_picture_is_shown_and_it_can_be_stopped() {
     assert_eq!(bench.effects, [Effect::CancelPicture]);
 }
 
-/// Waits for a sheet, and returns what was said of it.
-fn sheet(app: &mut App, row: Option<usize>, path: &Path) -> Vec<(Severity, String)> {
+/// Waits for a sheet, and returns the message about it.
+fn sheet(app: &mut App, subject: SheetOf, path: &Path) -> Vec<(Severity, String)> {
     session(app).messages.clear();
-    let effect = Effect::WriteSheet { row, path: path.to_owned() };
+    let effect = Effect::WriteSheet { subject, path: path.to_owned() };
     app.world_mut().resource_mut::<Messages<Effect>>().write(effect);
     for _ in 0..3000 {
         app.update();
@@ -495,16 +496,68 @@ fn sheet(app: &mut App, row: Option<usize>, path: &Path) -> Vec<(Severity, Strin
 }
 
 #[test]
+fn the_window_asks_what_a_sheet_shows_and_with_which_view_it_compares() {
+    let variants = vec![Variant::default(), Variant::default()];
+    let mut bench = Bench::new(Session::new(Scene { variants, ..Scene::default() }));
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Take(TakeCommand::Ask(Taken::Sheet(SheetOf::Views))));
+    bench.settle();
+    bench.click("Compared with: view A");
+    bench.click("view C");
+    assert_eq!(bench.session.take_draft.as_ref().map(|draft| draft.sheet.against), Some(2));
+    bench.click("Pictures of: The views");
+    bench.click(Turning::Lights.name());
+    let of = bench.session.take_draft.as_ref().map(|draft| draft.of);
+    assert_eq!(of, Some(Taken::Sheet(SheetOf::Turn(Turning::Lights))));
+    assert!(bench.find("Compared with: view C").is_none(), "a turn is compared with nothing");
+    bench.type_into("Pictures", "12");
+    bench.type_into("Pictures per second", "51");
+    assert!(bench.find("Choose a file…").is_some_and(|button| button.disabled));
+    bench.type_into("Pictures per second", "25");
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(bench.dialogs.is_open());
+    let kept = &bench.session.settings.sheet;
+    assert_eq!((kept.turn, kept.rate, kept.against), (12, 25, 2));
+    // Without views there is nothing that their sheet could show.
+    bench.key(Key::Escape, Modifiers::NONE);
+    bench.session.document.change(
+        "No views",
+        lights_camera_models::document::Extent::Rest,
+        Default::default(),
+        |scene| scene.variants.clear(),
+    );
+    bench.apply(Action::Take(TakeCommand::Ask(Taken::Sheet(SheetOf::Views))));
+    bench.settle();
+    assert!(bench.session.take_draft.is_none());
+}
+
+#[test]
 fn a_sheet_has_its_options_and_may_show_a_row() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut app = lab(folder.path());
     let file = folder.path().join("sheet.png");
-    session(&mut app).settings.sheet =
-        SheetOptions { size: [60, 40], columns: 1, labels: false, differences: false, smooth: false };
-    let _ = sheet(&mut app, None, &file);
+    session(&mut app).settings.sheet = SheetOptions {
+        size: [60, 40],
+        columns: 1,
+        labels: false,
+        differences: false,
+        smooth: false,
+        turn: 5,
+        ..SheetOptions::default()
+    };
+    let _ = sheet(&mut app, SheetOf::Views, &file);
     let views = Picture::read(&file);
     assert!((60..80).contains(&views.width) && (80..110).contains(&views.height), "{}", views.height);
-    let said = sheet(&mut app, Some(0), &file);
+    // Compared with the other view, the map is below the other picture.
+    let compared = |app: &mut App, against: u32| {
+        let sheet_options = &mut session(app).settings.sheet;
+        (sheet_options.differences, sheet_options.against) = (true, against);
+        let _ = sheet(app, SheetOf::Views, &file);
+        session(app).settings.sheet.differences = false;
+        fs::read(&file).expect("written")
+    };
+    assert!(compared(&mut app, 0) != compared(&mut app, 1));
+    let said = sheet(&mut app, SheetOf::Row(0), &file);
     assert_eq!(said, [(Severity::Error, "The sheet was not saved: objects[0] is in no row.".to_owned())]);
     session(&mut app).document.change(
         "Row",
@@ -517,10 +570,24 @@ fn a_sheet_has_its_options_and_may_show_a_row() {
             scene.objects = row.expanded(&Registry::builtin()).expect("a row").objects;
         },
     );
-    let saved = sheet(&mut app, Some(1), &file);
+    let saved = sheet(&mut app, SheetOf::Row(1), &file);
     assert!(saved[0].1.starts_with("Saved the sheet to "), "{saved:?}");
     let copies = Picture::read(&file);
     assert!(copies.width == views.width && copies.height > views.height, "{}", copies.height);
+    // The lamp is in a corner, from which it would leave the room.
+    let said = sheet(&mut app, SheetOf::Turn(Turning::Lights), &file);
+    assert!(said[0].1.contains("something would leave the room; move it nearer"), "{said:?}");
+    // Five steps of a turn, below each other or in time.
+    let turn = SheetOf::Turn(Turning::Objects);
+    let saved = sheet(&mut app, turn, &file);
+    assert!(saved[0].1.starts_with("Saved the sheet to "), "{saved:?}");
+    assert!(Picture::read(&file).height > copies.height);
+    for (name, mark) in [("turn.gif", &b"GIF89a"[..]), ("turn.apng", b"\x89PNG")] {
+        let film = folder.path().join(name);
+        let saved = sheet(&mut app, turn, &film);
+        assert!(saved[0].1.starts_with("Saved the film to "), "{saved:?}");
+        assert!(fs::read(&film).expect("written").starts_with(mark), "{name}");
+    }
 }
 
 /// The actions of a user: each is a click, a chord of keys, or a value that is typed and confirmed.

@@ -1,4 +1,6 @@
-//! Scenes as tables (CSV, RFC 4180): one row per part, for scenes that are made in a spreadsheet or by a script.
+//! Scenes as tables (CSV, RFC 4180): one row per part, for scenes that are made in a spreadsheet or by a script. The
+//! reader is our own, since messages need the byte position of each cell, and a table that is written again keeps its
+//! separators and comments, which a reader of plain records loses.
 //!
 //! The first column, `part`, gives the kind of a row: `scene`, `light`, `observer` or `object`. The other
 //! columns have the names of the fields of scene files in JSON, relative to the part: `type`, `size`,
