@@ -452,3 +452,6 @@ impl LightEntry {
 }
 
 entry!(LightEntry);
+
+#[cfg(test)]
+mod tests;
