@@ -97,7 +97,8 @@ impl LightType for Cylinder {
         if rest.is_nan() || rest < 0.0 || x >= 0.0 {
             return Seen::NOTHING;
         }
-        let distance = (-view.away * x - rest.sqrt()) / squared;
+        // On the side itself the difference is rounded to either sign.
+        let distance = ((-view.away * x - rest.sqrt()) / squared).max(0.0);
         let at = l * distance;
         let from_middle = view.to_point + at;
         let along = from_middle.dot(light.direction).abs();

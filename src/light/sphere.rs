@@ -60,7 +60,8 @@ impl LightType for Sphere {
         if cosine <= 0.0 || off > squared {
             return Seen::NOTHING;
         }
-        let distance = distance * (cosine - (squared - off).sqrt());
+        // On the sphere itself the difference is rounded to either sign.
+        let distance = (distance * (cosine - (squared - off).sqrt())).max(0.0);
         Seen { radiance: Vec3::splat(light.intensity), pdf: 1.0 / (2.0 * PI * rise), distance }
     }
 

@@ -39,7 +39,7 @@ fn seen_cylinder(light: Light, m: CylinderParameters, p: vec3<f32>, l: vec3<f32>
     if view.away <= 0.0 || !(rest >= 0.0) || x >= 0.0 {
         return NOTHING_SEEN;
     }
-    let distance = (-view.away * x - sqrt(rest)) / squared;
+    let distance = max((-view.away * x - sqrt(rest)) / squared, 0.0);
     let at = l * distance;
     let from_middle = view.to_point + at;
     let along = dot(from_middle, light.direction);

@@ -33,6 +33,6 @@ fn seen_sphere(light: Light, m: SphereParameters, p: vec3<f32>, l: vec3<f32>) ->
     if seen_from.w <= 0.0 || cosine <= 0.0 || off > seen_from.w {
         return NOTHING_SEEN;
     }
-    let distance = m.radius / sqrt(seen_from.w) * (cosine - sqrt(seen_from.w - off));
+    let distance = max(m.radius / sqrt(seen_from.w) * (cosine - sqrt(seen_from.w - off)), 0.0);
     return LightSeen(vec3(light.intensity), 1.0 / (2.0 * PI * sphere_rise(seen_from.w)), distance);
 }

@@ -3,7 +3,7 @@
 use bevy::{ecs::reflect::AppTypeRegistry, prelude::*};
 use lights_camera_models::{
     document::PartId,
-    light::{self, Incident, LightRecord, LightType, MAX_LIGHTS, Point, Spot},
+    light::{self, Incident, LightRecord, LightType, MAX_LIGHTS, Point, Rectangle, Spot},
     panel::state::{Action, Session},
     parameter::Value,
     parameters,
@@ -93,6 +93,15 @@ fn animated_objects_lights_and_observers_are_drawn_where_they_are() {
     let world = renderer.app().world_mut();
     world.get_mut::<Spot>(light).expect("it is a spot").cone_angle = 10.0;
     look(&mut renderer, "the cone of the light");
+    let world = renderer.app().world_mut();
+    world.entity_mut(light).remove::<Spot>().insert(Rectangle::default());
+    look(&mut renderer, "an extent of the light");
+    let world = renderer.app().world_mut();
+    world.get_mut::<Rectangle>(light).expect("it is a rectangle").width = 4.0;
+    look(&mut renderer, "the width of the light");
+    let world = renderer.app().world_mut();
+    world.get_mut::<Transform>(light).expect("it has a place").rotate_y(0.2);
+    look(&mut renderer, "the turn of the light");
     let world = renderer.app().world_mut();
     world.entity_mut(object).remove::<Sphere>().insert(Torus::default());
     look(&mut renderer, "the type of the object");
