@@ -329,10 +329,10 @@ pub(super) fn place(session: &Session, rect: Rect, explained: &Explained) -> Opt
     Some(rect.lerp_inside(vec2(part(0), part(1))))
 }
 
-/// Completes the pin action with the pixel under the pointer, if there is one and nothing is pinned.
+/// Completes the pin action with the pixel under the pointer, unless that is the one that is pinned.
 pub fn aimed(ctx: &Context, session: &Session, area: &PictureArea, action: Action) -> Action {
-    let lets_go = session.view.pinned.is_some();
-    let pin = pointed(ctx, session, area).filter(|_| action == Action::Pin && !lets_go);
+    let aims = |pin: &Pin| action == Action::Pin && !is_pinned_at(ctx, session, area, pin);
+    let pin = pointed(ctx, session, area).filter(aims);
     pin.map_or(action, |pin| Action::View(ViewChange::Pin(Some(pin))))
 }
 
@@ -344,21 +344,23 @@ pub fn clicked(ctx: &Context, session: &Session, area: &PictureArea) -> Option<A
         return pointed(ctx, session, area).map(|pin| Action::Lesson(LessonCommand::Point(pin)));
     }
     let pin = pointed(ctx, session, area).filter(|_| clicked && alt && !session.view.presenting)?;
-    let answer = explained(ctx);
-    let near = |pinned: &Pin| {
-        let Some(rect) = rect_of(area, pin.view) else { return false };
-        let (size, _) = pixels(ctx, rect);
-        let pixel = |pin: &Pin| pin.pixel(size, session.document.view_angle());
-        let now = match answer.as_ref().filter(|answer| answer.sight.is_some()) {
-            Some(answer) if answer.sight == Some(Sight::Outside) => return false,
-            Some(answer) => answer.explanation.pixel,
-            None => pixel(pinned),
-        };
-        let off = Vec2::from(now.map(|c| c as f32)) - Vec2::from(pixel(&pin).map(|c| c as f32));
-        pinned.view == pin.view && off.length() <= NEAR * ctx.pixels_per_point()
-    };
-    let same = session.view.pinned.as_ref().is_some_and(near) && session.explains();
+    let same = is_pinned_at(ctx, session, area, &pin) && session.explains();
     Some(Action::View(ViewChange::Pin(Some(pin).filter(|_| !same))))
+}
+
+/// True if the pinned point is at a pixel, or as near as a hand can point.
+fn is_pinned_at(ctx: &Context, session: &Session, area: &PictureArea, pin: &Pin) -> bool {
+    let Some(pinned) = session.view.pinned.filter(|pinned| pinned.view == pin.view) else { return false };
+    let Some(rect) = rect_of(area, pin.view) else { return false };
+    let (size, _) = pixels(ctx, rect);
+    let pixel = |pin: &Pin| pin.pixel(size, session.document.view_angle());
+    let now = match explained(ctx).filter(|answer| answer.sight.is_some()) {
+        Some(answer) if answer.sight == Some(Sight::Outside) => return false,
+        Some(answer) => answer.explanation.pixel,
+        None => pixel(&pinned),
+    };
+    let off = Vec2::from(now.map(|c| c as f32)) - Vec2::from(pixel(pin).map(|c| c as f32));
+    off.length() <= NEAR * ctx.pixels_per_point()
 }
 
 /// Unpins on Escape, unless something else handles the key.

@@ -80,8 +80,8 @@ pub enum Action {
     NextTerms,
     /// Change the view state.
     View(ViewChange),
-    /// Pin the pixel under the pointer, or else the centre of the picture, so that it stays explained; unpin if one is
-    /// pinned.
+    /// Pin the pixel under the pointer, or else the centre of the picture, so that it stays explained; unpin if that one,
+    /// or without a pointer any, is pinned.
     Pin,
     /// Move the camera around the pinned point until it faces the plane of the point's vectors.
     LookFromSide,

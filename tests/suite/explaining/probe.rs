@@ -248,6 +248,17 @@ fn the_pointer_is_followed_unless_a_pixel_is_pinned() {
     alt_click(&mut bench, at);
     alt_click(&mut bench, at + vec2(40.0, 0.0));
     assert_eq!(shown(&bench).pixel, [pixel[0] + 40, pixel[1]], "a click elsewhere pins there");
+    // So does the key. With the pointer away from the picture it lets go.
+    point(&mut bench, at);
+    bench.letter(Key::E, "e");
+    assert!(
+        bench.session.view.pinned.is_some() && shown(&bench).pixel == pixel,
+        "the key elsewhere pins there"
+    );
+    bench.frame(vec![Event::PointerMoved(panel)]);
+    bench.letter(Key::E, "e");
+    assert_eq!(bench.session.view.pinned, None);
+    alt_click(&mut bench, at);
     bench.click("Pin");
     assert_eq!(bench.session.view.pinned, None);
     // A click without Alt pins nothing.
