@@ -20,10 +20,14 @@ use crate::{
 /// Part of the light below which a way out is not listed, and the maximum number of boundaries that are.
 const LEAST: f32 = 1e-3;
 const LISTED: usize = 8;
+/// Cosine of the angle to the direction of view below which light comes from straight ahead.
+const STRAIGHT: f32 = 0.999_99;
 
 /// Refraction at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refraction {
+    /// The direction to the observer.
+    pub view: Vec3,
     /// Refractive index of the body relative to the room.
     pub index: f32,
     /// The angle of the view to the normal outside, degrees.
@@ -53,6 +57,7 @@ impl Refraction {
         let index = if is_matched(given) { 1.0 } else { given };
         let ray = refracted(view, frame.n, index);
         Some(Self {
+            view,
             index,
             incidence: angle(frame.n.dot(view)),
             refracted: ray.map(|ray| angle(-frame.n.dot(ray))),
@@ -63,13 +68,24 @@ impl Refraction {
         })
     }
 
-    /// The explanation, a sentence or an equation each: the angle of refraction, the critical angle, and the boundaries that
-    /// the ray meets inside.
+    /// The explanation, a sentence or an equation each. First what the ray does: where it is seen to come from, the angle of
+    /// refraction, and the boundaries that it meets inside; then the critical angle and the reflectance.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
-        let mut lines = self.angles();
+        let mut lines: Vec<_> = self.crossing().into_iter().collect();
+        lines.push(self.bent());
+        let remaining = match &self.inside {
+            Some(Inside::Ways(turns, remaining)) => {
+                ways(turns, &mut lines);
+                Some(*remaining)
+            }
+            _ => None,
+        };
+        if self.index != 1.0 {
+            lines.extend(self.limits());
+        }
         match &self.inside {
-            None => {}
+            None | Some(Inside::Ways(..)) => {}
             Some(Inside::Pane(why)) => lines.push(format!(
                 "The mesh is not a solid, so it has no inside: what is seen is a pane, through which light goes straight. The \
                  reason: {why}."
@@ -77,33 +93,67 @@ impl Refraction {
             Some(Inside::Chance) => lines.push(
                 "The body is rough: each ray takes a way of its own, by chance, and the picture is their mean.".to_owned(),
             ),
-            Some(Inside::Ways(turns, remaining)) => ways(turns, *remaining, &mut lines),
         }
+        lines.extend(
+            remaining.map(|light| format!("remains inside, not followed any further: {}", part(light))),
+        );
         lines
     }
 
-    fn angles(&self) -> Vec<String> {
-        let Self { index, incidence, refracted, critical, reflectance, pane, .. } = self;
-        let [n, theta, reflected] = [*index, *incidence, *reflectance].map(number);
-        let mut lines = Vec::new();
-        if *index == 1.0 {
-            lines.push("n = 1: the boundary neither bends nor reflects light.".to_owned());
-            return lines;
+    /// Of light through a smooth body: the boundary at which most of it comes in, and the direction from which it does.
+    #[must_use]
+    pub fn main_way(&self) -> Option<(usize, Vec3)> {
+        let Some(Inside::Ways(turns, _)) = &self.inside else { return None };
+        let leaving = turns.iter().enumerate().filter_map(|(i, turn)| Some((i, turn.leaves?)));
+        let most = leaving.max_by(|(_, (_, a)), (_, (_, b))| a.max_element().total_cmp(&b.max_element()));
+        most.map(|(i, (way, _))| (i, way))
+    }
+
+    /// The direction of view and that from which most of the light through a body comes: why its picture may be upside
+    /// down.
+    fn crossing(&self) -> Option<String> {
+        let (last, from) = self.main_way().filter(|_| self.index != 1.0)?;
+        let look = -self.view;
+        if look.dot(from) > STRAIGHT {
+            return Some(
+                "The light comes from straight ahead: what one face bends, the other bends back.".to_owned(),
+            );
         }
-        lines.push(match refracted {
+        let inside = match last {
+            0 => String::new(),
+            last => format!(", is reflected inside {}", plural(last, "time")),
+        };
+        let [ahead, from] = [look, from].map(elevation);
+        Some(format!(
+            "You look {ahead}, and what you see there is {from}: the ray is bent where it enters{inside} and bent where it \
+             leaves."
+        ))
+    }
+
+    /// The angles outside and inside.
+    fn bent(&self) -> String {
+        let [n, theta] = [self.index, self.incidence].map(number);
+        match self.refracted {
+            _ if self.index == 1.0 => "n = 1: the boundary neither bends nor reflects light.".to_owned(),
             Some(angle) => format!(
                 "sin θ_r = n sin θ_t: θ_r = {theta}° outside, θ_t = {}° inside, n = {n}",
-                number(*angle)
+                number(angle)
             ),
             None => format!("θ_r = {theta}° is beyond the critical angle: everything is reflected, n = {n}"),
-        });
+        }
+    }
+
+    /// The critical angle, and the part of the light that is reflected.
+    fn limits(&self) -> [String; 2] {
+        let Self { index, critical, reflectance, pane, .. } = self;
+        let reflected = number(*reflectance);
         let side = if *index > 1.0 { "inside" } else { "outside" };
         let quotient = if *index > 1.0 { "1/n" } else { "n" };
-        lines.push(format!(
+        let critical = format!(
             "θ_c = asin {quotient} = {}°: light that meets the boundary from {side} at a larger angle is reflected completely",
             number(*critical)
-        ));
-        lines.push(match pane {
+        );
+        let reflected = match pane {
             Some([back, through]) => format!(
                 "F = {reflected}: the part of the light that one face reflects; both together reflect {} and let {} through",
                 part(*back),
@@ -113,8 +163,8 @@ impl Refraction {
                 "F = {reflected}: the part of the light that is reflected here; the rest is seen through the surface"
             ),
             None => format!("F = {reflected}: the part of the light that one smooth face reflects"),
-        });
-        lines
+        };
+        [critical, reflected]
     }
 }
 
@@ -127,7 +177,7 @@ fn pane(surface: &dyn Surface, view: Vec3, frame: &Frame) -> Option<[Vec3; 2]> {
 }
 
 /// The boundaries from inside, one by one.
-fn ways(turns: &[Turn], remaining: Vec3, lines: &mut Vec<String>) {
+fn ways(turns: &[Turn], lines: &mut Vec<String>) {
     let counts = |turn: &Turn| turn.leaves.is_none_or(|(_, part)| part.max_element() >= LEAST);
     let last =
         turns.iter().rposition(|turn| turn.leaves.is_some() && counts(turn)).map_or(0, |last| last + 1);
@@ -140,7 +190,6 @@ fn ways(turns: &[Turn], remaining: Vec3, lines: &mut Vec<String>) {
         let further: Vec3 = turns[shown..].iter().filter_map(|turn| Some(turn.leaves?.1)).sum();
         lines.push(format!("at {} more: {} in all", plural(rest, "turn"), part(further)));
     }
-    lines.push(format!("remains inside, not followed any further: {}", part(remaining)));
 }
 
 /// A part of the light: one number if red, green and blue are equal.
@@ -229,11 +278,13 @@ mod tests {
             );
             assert!((n * sine(found.critical) - 1.0).abs() < 1e-5, "{found:?}");
             let lines = found.lines();
+            let at = |start: &str| lines.iter().position(|line| line.starts_with(start)).expect("a line");
+            let [bent, limit] = ["sin θ_r = n sin θ_t: θ_r = ", "θ_c = asin 1/n = "].map(at);
+            assert!(lines[bent].contains("° inside, n = ") && bent < limit, "{lines:?}");
             assert!(
-                lines[0].starts_with("sin θ_r = n sin θ_t: θ_r = ") && lines[0].contains("° inside, n = "),
+                lines[limit].contains("from inside at a larger angle is reflected completely"),
                 "{lines:?}"
             );
-            assert!(lines[1].contains("from inside at a larger angle is reflected completely"), "{lines:?}");
         }
         assert_eq!(refraction("sphere", "phong", &[], [50, 50]), None);
         assert_eq!(refraction("sphere", "diffuse_transmission", &[], [50, 50]), None, "it scatters");
@@ -254,14 +305,24 @@ mod tests {
         let (turns, remaining, lines) = way("sphere", [50, 30]);
         let (direction, through) = turns[0].leaves.expect("never totally reflected");
         assert!(direction.y < -0.1 && through.x > 0.85, "{turns:?}");
-        assert!(lines[3].starts_with("1: after ") && lines[3].ends_with("° below the horizon"), "{lines:?}");
-        assert!(way("sphere", [50, 70]).2[3].ends_with("° above the horizon"));
+        // What answers why the picture is upside down comes first.
+        assert!(
+            lines[0].starts_with("You look ")
+                && lines[0].contains("° above the horizon, and what you see there is ")
+                && lines[0].contains("° below the horizon: the ray is bent"),
+            "{lines:?}"
+        );
+        assert!(lines[2].starts_with("1: after ") && lines[2].ends_with("° below the horizon"), "{lines:?}");
+        let limit = lines.iter().position(|line| line.starts_with("θ_c")).expect("a line");
+        assert!(limit > 2 && lines[limit + 1].starts_with("F = "), "{lines:?}");
+        assert!(way("sphere", [50, 70]).2[2].ends_with("° above the horizon"));
         assert!(
             remaining.x < 1e-6 && lines.last().is_some_and(|last| last.starts_with("remains inside")),
             "{lines:?}"
         );
         // Straight through the faces of a cube the line of sight goes on.
-        let (turns, _, _) = way("cube", [50, 45]);
+        let (turns, _, lines) = way("cube", [50, 45]);
+        assert!(lines[0].starts_with("The light comes from straight ahead"), "{lines:?}");
         let (direction, _) = turns[0].leaves.expect("the back");
         assert!(direction.y > 0.0 && direction.z < -0.99, "{turns:?}");
     }

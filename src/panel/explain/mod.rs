@@ -4,6 +4,8 @@
 //! The numbers are those of [`explain`](crate::explain), which traces the CPU renderer. They are recalculated when the
 //! pixel, the scene, the camera or the view changes, and only while the panel is open.
 
+use std::cell::Cell;
+
 use super::{
     keys, knob,
     prelude::*,
@@ -247,6 +249,7 @@ type Part<'a> = (f32, Box<dyn FnOnce(&mut Ui) + 'a>);
 fn columns(ui: &mut Ui, explained: &Arc<Explained>, context: &mut PanelContext<'_>) {
     let (session, registry, explanation) = (context.session(), context.registry(), &explained.explanation);
     let name = |light: usize| session.name_of(Selection::Light(light), registry);
+    let aside = Cell::new(false);
     let end = |ui: &mut Ui| {
         display::display(ui, explanation);
         if explanation.seen.is_some() {
@@ -257,7 +260,7 @@ fn columns(ui: &mut Ui, explained: &Arc<Explained>, context: &mut PanelContext<'
     let end: Part = (0.28, Box::new(end));
     let parts: Vec<Part> = match (&explanation.seen, &explanation.lamp) {
         (Some(seen), _) => {
-            let surface = |ui: &mut Ui| surface(ui, seen, explained.sight, session, registry);
+            let surface = |ui: &mut Ui| aside.set(surface(ui, seen, explained.sight, session, registry));
             let lights = move |ui: &mut Ui| {
                 lights::lights(ui, explanation, seen, &name);
                 hemisphere::hemisphere(ui, explained, seen, registry);
@@ -268,6 +271,9 @@ fn columns(ui: &mut Ui, explained: &Arc<Explained>, context: &mut PanelContext<'
         (None, None) => vec![(0.36, Box::new(|ui| background(ui, explanation))), end],
     };
     side_by_side(ui, parts);
+    if aside.get() {
+        context.act(Action::LookFromSide);
+    }
 }
 
 /// Parts in columns. With less width, the middle part stands beside the two others; with little width, they are stacked.
@@ -334,8 +340,9 @@ fn places(shares: &[f32], width: f32) -> Vec<[f32; 2]> {
     (1..=shares.len()).rev().map(of).find(fits).unwrap_or_default()
 }
 
-/// Shows the object, the point on it, and how its light is calculated.
-fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, registry: &Registry) {
+/// Shows the object, the point on it, and how its light is calculated. Returns true if the point is to be seen from the
+/// side.
+fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, registry: &Registry) -> bool {
     rows::heading(ui, &session.name_of(Selection::Object(seen.object.index), registry));
     let d = seen.model.declaration;
     let author = if d.author.is_empty() { String::new() } else { format!(" · {}", d.author) };
@@ -344,12 +351,13 @@ fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, re
         theme::note(ui, "The CPU interprets the WGSL of this model.");
     }
     // First where there is any: it is what such a model is about.
-    refraction::refraction(ui, seen);
+    let aside = refraction::refraction(ui, seen, session);
     ui.add_space(2.0);
     if let Some(shading) = registry.shading_model(seen.shading.id) {
         super::inspector::model::stage(ui, shading);
     }
     point::point(ui, seen, sight.is_some());
+    aside
 }
 
 fn seen_light(ui: &mut Ui, lamp: &Lamp, name: &dyn Fn(usize) -> String) {

@@ -1,20 +1,33 @@
-//! Refraction at the point: Snell's angle, the critical angle, and the ways of light through a solid body.
+//! Refraction at the point: the way of light through a solid body, Snell's angle, and the critical angle.
 
-use super::{probe, rows};
+use super::{probe, rows, side};
 use crate::{
     explain::Seen,
-    panel::{maths, prelude::*},
+    panel::{keys, maths, prelude::*},
 };
 
-/// Shows the refraction of the view, for models that bend light.
-pub(super) fn refraction(ui: &mut Ui, seen: &Seen) {
+/// Shows the refraction of the view, for models that bend light. Returns true if the ray is to be seen from the side.
+pub(super) fn refraction(ui: &mut Ui, seen: &Seen, session: &Session) -> bool {
     let spot = probe::shown_spot(ui.ctx(), seen);
-    let Some(refraction) = spot.and_then(|(_, spot)| spot.refraction.as_ref()) else { return };
+    let Some(refraction) = spot.and_then(|(_, spot)| spot.refraction.as_ref()) else { return false };
     ui.add_space(6.0);
-    rows::heading(ui, "Through the surface");
+    let aside = ui.horizontal(|ui| {
+        rows::heading(ui, "Through the surface");
+        refraction.main_way().is_some() && from_the_side(ui, session)
+    });
     for line in refraction.lines() {
         let mut text = maths::prose(ui, &line, TextStyle::Body);
         text.wrap.max_width = ui.available_width();
         ui.add(Label::new(text).wrap().selectable(true));
     }
+    aside.inner
+}
+
+/// The button that turns the camera until the ray is seen from the side.
+fn from_the_side(ui: &mut Ui, session: &Session) -> bool {
+    let text = RichText::new("From the side").text_style(TextStyle::Small);
+    let button = ui.add_enabled(side::has_sides(ui.ctx(), session), Button::new(text).small());
+    let tip = keys::hint(ui.ctx(), "See from the side how the ray is bent", "side");
+    let pin = format!("Pin the point first: {}.", keys::word(ui.ctx(), "explain"));
+    button.on_hover_text(tip).on_disabled_hover_text(pin).clicked()
 }

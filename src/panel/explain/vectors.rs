@@ -13,6 +13,7 @@ use crate::{
         marks::{Ink, Lens, OUTLINE, Sight},
         prelude::*,
     },
+    reflection::Term,
     shading::Stage,
 };
 
@@ -23,8 +24,6 @@ const YELLOW: Color32 = Color32::from_rgb(0xf0, 0xe4, 0x42);
 const BLUE: Color32 = Color32::from_rgb(0x5a, 0xa9, 0xf5);
 const GREEN: Color32 = Color32::from_rgb(0x2e, 0xd0, 0x9c);
 const VERMILION: Color32 = Color32::from_rgb(0xff, 0x7a, 0x33);
-/// Okabe–Ito reddish purple, lightened.
-const PURPLE: Color32 = Color32::from_rgb(0xe8, 0x9c, 0xc8);
 /// Width of a line and of a highlighted line, in points.
 const LINE: f32 = 2.25;
 const LIT: f32 = 4.5;
@@ -125,28 +124,34 @@ impl Drawing {
         for arrow in &all {
             self.arrow(&lens, spot.position, origin, arrow, reach);
         }
-        self.way(&lens, spot, reach);
+        // The colour of the term whose light it is.
+        self.way(&lens, spot, reach, Palette::here(ui).term(Term::Transmitted));
         if all.len() > 1 {
             self.ink.disc(origin, 2.5, WHITE);
         }
     }
 
     /// The way of the ray through a solid body to the boundary where most of the light comes in, and from where: `T`.
-    fn way(&mut self, lens: &Lens, spot: &Spot, reach: f32) {
-        let Some(Inside::Ways(turns, _)) = spot.refraction.as_ref().and_then(|r| r.inside.as_ref()) else {
+    fn way(&mut self, lens: &Lens, spot: &Spot, reach: f32, transmitted: Color32) {
+        let Some(refraction) = &spot.refraction else { return };
+        let (Some(Inside::Ways(turns, _)), Some((last, way))) = (&refraction.inside, refraction.main_way())
+        else {
             return;
         };
-        let most = turns.iter().enumerate().filter_map(|(i, turn)| Some((i, turn.leaves?)));
-        let most = most.max_by(|(_, (_, a)), (_, (_, b))| a.max_element().total_cmp(&b.max_element()));
-        let Some((last, (way, _))) = most else { return };
         let points = [spot.position].into_iter().chain(turns[..=last].iter().map(|turn| turn.position));
-        let (width, colour) = self.stroke(&["T"], LINE, PURPLE);
+        let (width, colour) = self.stroke(&["T"], LINE, transmitted);
         for run in lens.path(&points.collect::<Vec<_>>()) {
             self.ink.stroke(run, width, colour);
         }
         let from = turns[last].position;
         if let Some(origin) = lens.project(from) {
-            self.arrow(lens, from, origin, &Arrow { letter: "T", way, colour: PURPLE, dashes: &[] }, reach);
+            self.arrow(
+                lens,
+                from,
+                origin,
+                &Arrow { letter: "T", way, colour: transmitted, dashes: &[] },
+                reach,
+            );
         }
     }
 

@@ -11,7 +11,9 @@ use lights_camera_models::{
             Action, Clipping, CompareCommand, EXPLAIN_TAB, Effect, LobeChoice, LobeScale, Pin, Session,
             Steer, ViewChange,
         },
+        theme::DARK,
     },
+    reflection::Term,
     registry::Registry,
     scene::{Light, Object, Part, Scene, rotation::rotation},
 };
@@ -461,12 +463,24 @@ fn pictures_of_a_pinned_point() -> Result<(), Box<dyn std::error::Error>> {
 fn the_way_through_a_glass_ball_is_drawn_and_told() {
     let mut glass = bench(scene("glass", "phong"));
     assert!(glass.words().iter().any(|word| word == "T"), "{:?}", glass.words());
+    // In the colour of the term whose light it is.
+    let colours = |shapes: &[Shape]| -> Vec<Color32> {
+        let of = |shape: &Shape| match shape {
+            Shape::Text(text) if text.galley.text() == "T" => Some(text.galley.job.sections[0].format.color),
+            _ => None,
+        };
+        shapes.iter().filter_map(of).collect()
+    };
+    assert_eq!(colours(&glass.shapes()), [DARK.term(Term::Transmitted)]);
     for told in ["Through the surface", "inside, n = 1.5", "is reflected completely", "remains inside"] {
         assert!(glass.says(told), "{told}");
     }
     // From the side, the plane in which the ray bends is seen face on.
     let spot = seen(&glass).spots[0].clone();
     glass.key(Key::H, Modifiers::SHIFT);
+    assert!(glass.effects.iter().any(|effect| matches!(effect, Effect::Steer(_))), "by the key");
+    glass.effects.clear();
+    glass.click("From the side");
     let steered = glass.effects.iter().find_map(|effect| match effect {
         Effect::Steer(Steer::Along { way, .. }) => Some(*way),
         _ => None,
