@@ -181,7 +181,7 @@ class Model:
 
     def albedo(self, mu: ArrayLike, phi: float = 0.0) -> NDArray[Any]:
         """The directional albedo: the part of uniform light above the surface that reaches a viewer, in red, green and
-        blue. Light that a smooth surface mirrors counts too.
+        blue. Light that a smooth surface mirrors counts too; light that passes through the surface does not.
 
         Parameters
         ----------

@@ -105,7 +105,7 @@ impl Model {
         })
     }
 
-    /// The directional albedo for cosines of the viewer's angle, at an azimuth in radians.
+    /// The directional albedo, of reflected light alone, for cosines of the viewer's angle, at an azimuth in radians.
     fn albedo<'py>(
         &self,
         py: Python<'py>,

@@ -105,6 +105,8 @@ pub struct Curve {
     pub measured: bool,
     /// True if a part of the light leaves in a single direction, which the curve leaves out.
     pub sharp: bool,
+    /// True if light passes through the surface, which the curve does not count.
+    pub reflected: bool,
 }
 
 impl Curve {

@@ -42,7 +42,8 @@ pub fn curve(
     }
     subject.runs()?;
     let sharp = declared.has_light && subject.is_sharp();
-    Ok(Curve { name: subject.name.clone(), points, measured: false, sharp })
+    let reflected = declared.is_reflected && subject.transmits();
+    Ok(Curve { name: subject.name.clone(), points, measured: false, sharp, reflected })
 }
 
 /// The angles to the normal behind a surface at which light from an angle goes on: straight, and bent; and 0.
@@ -94,5 +95,5 @@ fn measured(subject: &Subject, id: &str, setup: &Setup) -> Result<Curve, CurveEr
         }
     })?;
     let points = points.into_iter().map(|(angle, f)| Point { angle, rgb: factor * f }).collect();
-    Ok(Curve { name, points, measured: true, sharp: false })
+    Ok(Curve { name, points, measured: true, sharp: false, reflected: false })
 }

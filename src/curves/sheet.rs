@@ -109,6 +109,9 @@ impl Sheet {
         if kind.declaration().has_light {
             words += &format!(" in the plane of incidence, light at {theta_i}°");
         }
+        if self.curves.iter().any(|curve| curve.reflected) {
+            words += ", reflected light only";
+        }
         if phi_i != 0.0 && kind.declaration().has_azimuth {
             words += &format!(", azimuth {phi_i}°");
         }

@@ -219,7 +219,13 @@ fn values_that_are_no_numbers_are_said_and_shown() {
             1.0
         }),
     });
-    let curve = Curve { name: "broken".to_owned(), points: points.collect(), measured: false, sharp: false };
+    let curve = Curve {
+        name: "broken".to_owned(),
+        points: points.collect(),
+        measured: false,
+        sharp: false,
+        reflected: false,
+    };
     let missing = curve.missing().expect("there are some");
     assert_eq!(missing.to_string(), "values are not finite numbers from −3° to −2° and at 2°");
     let none = Curve { points: vec![Point { angle: 1.0, rgb: Vec3::NAN }], ..curve.clone() };
@@ -257,6 +263,7 @@ fn every_curve_has_a_colour_and_a_dash() {
         points: vec![Point { angle: 0.0, rgb: Vec3::ONE }, Point { angle: 9.0, rgb: Vec3::ONE }],
         measured: false,
         sharp: false,
+        reflected: false,
     };
     let sheet = Sheet { curves: (0..8).map(one).collect(), ..Sheet::new(setup) };
     let draw::Figure::Plot(plot) = sheet.figure() else { panic!("a plot") };
@@ -320,7 +327,8 @@ fn what_a_logarithmic_axis_cannot_show_is_said() {
     let said = |values: [f32; 3], log: bool| {
         let point = |(i, v): (usize, f32)| Point { angle: i as f64, rgb: Vec3::splat(v) };
         let points = values.into_iter().enumerate().map(point).collect();
-        let curves = vec![Curve { name: "x".to_owned(), points, measured: false, sharp: false }];
+        let curves =
+            vec![Curve { name: "x".to_owned(), points, measured: false, sharp: false, reflected: false }];
         let sheet = Sheet { curves, log, ..Sheet::new(setup) };
         assert!(!sheet.figure().svg().contains("NaN"));
         sheet.notes().join(" ")
@@ -442,6 +450,12 @@ fn a_smooth_surface_has_an_albedo_and_says_what_curves_leave_out() {
         // Of the single boundary of a body F, of the two of a pane 2 F/(1 + F), all orders together.
         let expected = if id == "glass" { 0.04 } else { 0.08 / 1.04 };
         assert!((e.points[0].rgb.x - expected).abs() < 1e-4 && !e.sharp, "{id}: {:?}", e.points[0]);
+        // It counts what is reflected, and says so.
+        let setup = Setup::new(Kind::Albedo, 0.0, 0.0).expect("legal");
+        let heading = |curves: Vec<Curve>| Sheet { curves, ..Sheet::new(setup) }.heading();
+        assert_eq!(heading(vec![e]), "Directional albedo E, reflected light only", "{id}");
+        let opaque = fine(&subject("phong", &[]), Kind::Albedo, 0.0);
+        assert!(!heading(vec![opaque]).contains("reflected"));
         let note = |subject: &Subject| {
             let curve = fine(subject, Kind::Brdf, 45.0);
             let sheet = Sheet {

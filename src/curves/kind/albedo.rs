@@ -8,10 +8,10 @@ use crate::curves::angles::{GRAZING, grid};
 pub(super) static KIND: Declaration = Declaration {
     id: "albedo",
     name: "directional albedo E",
-    row: "the directional albedo by the angle of the viewer",
+    row: "the directional albedo by the angle of the viewer: of the light from above, what is reflected",
     choice: [
         "Directional albedo E",
-        "The part of the light that leaves the surface when light comes evenly from everywhere, by the angle of the viewer. More than 1 means that energy is made from nothing.",
+        "The part of the light that is reflected when light comes evenly from everywhere above the surface, by the angle of the viewer. Light that passes through the surface does not count. More than 1 means that energy is made from nothing.",
     ],
     quantity: "E",
     column: "e",
@@ -20,6 +20,7 @@ pub(super) static KIND: Declaration = Declaration {
         columns: ("angle,mu", |_, angle| format!("{angle},{}", angle.to_radians().cos())),
         ..Horizontal::from_normal("angle of the viewer (°)")
     },
+    is_reflected: true,
     has_light: false,
     up_to_one: true,
     rises: |_| true,

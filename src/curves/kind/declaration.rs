@@ -38,6 +38,8 @@ pub struct Declaration {
     pub horizontal: Horizontal,
     /// True if the viewer goes all around surfaces that light passes through, not only above them.
     pub is_around: bool,
+    /// True if the quantity counts reflected light only, also of surfaces that light passes through.
+    pub is_reflected: bool,
     /// True if the quantity depends on the angle of the light.
     pub has_light: bool,
     /// True if it depends on the azimuth.
@@ -129,6 +131,7 @@ impl Declaration {
         form: Form::Plot,
         horizontal: Horizontal::PLANE,
         is_around: true,
+        is_reflected: false,
         has_light: true,
         has_azimuth: true,
         is_scalar: false,
