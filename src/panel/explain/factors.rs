@@ -81,7 +81,7 @@ fn head(ui: &mut Ui, line: &Line, open: bool) -> Response {
     let shown = theme::elided(ui, label, TextStyle::Small, palette.weak, (rect.right() - end).max(0.0));
     ui.painter().galley(pos2(end, rect.center().y - 0.5 * shown.size().y), shown, palette.weak);
     let whole = line.quantity.map_or_else(String::new, |quantity| format!(": {}", quantity.label));
-    response.on_hover_text(format!("{}{whole}", line.defines()))
+    maths::tip(response, &format!("{}{whole}", line.defines()))
 }
 
 /// The curve of a quantity, calculated once per explanation.
@@ -138,5 +138,5 @@ fn plot(ui: &mut Ui, curve: &FactorCurve, line: &Line) {
         "{spoken}, in its plane, everything else as it is. The point is the present angle, {}°.",
         crate::explain::rounded(curve.here.0, rows::DIGITS)
     );
-    response.on_hover_text(tip);
+    maths::tip(response, &tip);
 }

@@ -128,7 +128,7 @@ fn linked_value(
         row.response
     });
     let help = maths::meaning(symbol).map_or_else(String::new, |meaning| format!("\n{symbol}: {meaning}"));
-    row.on_hover_text(format!("{all}{help}"))
+    maths::tip(row, &format!("{all}{help}"))
 }
 
 /// Vectors with their symbols, as many per line as fit.

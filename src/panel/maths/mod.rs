@@ -18,6 +18,7 @@ pub use crate::text::mathematics::{Atom, parse, parse_symbol, same_symbol};
 pub(super) use laid::{Laid, lay_out};
 pub use meaning::{definition, definitions, has_symbol, meaning};
 pub use prose::prose;
+pub(super) use prose::tip;
 
 /// Paints one symbol in the colour of text; returns its width. `left_baseline` is the left end of the baseline.
 pub fn paint_symbol(ui: &Ui, left_baseline: Pos2, symbol: &str, size: f32, colour: Color32) -> f32 {
@@ -82,7 +83,7 @@ pub fn equation_of(
             if here.hovered() {
                 linked::point(ui.ctx(), &[symbol]);
             }
-            here.on_hover_text(meaning);
+            tip(here, &meaning);
             if linked::is_lit(ui.ctx(), symbol) {
                 ui.painter().add(linked::ground(cell, &Palette::here(ui)));
             }
@@ -129,7 +130,7 @@ pub(super) fn calculation(
                 clicked = Some(symbol.clone());
             }
             let meaning = name(symbol).map_or_else(String::new, |meaning| format!(": {meaning}"));
-            here.on_hover_text(format!("{symbol}{meaning}\nClick to see where it comes from."));
+            tip(here, &format!("{symbol}{meaning}\nClick to see where it comes from."));
         }
         line.paint(ui, at, *colour);
     }

@@ -4,7 +4,16 @@ use bevy_egui::egui::text::{LayoutJob, TextFormat};
 
 use crate::panel::prelude::*;
 
-/// A sentence that sets `k_d` with a subscript, `10^−8` with a power, and text between backticks as code.
+/// A tooltip whose symbols have subscripts, as those of equations.
+pub(in crate::panel) fn tip(response: Response, text: &str) -> Response {
+    response.on_hover_ui(|ui| {
+        // As egui's own: a tooltip must not become narrower as its text changes.
+        ui.set_max_width(ui.spacing().tooltip_width);
+        ui.add(Label::new(prose(ui, text, TextStyle::Body)));
+    })
+}
+
+/// A sentence that sets `k_d` or `F_{90}` with a subscript, `10^−8` with a power, and text between backticks as code.
 #[must_use]
 pub fn prose(ui: &Ui, text: &str, style: TextStyle) -> LayoutJob {
     let formats = Formats::new(ui, style);
@@ -44,38 +53,45 @@ impl Formats {
         Self { plain, code, letter, index, power }
     }
 
-    /// Adds words, with spaces between them.
-    fn words(&self, part: &str, job: &mut LayoutJob) {
-        for (i, word) in part.split(' ').enumerate() {
-            if i > 0 {
-                job.append(" ", 0.0, self.plain.clone());
-            }
-            for (text, format) in self.pieces(word).into_iter().filter(|(text, _)| !text.is_empty()) {
-                job.append(text, 0.0, format.clone());
-            }
+    /// Adds words with their symbols.
+    fn words(&self, mut text: &str, job: &mut LayoutJob) {
+        while let Some([before, letter, index, after]) = indexed(text) {
+            self.powers(before, job);
+            job.append(letter, 0.0, self.letter.clone());
+            job.append(index, 0.0, self.index.clone());
+            text = after;
         }
+        self.powers(text, job);
     }
 
-    /// The pieces of a word, some of which may be empty: around an index, or around a power.
-    fn pieces<'a>(&'a self, word: &'a str) -> [(&'a str, &'a TextFormat); 4] {
-        let bare = word.trim_start_matches('(');
-        let symbol = bare.split_once('_').filter(|(letter, _)| letter.chars().count() == 1);
-        if let Some((letter, rest)) = symbol {
-            let end = rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len());
-            let before = &word[..word.len() - bare.len()];
-            let (index, after) = rest.split_at(end);
-            return [
-                (before, &self.plain),
-                (letter, &self.letter),
-                (index, &self.index),
-                (after, &self.plain),
-            ];
+    /// Adds words with their powers of ten.
+    fn powers(&self, mut text: &str, job: &mut LayoutJob) {
+        while let Some((before, rest)) = text.split_once("10^") {
+            let end = rest.find(|c: char| !c.is_ascii_digit() && c != '−').unwrap_or(rest.len());
+            job.append(&format!("{before}10"), 0.0, self.plain.clone());
+            job.append(&rest[..end], 0.0, self.power.clone());
+            text = &rest[end..];
         }
-        let (before, rest) = word.find("10^").map_or((word, ""), |at| (&word[..at + 2], &word[at + 3..]));
-        let end = rest.find(|c: char| !c.is_ascii_digit() && c != '−').unwrap_or(rest.len());
-        let (power, after) = rest.split_at(end);
-        [(before, &self.plain), ("", &self.plain), (power, &self.power), (after, &self.plain)]
+        if !text.is_empty() {
+            job.append(text, 0.0, self.plain.clone());
+        }
     }
+}
+
+/// The first letter with an index, that index, and what is around them. Names of several letters, such as `base_colour`, are
+/// none.
+fn indexed(text: &str) -> Option<[&str; 4]> {
+    let at = text.match_indices('_').map(|(at, _)| at).find(|at| {
+        let mut back = text[..*at].chars().rev();
+        back.next().is_some_and(|c| c.is_alphabetic() || c == '∑')
+            && !back.next().is_some_and(|c| c.is_alphanumeric() || c == '_')
+    })?;
+    let start = text[..at].char_indices().next_back()?.0;
+    let rest = &text[at + 1..];
+    let braced = rest.strip_prefix('{').and_then(|rest| rest.split_once('}'));
+    let (index, after) = braced
+        .unwrap_or_else(|| rest.split_at(rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len())));
+    Some([&text[..start], &text[start..at], index, after])
 }
 
 #[cfg(test)]
@@ -83,6 +99,17 @@ mod tests {
     use bevy_egui::egui;
 
     use super::*;
+
+    #[test]
+    fn tooltips_have_no_raw_underscores() {
+        let ctx = Context::default();
+        let mut text = String::new();
+        let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+            let raw = "w_k: part from d_k,\nand F_{90} of α_{cx}, −ln(C_t)/d, base_colour";
+            text = prose(ui, raw, TextStyle::Body).text;
+        });
+        assert_eq!(text, "wk: part from dk,\nand F90 of αcx, −ln(Ct)/d, base_colour");
+    }
 
     #[test]
     fn indices_stand_below_and_code_has_its_letters() {
