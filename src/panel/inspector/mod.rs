@@ -1,6 +1,6 @@
 //! The properties of the selected part of the scene, at the right.
 
-use super::prelude::*;
+use super::{lesson::point, prelude::*};
 use {light::light, object::object, observer::observer, room::room};
 
 mod light;
@@ -21,7 +21,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.push_id(part, |ui| {
         // The scroll bar floats over a margin, so that nothing moves when it comes.
         ui.spacing_mut().scroll.floating_allocated_width = 0.0;
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let scroll = ScrollArea::vertical().auto_shrink(false).animated(!point::jumps(ui));
+        scroll.show(ui, |ui| {
             ui.set_max_width(ui.available_width() - 8.0);
             variant::variant(ui, context);
             match part {

@@ -12,6 +12,8 @@ const MOMENT: f64 = 1.2;
 const SWELLS: f64 = 2.0;
 /// Within so many passes what is folded unfolds, and a knob that is sought is found.
 const PATIENCE: u64 = 60;
+/// Within so many passes panels that a step has changed have settled.
+const SETTLED: u64 = 12;
 /// Between a control and its ring, points.
 const GAP: f32 = 3.0;
 
@@ -23,6 +25,8 @@ struct Pointed {
     entry: u64,
     /// Time of the entry, in seconds.
     since: f64,
+    /// The pass after which nothing is scrolled into view any more.
+    until: u64,
     /// Controls that were scrolled into view, or already are in view.
     revealed: Vec<Control>,
     found: Vec<(Rect, Rect, LayerId)>,
@@ -44,7 +48,8 @@ pub(in crate::panel) fn begin(ctx: &Context, session: &Session) {
     let now = ctx.input(|input| input.time);
     kept::with(ctx, |pointed: &mut Pointed| {
         if pointed.entry != entry || pointed.controls != step.points {
-            *pointed = Pointed { controls: step.points.clone(), entry, since: now, ..Pointed::default() };
+            let controls = step.points.clone();
+            *pointed = Pointed { controls, entry, since: now, until: pass + SETTLED, ..Pointed::default() };
         }
         pointed.found.clear();
     });
@@ -58,14 +63,25 @@ fn shown(ui: &Ui, rect: Rect, is: impl Fn(&Control) -> bool) {
     });
     let Some((revealed, control)) = found.filter(|_| ui.is_visible() && rect.is_positive()) else { return };
     let clip = ui.clip_rect();
-    if !revealed && !clip.contains_rect(rect) {
+    let hidden = !clip.contains_rect(rect);
+    if !revealed && hidden {
         ui.scroll_to_rect(rect, Some(Align::Center));
+        ui.ctx().request_repaint();
     }
-    let place = (rect, clip, ui.layer_id());
+    let (place, pass) = ((rect, clip, ui.layer_id()), ui.ctx().cumulative_pass_nr());
     kept::with(ui.ctx(), |pointed: &mut Pointed| {
-        pointed.revealed.extend(Some(control).filter(|_| !revealed));
+        // Panels that settle may move it out of sight again, but what has no room is not sought for ever.
+        if !revealed && (!hidden || pass > pointed.until) {
+            pointed.revealed.push(control);
+        }
         pointed.found.push(place);
     });
+}
+
+/// True while a control that the step names may be out of sight: a jump there needs fewer frames than a glide, and frames
+/// may be slow.
+pub(in crate::panel) fn jumps(ui: &Ui) -> bool {
+    kept::with(ui.ctx(), |pointed: &mut Pointed| pointed.revealed.len() < pointed.controls.len())
 }
 
 /// Normalises a name, so that spellings compare equal.

@@ -961,6 +961,17 @@ fn the_controls_that_a_step_names_get_a_ring_and_come_into_view() {
 }
 
 #[test]
+fn a_few_slow_frames_are_enough_to_show_a_knob() {
+    let desk = Desk::new();
+    let mut bench = desk.bench(Session::default());
+    bench.apply(Action::View(ViewChange::Scale(200)));
+    bench.session.apply(Action::Lesson(LessonCommand::GoTo(2)), &bench.registry);
+    (0..4).for_each(|_| drop(bench.frame(Vec::new())));
+    let knob = bench.field("shininess").rect;
+    assert!(knob.top() > 20.0 && knob.bottom() < 330.0, "scrolled into view: {knob:?}");
+}
+
+#[test]
 fn a_part_that_a_step_points_at_is_in_sight() {
     let desk = Desk::new();
     let text = TEXT.replace("knob: alpha\nmenu: Help", "part: light 1\ntab: explain\nbutton: shading");
