@@ -4,7 +4,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::Spot;
+use super::{Spot, rounded_number_or_triple};
 use crate::{
     light::{Emitter, Incident, LightRecord},
     optics::{Frame, TermSelection, geometry::mirror},
@@ -16,6 +16,10 @@ use crate::{
 mod picture;
 
 pub use picture::HemispherePicture;
+
+/// What the discs lack of light that does not spread.
+const SHARP: &str = "Light that is mirrored, or passes, without spreading comes from a single direction, such as R: that has no \
+                     area, so lobe and product are black there.";
 
 /// Sample points per side of a pixel.
 const FINE: usize = 2;
@@ -56,6 +60,10 @@ pub struct Hemisphere {
     pub view: Vec2,
     /// Mirror direction of the viewer.
     pub mirror: Vec2,
+    /// True if some light keeps a single direction: it is mirrored, or passes, without spreading.
+    pub sharp: bool,
+    /// True if light comes through a solid body, by other ways than from above.
+    pub solid: bool,
 }
 
 /// The direction above a point for a position in the unit disc, in the local frame with the normal +z. Area
@@ -168,7 +176,21 @@ impl Hemisphere {
         }
         let integral = std::f32::consts::PI * sum / count.max(1.0);
         let [view, mirror] = [spot.view, mirror(spot.view, frame.n)].map(place);
-        Self { side, pixels, integral, points: shining.points(spot.position, frame), view, mirror }
+        let points = shining.points(spot.position, frame);
+        let sharp = surface.sharp(spot.view, frame).iter().next().is_some();
+        Self { side, pixels, integral, points, view, mirror, sharp, solid: surface.interior().is_some() }
+    }
+
+    /// The discs in words: what is missing in them, if anything, and the integral.
+    #[must_use]
+    pub fn said(&self) -> Vec<String> {
+        // From the pixels of the disc, which give two digits.
+        let integral = rounded_number_or_triple(self.integral, 2);
+        let rest = if self.sharp || self.solid { "the rest of " } else { "" };
+        let mean = format!(
+            "The mean of the product times π is {rest}the light to the observer from lights with extent: about {integral}"
+        );
+        self.sharp.then(|| SHARP.to_owned()).into_iter().chain([mean]).collect()
     }
 }
 
@@ -260,6 +282,19 @@ mod tests {
         let dark = hemisphere(&self::scene("lambert", vec![light("point", 10.0)]), above).0;
         assert_eq!(dark.integral, Vec3::ZERO);
         assert_ne!(dark.picture().rgb8, picture.rgb8);
+    }
+
+    #[test]
+    fn a_smooth_surface_says_why_its_discs_are_black() {
+        let lights = || vec![light("rectangle", 10.0)];
+        for model in ["glass", "thin_glass"] {
+            let (found, _) = hemisphere(&scene(model, lights()), above);
+            assert!(found.pixels.iter().flatten().all(|above| above.product == Vec3::ZERO), "{model}");
+            let about = found.picture().about;
+            assert!(about.contains("a single direction") && about.contains("the rest of"), "{about}");
+        }
+        let rough = hemisphere(&scene("blinn_phong", lights()), above).0.picture().about;
+        assert!(!rough.contains("a single direction") && !rough.contains("the rest of"), "{rough}");
     }
 
     #[test]

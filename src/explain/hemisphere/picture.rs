@@ -34,6 +34,8 @@ const GAP: u32 = 28;
 /// Space above and below the discs, in pixels.
 const HEAD: u32 = 44;
 const FOOT: u32 = 122;
+/// Further space for a remark on light that does not spread.
+const REMARK: u32 = 36;
 /// Sizes of text.
 const TITLE: f32 = 17.0;
 const SMALL: f32 = 13.0;
@@ -74,7 +76,8 @@ impl Hemisphere {
     #[must_use]
     pub fn picture(&self) -> HemispherePicture {
         let side = self.side as u32;
-        let size = [GAP + 3 * (side + GAP), HEAD + side + FOOT];
+        let foot = if self.sharp { FOOT + REMARK } else { FOOT };
+        let size = [GAP + 3 * (side + GAP), HEAD + side + foot];
         let rgb8 = GROUND.repeat((size[0] * size[1]) as usize);
         let mut canvas = Canvas { rgb8, size };
         let mut whites = Vec::new();
@@ -86,21 +89,16 @@ impl Hemisphere {
             canvas.scale([left, HEAD + side + 14], side, &scale);
             whites.push(format!("white in “{}” is {scale}", disc.name));
         }
-        // Taken from the disc's pixels, which allow two digits.
-        let integral = crate::explain::rounded_number_or_triple(self.integral, 2);
-        let lines = [
-            "From straight above the surface: area is projected solid angle, N is the middle, the rim is the horizon, the tangent \
-             points right. V: to the observer; R: its mirror direction."
-                .to_owned(),
-            format!("The mean of the product times π is the light to the observer from lights with extent: about {integral}"),
-        ];
+        let ground = "From straight above the surface: area is projected solid angle, N is the middle, the rim is the horizon, the tangent \
+             points right. V: to the observer; R: its mirror direction.";
+        let lines: Vec<_> = [ground.to_owned()].into_iter().chain(self.said()).collect();
         let mut y = HEAD + side + 52;
         for line in lines.iter().flat_map(|line| Lettering::Regular.lines(SMALL, line, size[0] - 2 * GAP, 3))
         {
             canvas.text(Lettering::Regular, [GAP, y], SMALL, WEAK, &line);
             y += 18;
         }
-        let about = format!("{} {}; {}", lines[0], lines[1], whites.join(", "));
+        let about = format!("{}; {}", lines.join(" "), whites.join(", "));
         HemispherePicture { size, rgb8: canvas.rgb8, about }
     }
 

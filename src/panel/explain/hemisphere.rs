@@ -116,10 +116,8 @@ pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, r
             });
         }
     });
-    // From the pixels of the disc, which give two digits; the integral of the samples is shown below its light.
-    let integral = crate::explain::rounded_number_or_triple(discs.hemisphere.integral, 2);
-    let text = format!("The mean of the product times π is the light to the observer: about {integral}");
-    theme::note(ui, text);
+    // The integral of the samples is shown below its light.
+    discs.hemisphere.said().into_iter().for_each(|text| drop(theme::note(ui, text)));
 }
 
 /// One disc with its marks. The pointer shows a direction and the light from there.
