@@ -16,7 +16,7 @@ use crate::{
         probe::{Body, LitBy, Loop, Point, Probe, light_loop},
         visible::Shown,
     },
-    reflection::{ModelEntry, Surface},
+    reflection::{EquationPart, ModelEntry, Surface},
     scene::Light,
     shading::Stage,
 };
@@ -145,6 +145,12 @@ impl Model {
             interpreted: entry.is_interpreted(),
             trouble: entry.not_on_cpu(),
         }
+    }
+
+    /// The parts of the equation. Those of light along a path in a body are only there for surfaces that have an inside.
+    pub(super) fn parts(&self) -> impl Iterator<Item = &'static EquationPart> {
+        let outside = self.declaration.solid && self.surface.0.interior().is_none();
+        self.declaration.equation.iter().filter(move |part| !(part.along_path && outside))
     }
 
     /// True if the parameter with this name has one of these choices.

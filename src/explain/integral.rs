@@ -59,7 +59,7 @@ impl Integral {
             // Light through a body has a path instead.
             let is_path =
                 |part: &&EquationPart| part.along_path && part.term == term && !part.text.contains(" if ");
-            let path = model.declaration.equation.iter().find(is_path);
+            let path = model.parts().find(is_path);
             let text = path.map_or_else(
                 || format!("{0} = ∫ {0}(l) L(l) dω", term.symbol()),
                 |path| path.text.to_owned(),

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use glam::Vec3;
 
 use super::{
-    Brightest, Explanation, Geometry, Influence, Inside, Line, Lit, Part, Place, Refraction, Seen, Spot,
-    agrees, angle,
+    Brightest, Explanation, Geometry, Influence, Inside, Line, Lit, Model, Part, Place, Refraction, Seen,
+    Spot, agrees, angle,
     lines::{self, calculation, reading},
     noise::{estimated, told, within},
     number,
@@ -17,10 +17,10 @@ use crate::{
     light::Factor,
     optics::{TermSelection, colour::Encoding},
     reference::DisplaySteps,
-    reflection::{Declaration, Family, Quantity},
+    reflection::{Family, Quantity},
     shading::Stage,
     text::{
-        mathematics::{self, Atom, same_symbol},
+        mathematics::{self, same_symbol},
         plural,
     },
 };
@@ -344,23 +344,27 @@ fn named(list: &str, part: &Part) -> String {
     }
 }
 
-/// The quantities of light along a path: it has no line of its own with numbers, so they are named at once.
-fn along_path(d: &Declaration) -> Vec<&'static Quantity> {
-    let mut texts: Vec<_> = d.equation.iter().filter(|part| part.along_path).map(|part| part.text).collect();
+/// Number of steps from the equation of light along a path to the quantities that are named with it.
+const NESTED: usize = 2;
+
+/// The quantities of light along a path, and those that they need: it has no line of its own with numbers, so they are
+/// named at once.
+fn along_path(model: &Model) -> Vec<&'static Quantity> {
+    let holds = |quantity: &&Quantity| quantity.when.iter().all(|(name, ids)| model.chooses(name, ids));
+    let quantities = model.declaration.quantities.iter().filter(holds);
+    let mut texts: Vec<_> = model.parts().filter(|part| part.along_path).map(|part| part.text).collect();
     let mut found: Vec<&Quantity> = Vec::new();
-    while let Some(text) = texts.pop() {
-        let atoms = mathematics::parse(text);
-        let symbols: Vec<_> = atoms.iter().filter_map(Atom::symbol).collect();
+    // The surface has further ones below these, which are its own.
+    for _ in 0..NESTED {
+        let atoms = texts.iter().flat_map(|text| mathematics::parse(text));
+        let symbols: Vec<_> = atoms.filter_map(|atom| atom.symbol()).collect();
         let named = |quantity: &&Quantity| symbols.iter().any(|s| same_symbol(quantity.symbol(), s));
-        for quantity in d.quantities.iter().filter(named) {
-            if !found.iter().any(|known| known.text == quantity.text) {
-                found.push(quantity);
-                texts.push(quantity.text);
-            }
-        }
+        let is_new = |quantity: &&Quantity| !found.iter().any(|known| known.text == quantity.text);
+        let new: Vec<_> = quantities.clone().filter(named).filter(is_new).collect();
+        texts = new.iter().map(|quantity| quantity.text).collect();
+        found.extend(new);
     }
     // In the order of their declaration.
-    let quantities = d.quantities.iter();
     quantities.filter(|quantity| found.iter().any(|known| known.text == quantity.text)).collect()
 }
 
@@ -368,10 +372,10 @@ fn model(out: &mut Writer, seen: &Seen) {
     let d = seen.model.declaration;
     let author = if d.author.is_empty() { String::new() } else { format!(" ({})", d.author) };
     out.heading(format_args!("Reflection model: {}{author}", d.name));
-    for part in d.equation {
+    for part in seen.model.parts() {
         out.mathematics(1, part.text, "");
     }
-    for quantity in along_path(d) {
+    for quantity in along_path(&seen.model) {
         let by = if quantity.source.is_empty() { String::new() } else { format!(", {}", quantity.source) };
         out.mathematics(2, quantity.text, &format!(": {}{by}", quantity.label));
     }

@@ -4,6 +4,7 @@ use std::{f32::consts::PI, sync::atomic::AtomicBool};
 
 use glam::Vec3;
 use lights_camera_models::{
+    explain,
     optics::{
         Frame, Terms, absorption, colour::Encoding, fresnel::dielectric, geometry::direction, slab::slab,
     },
@@ -341,6 +342,29 @@ fn clear_glass_is_invisible_in_uniform_light() {
     for material in [vec![number("base_weight", 0.0)], half, solid(tint)] {
         let [_, mean] = visible(&furnace("sphere", &material), 16);
         assert!(mean > 0.02, "{material:?}: {mean}");
+    }
+}
+
+#[test]
+fn explanations_have_the_equation_along_the_path_of_bodies_only() {
+    let settings = Settings { width: SIZE, height: SIZE, samples: 1, ..Settings::default() };
+    let text = |material: &Material| {
+        let scene = furnace("sphere", material);
+        let found = explain::pixel(&scene, &Registry::builtin(), &settings, [SIZE / 2; 2]);
+        found.expect("in the picture").to_text()
+    };
+    let path = "I_t = π ∑_k w_k L(d_k)";
+    let smooth = || vec![number("roughness", 0.0)];
+    let body = text(&solid(smooth()));
+    // In the equation, and with its value.
+    assert_eq!(body.matches(path).count(), 2, "{body}");
+    for named in ["w_k = w_e a_1", "w_e = (1 − m) w_τ", "ρ_k: ", "a_k = ", "d_k: "] {
+        assert!(body.contains(named), "{named}:\n{body}");
+    }
+    assert!(!body.contains("I_t = ∫"), "{body}");
+    for other in [thin(smooth()), smooth()] {
+        let text = text(&other);
+        assert!(!text.contains(path) && !text.contains("w_e"), "{text}");
     }
 }
 
