@@ -572,6 +572,24 @@ fn pages_with_large_meshes_draw_with_webgpu_and_webgl() {
 }
 
 #[test]
+fn a_page_says_what_it_does_until_its_first_picture_is_there() {
+    let Some(browser) = Browser::start() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("page.html");
+    fs::write(&file, page(&scene(&shipped("default.json"))).expect("a page")).expect("written");
+    browser.run_first(
+        "window.said = [];
+        new MutationObserver(() => window.said.push(document.getElementById('renderer')?.textContent ?? ''))
+            .observe(document, { subtree: true, childList: true, characterData: true });",
+    );
+    browser.open(&file, "");
+    let said = browser.run("return window.said.filter((text, i, all) => text && text !== all[i - 1])");
+    let said: Vec<_> = said.as_array().expect("a list").iter().filter_map(Value::as_str).collect();
+    assert!(said.first() == Some(&"Compiling the shader…") && said.contains(&"Drawing…"), "{said:?}");
+    assert!(said.last().is_some_and(|last| last.starts_with("Web")), "{said:?}");
+}
+
+#[test]
 fn a_browser_that_cannot_read_the_program_says_so() {
     let Some(browser) = Browser::start() else { return };
     let folder = tempfile::tempdir().expect("a folder");

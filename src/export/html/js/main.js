@@ -36,6 +36,14 @@ function freshCanvas() {
 const inSight = () =>
   document.hidden && new Promise((done) => document.addEventListener('visibilitychange', done, { once: true }));
 
+// Shows a line in the corner, and waits until it is on the screen: the work that follows may block the page.
+async function say(text) {
+  caption.textContent = text;
+  await inSight();
+  await new Promise(requestAnimationFrame);
+  await new Promise((done) => setTimeout(done, 0));
+}
+
 class Page {
   constructor(scene) {
     this.scene = scene;
@@ -43,6 +51,8 @@ class Page {
     this.renderer = null;
     this.starts = 0;
     this.work = new Work(GOAL);
+    // True once a picture of the renderer is there.
+    this.hasPicture = false;
     // True while a picture is wanted that has not been begun, and while any is drawn.
     this.wanted = false;
     this.painting = false;
@@ -63,6 +73,8 @@ class Page {
     let reason = NO_GRAPHICS;
     for (const kind of kinds) {
       try {
+        this.hasPicture = false;
+        await say('Compiling the shader…');
         this.canvas = freshCanvas();
         const renderer = await kind.create(this.canvas, samples);
         this.renderer = renderer;
@@ -73,7 +85,7 @@ class Page {
         // Drivers compile a shader when they first draw with it.
         await renderer.finished();
         this.label = kind.label;
-        caption.textContent = kind.label;
+        caption.textContent = 'Drawing…';
         const ofLight = this.scene.lightSamples;
         const noise = ofLight ? `; lights with extent: ${ofLight} samples per pixel, some noise remains` : '';
         caption.title = `Drawn with ${kind.label}, ${samples} samples per pixel${noise}`;
@@ -186,10 +198,12 @@ class Page {
       if (!document.hidden) for (const [pace, points] of step.paces) pace.took(points, performance.now() - begun);
       if (isAll) break;
       if (this.wanted && !stays) return false;
-      caption.textContent = `${this.label}, ${Math.floor(100 * step.done)} %`;
+      const drawing = this.hasPicture ? `${this.label},` : 'Drawing…';
+      caption.textContent = `${drawing} ${Math.floor(100 * step.done)} %`;
     }
     if (!isAll) draw({ list: [], tile: [0, 0, width, height], clear, show: true });
     work.end();
+    this.hasPicture = true;
     caption.textContent = this.label;
     return true;
   }
