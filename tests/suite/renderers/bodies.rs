@@ -124,16 +124,66 @@ fn both_renderers_bring_light_of_lamps_through_rough_bodies() {
     );
 }
 
+/// An object of glass in uniform light of 0.25 π.
+fn furnace(values: &[(&'static str, Value)]) -> Scene {
+    let mut scene = body("sphere", "uniform", values);
+    scene.lights[0].intensity = 0.25;
+    scene.lights[0].colour = [255; 3];
+    scene
+}
+
+/// The largest and the mean deviation from the light of a furnace, relative.
+fn seen_in_furnace(pixels: &[Vec3]) -> [f32; 2] {
+    let off: Vec<_> = pixels.iter().map(|p| (*p / (0.25 * PI) - 1.0).abs().max_element()).collect();
+    [off.iter().copied().fold(0.0, f32::max), off.iter().sum::<f32>() / off.len() as f32]
+}
+
+/// A body that absorbs nothing is invisible in uniform light, on the GPU too.
+#[test]
+fn the_gpu_renderer_does_not_show_a_clear_ball_in_uniform_light() {
+    const SIDE: u32 = 32;
+    let mut renderer = GpuRenderer::new(SIDE, SIDE, 1, Output::Linear).expect("software Vulkan is installed");
+    renderer.set_light_samples(4);
+    let settings = reference::Settings { width: SIDE, height: SIDE, samples: 1, terms: TermSelection::All };
+    let mut covered = |values: &[(&'static str, Value)]| -> Vec<Vec3> {
+        let scene = furnace(values);
+        let cpu = reference::render(&scene, &Registry::builtin(), &settings);
+        let shown = on_gpu(&mut renderer, &scene);
+        shown.into_iter().zip(&cpu.pixels).filter(|(_, cpu)| cpu.w == 1.0).map(|(gpu, _)| gpu).collect()
+    };
+    let clear = covered(&[]);
+    let [most, mean] = seen_in_furnace(&clear);
+    assert!(clear.len() > 80 && most < 3e-2 && mean < 0.5 / 255.0, "{} {most} {mean}", clear.len());
+    // The wrong twin: green glass is seen.
+    let [_, mean] = seen_in_furnace(&covered(&[colour([200, 255, 200])]));
+    assert!(mean > 0.02, "{mean}");
+}
+
+/// A bubble of air in glass has an index below 1: beyond the critical angle everything is reflected at its outside.
+#[test]
+fn a_bubble_is_finite_and_invisible_in_uniform_light() {
+    let values = [number("refractive_index", 1.0 / 1.5)];
+    let scene = furnace(&values);
+    let registry = Registry::builtin();
+    let surface = registry.model("glass").expect("built in");
+    let interior = surface.instantiate(&scene.objects[0].material, Encoding::Srgb).interior();
+    assert!(interior.expect("a body").ior < 0.7);
+    let picture = on_cpu(&scene);
+    let covered: Vec<_> = picture.pixels.iter().filter(|p| p.w == 1.0).map(|p| p.truncate()).collect();
+    let [most, mean] = seen_in_furnace(&covered);
+    assert!(covered.len() > 300 && most < 3e-2 && mean < 0.5 / 255.0, "{most} {mean}");
+    for more in [number("roughness", 0.5), number("dispersion", 0.1)] {
+        let [index] = values.clone();
+        let picture = on_cpu(&furnace(&[index, more]));
+        assert!(picture.pixels.iter().all(|p| p.is_finite() && p.min_element() >= 0.0));
+    }
+}
+
 /// A body that refracts nothing is not there, black glass lets nothing through, and neither the observer nor a lamp
 /// inside leads to not-a-number.
 #[test]
 fn odd_bodies_are_finite() {
-    let uniform = |values: &[(&'static str, Value)]| {
-        let mut scene = body("sphere", "uniform", values);
-        scene.lights[0].intensity = 0.25;
-        scene.lights[0].colour = [255; 3];
-        scene
-    };
+    let uniform = furnace;
     let covered = |scene: &Scene| -> Vec<Vec3> {
         let picture = on_cpu(scene);
         assert!(picture.pixels.iter().all(|p| p.is_finite() && p.min_element() >= 0.0));
