@@ -1,10 +1,6 @@
 //! `lcm sweep`: pictures of a scene with some of its values varied, in a folder, on a sheet or in a film.
 
-use std::{
-    collections::HashSet,
-    ffi::OsString,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use glam::Vec3;
@@ -31,9 +27,6 @@ use crate::{
     sweep::{self, Axis, Format, Look, MAX_RATE, Parts, Plan, Settings, Sweep},
     text::{numbers, plural},
 };
-
-/// Maximum number of entries of a folder among which pictures of other sweeps are looked for.
-const MOST_ENTRIES: usize = 100_000;
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
@@ -88,6 +81,9 @@ pub(super) struct Arguments {
     /// Leave labels and caption out
     #[arg(long)]
     no_labels: bool,
+    /// Replace pictures in the folder that this sweep did not write
+    #[arg(long)]
+    overwrite: bool,
 }
 
 fn point(text: &str) -> Result<Vec3, String> {
@@ -112,20 +108,19 @@ impl Form {
     fn of(output: &Path, film: bool) -> Result<Self, Failure> {
         let usage = |why: &str| Err(Failure::Usage(format!("-o {}: {why}", output.shown())));
         let extension = output.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let form = match extension.as_str() {
+        let form = match (Format::of(output), extension.as_str()) {
             _ if output.is_dir() => Self::Folder,
-            "png" if film => Self::File(Format::Apng),
-            "png" => Self::File(Format::Sheet),
-            "apng" => Self::File(Format::Apng),
-            "gif" => Self::File(Format::Gif),
-            "webm" | "mp4" | "mkv" | "avi" | "mov" => {
+            (Some(Format::Sheet), _) if film => Self::File(Format::Apng),
+            (Some(format), _) => Self::File(format),
+            (_, "webm" | "mp4" | "mkv" | "avi" | "mov") => {
                 return usage(
                     "videos cannot be written; name a folder, and let a video encoder join its pictures",
                 );
             }
-            "jpg" | "jpeg" | "bmp" | "tif" | "tiff" | "webp" | "exr" | "hdr" | "svg" | "pdf" | "json" => {
-                return usage("sheets are .png files, films .gif, .apng or .png files");
-            }
+            (
+                _,
+                "jpg" | "jpeg" | "bmp" | "tif" | "tiff" | "webp" | "exr" | "hdr" | "svg" | "pdf" | "json",
+            ) => return usage("sheets are .png files, films .gif, .apng or .png files"),
             _ if output.exists() => return usage("this is a file, but pictures need a folder"),
             _ => Self::Folder,
         };
@@ -178,6 +173,11 @@ fn fits(arguments: &Arguments, form: Form) -> Outcome {
             folder && arguments.no_labels,
             "--no-labels",
             "is for sheets and films; pictures in a folder have no labels",
+        ),
+        (
+            !folder && arguments.overwrite,
+            "--overwrite",
+            "is for folders; a sheet or a film replaces a file of its format anyway",
         ),
         (
             arguments.against.is_none() && arguments.maps.is_given(),
@@ -240,8 +240,11 @@ impl Job<'_> {
     fn folder(&self, read: &[PathBuf]) -> Outcome {
         let folder = &self.arguments.output;
         (0..self.sweep.count()).try_for_each(|i| outputs::picture(&folder.join(self.sweep.file(i)), read))?;
-        files::tidy(folder).iter().for_each(super::complain);
         let (settings, check) = (self.settings(), self.check());
+        if !self.arguments.overwrite {
+            self.spare_others(&settings)?;
+        }
+        files::tidy(folder).iter().for_each(super::complain);
         let written = gauged(&self.what(), self.options, |progress| {
             sweep::files(self.sweep, &settings, folder, &check, progress)
         })?;
@@ -255,13 +258,24 @@ impl Job<'_> {
         Ok(())
     }
 
+    /// Refuses to replace pictures of something else, which have the same names.
+    fn spare_others(&self, settings: &Settings) -> Outcome {
+        let folder = &self.arguments.output;
+        let others = sweep::others(self.sweep, settings, folder)?;
+        let Some(first) = others.first() else { return Ok(()) };
+        Err(Failure::Write(format!(
+            "{} has {} in the place of this sweep's, such as {}: drawn with another scene, other files, settings or \
+             version; --overwrite replaces them, -o FOLDER writes elsewhere",
+            folder.shown(),
+            plural(others.len(), "picture"),
+            Path::new(first.file_name().unwrap_or_default()).shown()
+        )))
+    }
+
     /// Says that the folder has pictures of something else, such as of another sweep, which nobody should take for these.
     fn strangers(&self, folder: &Path) {
-        let own: HashSet<OsString> = (0..self.sweep.count()).map(|i| self.sweep.file(i).into()).collect();
-        let is_png = |name: &OsString| Path::new(name).extension().is_some_and(|e| e == "png");
-        let found = std::fs::read_dir(folder).into_iter().flatten().take(MOST_ENTRIES).flatten();
-        let others = found.map(|entry| entry.file_name()).filter(|name| is_png(name) && !own.contains(name));
-        match others.count() {
+        let names = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
+        match self.sweep.strangers(names) {
             0 => {}
             n => self.options.tell(format_args!(
                 "{} has {} that this sweep did not write",

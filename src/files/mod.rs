@@ -60,6 +60,7 @@ mod output;
 mod overwrite;
 mod shown;
 mod stamp;
+mod typed;
 mod words;
 
 pub use before::Before;
@@ -72,6 +73,7 @@ pub use living::give_up;
 pub use output::{EXR, HDR, Output, PICTURES, PNG, Refused, Signature, may_overwrite, may_replace, spare};
 pub use shown::{OnOneLine, Shown, printable, printable_json};
 pub use stamp::Stamp;
+pub use typed::meant;
 pub use words::words;
 
 texts! {

@@ -4,6 +4,7 @@
 use std::{
     borrow::Cow,
     collections::HashMap,
+    hash::{DefaultHasher, Hasher as _},
     path::{Path, PathBuf},
     sync::{
         Arc, LazyLock, Mutex, OnceLock, RwLock, RwLockReadGuard, Weak,
@@ -90,6 +91,8 @@ struct Numbers {
     all: Arc<[f32]>,
     /// Differs for every change of the numbers of any file.
     version: u64,
+    /// The hash of the numbers, once it was asked for.
+    digest: OnceLock<u64>,
 }
 
 /// Identifies files, whatever their paths: identity and format.
@@ -294,6 +297,18 @@ impl NamedFile {
         self.content.state().numbers.as_ref().map_or(0, |numbers| numbers.version)
     }
 
+    /// A hash of the numbers, the same in every run of the program; 0 without numbers.
+    #[must_use]
+    pub fn digest(&self) -> u64 {
+        let state = self.content.state();
+        let Some(numbers) = &state.numbers else { return 0 };
+        *numbers.digest.get_or_init(|| {
+            let mut hasher = DefaultHasher::new();
+            numbers.all.iter().for_each(|v| hasher.write_u32(v.to_bits()));
+            hasher.finish()
+        })
+    }
+
     /// A value shared by all with the same content, and by nobody else.
     #[must_use]
     pub fn identity(&self) -> usize {
@@ -457,7 +472,7 @@ fn shared(key: Option<Key>, numbers: Vec<f32>) -> Arc<Numbers> {
         return known;
     }
     let version = CHANGES.fetch_add(1, Ordering::Relaxed) + 1;
-    let numbers = Arc::new(Numbers { all: numbers.into(), version });
+    let numbers = Arc::new(Numbers { all: numbers.into(), version, digest: OnceLock::new() });
     if let Some(key) = key {
         all.insert(key, Arc::downgrade(&numbers));
     }

@@ -154,13 +154,13 @@ pub fn read_with(path: &Path, keyword: &str, text: &str, size: [u32; 2]) -> Opti
     Some(rgb8)
 }
 
-/// True if a file is a picture with a text of this keyword.
+/// The text with a keyword in a file, if it begins as a picture and has one.
 #[must_use]
-pub fn has_text(path: &Path, keyword: &str) -> bool {
-    let read = files::read(path, MAX_PICTURE_BYTES).ok();
-    let reader = read.and_then(|bytes| Decoder::new(Cursor::new(bytes)).read_info().ok());
-    reader
-        .is_some_and(|reader| reader.info().uncompressed_latin1_text.iter().any(|own| own.keyword == keyword))
+pub fn text(path: &Path, keyword: &str) -> Option<String> {
+    let bytes = files::read(path, MAX_PICTURE_BYTES).ok()?;
+    let reader = Decoder::new(Cursor::new(bytes)).read_info().ok()?;
+    let mut texts = reader.info().uncompressed_latin1_text.iter();
+    texts.find(|own| own.keyword == keyword).map(|own| own.text.clone())
 }
 
 /// Keeps the kind of operating system errors.
@@ -243,7 +243,7 @@ mod tests {
         let path = folder.path().join("p.png");
         write(&path, 16, 8, &gradient(), &About::default().with("Sweep", "1")).expect("can be written");
         assert_eq!(read_with(&path, "Sweep", "1", [16, 8]), Some(gradient()));
-        assert!(has_text(&path, "Sweep") && !has_text(&path, "Title"));
+        assert!(text(&path, "Sweep").is_some() && text(&path, "Title").is_none());
         for (keyword, text, size) in
             [("Sweep", "2", [16, 8]), ("Title", "1", [16, 8]), ("Sweep", "1", [8, 16])]
         {

@@ -100,14 +100,20 @@ impl Place {
             Declared::Parameter(parameter) => match parameter.kind.parse(text) {
                 Some(Value::File(_)) => Err(broken("a file cannot be given here")),
                 Some(value) => Ok(value),
-                None => Err(broken(&parameter.clause())),
+                None => Err(broken(&self.with_hexadecimal(parameter.clause()))),
             },
             Declared::Field(field) => {
-                let value = of_field(field, text).ok_or_else(|| broken(&field.rule(registry)))?;
+                let value = of_field(field, text)
+                    .ok_or_else(|| broken(&self.with_hexadecimal(field.rule(registry))))?;
                 field.check_text(text).map_err(|rule| broken(&rule))?;
                 field.check(&value, registry).map(|()| value).map_err(|rule| broken(&rule))
             }
         }
+    }
+
+    /// A rule with the other form in which colours can be typed.
+    fn with_hexadecimal(&self, rule: String) -> String {
+        if self.declared.is_colour() { format!("{rule}, or hexadecimal: #ff8000") } else { rule }
     }
 
     /// The value that a scene has here, given or by default.

@@ -4,7 +4,8 @@ use glam::Vec3;
 
 use super::values;
 use crate::{
-    caption::{self, Part as Words, header},
+    caption::{self, Part as Words, header_parts},
+    document::{Document, Selection},
     parameter::Value,
     registry::Registry,
     scene::{Object, Part, Scene, at::Place, variant::LETTERS},
@@ -27,7 +28,7 @@ pub struct Axis {
     /// The name of the varied quantity: "roughness".
     pub name: String,
     /// The value of each step, in words.
-    pub labels: Vec<Words>,
+    pub labels: Vec<Vec<Words>>,
     /// True if something moves: films then need no values in the picture.
     pub moves: bool,
     /// The word for the axis in file names, and the values there.
@@ -55,14 +56,15 @@ impl Axis {
         let place = Place::find(path.trim(), scene, registry)?;
         let values = values::read_distinct(given.trim(), &place, registry)?;
         let label =
-            |value: &Value| caption::said(&place.label(), place.symbol(), place.shown(value, registry));
+            |value: &Value| vec![caption::said(&place.label(), place.symbol(), place.shown(value, registry))];
         let labels = values.iter().map(label).collect();
-        let name = match place.part {
-            Part::Object(_) if scene.objects.len() > 1 => {
-                format!("{} of {}", place.label(), place.part.path())
-            }
-            Part::Light(_) => format!("{} of {}", place.label(), place.part.path()),
-            _ => place.label(),
+        let is_one_of_several = match place.part {
+            Part::Object(_) => scene.objects.len() > 1,
+            part => matches!(part, Part::Light(_)),
+        };
+        let name = match is_one_of_several {
+            true => format!("{} of {}", place.label(), called(place.part, scene, registry)),
+            false => place.label(),
         };
         let word = path.trim().rsplit('.').next().unwrap_or_default().to_owned();
         let written = values.iter().map(ToString::to_string).collect();
@@ -80,7 +82,7 @@ impl Axis {
         }
         Ok(Self {
             name: VIEW.to_owned(),
-            labels: views.iter().map(|view| Words::new(0, header(scene, *view, registry))).collect(),
+            labels: views.iter().map(|view| header_parts(scene, *view, registry)).collect(),
             moves: false,
             word: VIEW.to_owned(),
             written: views.iter().map(letter).collect(),
@@ -100,13 +102,10 @@ impl Axis {
             let count = row.count;
             return Err(format!("the row has {count} copies, but a sheet shows at most {MAX_COPIES}"));
         }
-        let label = |(i, mut parts): (usize, Vec<Words>)| match parts.as_slice() {
-            [_] => parts.remove(0),
-            [] => Words::new(
-                0,
-                scene.objects[i].name.clone().unwrap_or_else(|| format!("copy {}", i + 1 - row.first)),
-            ),
-            several => Words::new(0, caption::line(several)),
+        let label = |(i, parts): (usize, Vec<Words>)| {
+            let name =
+                || scene.objects[i].name.clone().unwrap_or_else(|| format!("copy {}", i + 1 - row.first));
+            if parts.is_empty() { vec![Words::new(0, name())] } else { parts }
         };
         let place = |i: usize, key: &'static str| {
             Place::find(&Part::Object(i).path().key(key).to_string(), scene, registry)
@@ -157,33 +156,45 @@ impl Axis {
             };
             sets.push((place, values.iter().map(towards).collect()));
         }
-        let labels = values.iter().map(|value| Words::new(0, position.shown(value, registry))).collect();
+        let labels =
+            values.iter().map(|value| vec![Words::new(0, position.shown(value, registry))]).collect();
         let written = values.iter().map(ToString::to_string).collect();
+        let name = format!("{} moved", called(position.part, scene, registry));
         sets.push((position, values));
-        Ok(Self {
-            name: format!("{what} moved"),
-            labels,
-            moves: true,
-            word: "path".to_owned(),
-            written,
-            sets,
-            views: Vec::new(),
-        })
+        Ok(Self { name, labels, moves: true, word: "path".to_owned(), written, sets, views: Vec::new() })
     }
 
-    /// The axis with its range: "roughness: r 0.1 to r 0.9, 5 values"; a few words one by one: "model: Phong,
+    /// The axis with its range: "roughness: r 0.1 to 0.9, 5 values"; a few words one by one: "model: Phong,
     /// Blinn–Phong and Ward".
-    pub(super) fn summary(&self) -> String {
-        let words = |label: Option<&Words>| label.map(Words::words).unwrap_or_default();
-        let (first, last) = (words(self.labels.first()), words(self.labels.last()));
-        let name = if first.starts_with(&self.name) { String::new() } else { format!("{}: ", self.name) };
-        match self.count() {
-            1 => format!("{name}{first}"),
-            n if n == 2 || n <= NAMED && !first.contains(|c: char| c.is_ascii_digit()) => {
-                let all: Vec<_> = self.labels.iter().map(Words::words).collect();
-                format!("{name}{}", listed(&all, "and"))
+    pub(super) fn summary(&self) -> Vec<Words> {
+        let single: Option<Vec<&Words>> =
+            self.labels.iter().map(|label| <&[Words; 1]>::try_from(&**label).ok().map(|[one]| one)).collect();
+        let parts = single.map_or_else(|| self.of_several_parts(), |all| vec![range(&all)]);
+        let is_named = parts.first().is_some_and(|part| part.words().starts_with(&self.name));
+        let heading = (!is_named).then(|| Words::new(0, format!("{}:", self.name)));
+        heading.into_iter().chain(parts).map(|part| Words { rank: 0, ..part }).collect()
+    }
+
+    /// The labels one after the other, or the first and the last of many.
+    fn of_several_parts(&self) -> Vec<Words> {
+        match self.labels.as_slice() {
+            [first, .., last] if self.count() > NAMED => {
+                let others = [Words::new(0, "…")];
+                let count = Words::new(0, format!("{} in all", self.count()));
+                first.iter().chain(&others).chain(last).cloned().chain([count]).collect()
             }
-            n => format!("{name}{first} to {last}, {n} values"),
+            few => few.concat(),
+        }
+    }
+
+    /// The value of a step in plain words, with its name instead of a symbol; of several values the first.
+    pub(super) fn spoken(&self, step: usize) -> String {
+        let first = self.labels.get(step).and_then(|label| label.first());
+        match (first, self.sets.first()) {
+            (Some(part), Some((place, _))) if !part.symbol.is_empty() => {
+                format!("{} {}", place.label(), part.text)
+            }
+            (part, _) => part.map(Words::words).unwrap_or_default(),
         }
     }
 
@@ -192,6 +203,32 @@ impl Axis {
     pub fn count(&self) -> usize {
         self.labels.len()
     }
+}
+
+/// The name of a part, as the window shows it: "Point light 1".
+pub(super) fn called(part: Part, scene: &Scene, registry: &Registry) -> String {
+    let selection = match part {
+        Part::Light(i) => Selection::Light(i),
+        Part::Object(i) => Selection::Object(i),
+        part => return part.path().to_string(),
+    };
+    Document::new(scene.clone()).name_of(selection, registry)
+}
+
+/// Values with the symbol that they share: the first and the last, or a few words one by one.
+fn range(all: &[&Words]) -> Words {
+    let symbol = all.first().map_or("", |one| one.symbol);
+    let is_shared = all.iter().all(|one| one.symbol == symbol);
+    let texts: Vec<_> =
+        all.iter().map(|one| if is_shared { one.text.clone() } else { one.words() }).collect();
+    let has_digit = |text: &str| text.contains(|c: char| c.is_ascii_digit());
+    let text = match texts.as_slice() {
+        [first, .., last] if texts.len() > NAMED || texts.len() > 2 && has_digit(first) => {
+            format!("{first} to {last}, {} values", texts.len())
+        }
+        few => listed(few, "and"),
+    };
+    Words { symbol: if is_shared { symbol } else { "" }, ..Words::new(0, text) }
 }
 
 #[cfg(test)]
@@ -224,7 +261,7 @@ mod tests {
         let scene = Scene { variants: vec![phong], ..Scene::default() };
         let axis = Axis::vary("view=A,shiny", &scene, &registry).expect("two views");
         assert_eq!((axis.views.as_slice(), axis.written.join(" ")), (&[0, 1][..], "A B".to_owned()));
-        assert!(axis.labels[1].text.starts_with("B · shiny"), "{:?}", axis.labels);
+        assert!(caption::line(&axis.labels[1]).starts_with("B · shiny"), "{:?}", axis.labels);
         let sweep = crate::sweep::Sweep::new(&scene, 0, vec![axis], &registry).expect("valid");
         assert_eq!(sweep.seen(1).expect("valid").0.reflection_model, "phong");
         for (text, expected) in
@@ -253,7 +290,7 @@ mod tests {
         let scene = Scene { objects: vec![entry, Object::default()], ..Scene::default() };
         let scene = scene.expanded(&registry).expect("a row");
         let axis = Axis::copies(1, &scene, &registry).expect("a row");
-        let labels: Vec<_> = axis.labels.iter().map(Words::words).collect();
+        let labels: Vec<_> = axis.labels.iter().map(|label| caption::line(label)).collect();
         assert_eq!(labels, ["size 0.5 m", "size 1 m", "size 1.5 m"]);
         let sweep = crate::sweep::Sweep::new(&scene, 0, vec![axis], &registry).expect("valid");
         for i in 0..3 {
@@ -282,6 +319,34 @@ mod tests {
             seen.objects.iter().filter(|object| object.visible).count()
         };
         assert_eq!([shown(0), shown(1), shown(2)], [1, 0, 1]);
+    }
+
+    #[test]
+    fn captions_have_symbols_to_typeset_and_parts_have_the_names_of_the_window() {
+        let registry = Registry::builtin();
+        let scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+        let axis = Axis::vary("objects[0].material.k_s=0.1..0.9:3", &scene, &registry).expect("numbers");
+        let expected = [
+            Words::new(0, "specular coefficient:"),
+            Words { symbol: "k_s", ..Words::new(0, "0.1 to 0.9, 3 values") },
+        ];
+        assert_eq!(
+            (axis.summary(), axis.spoken(2)),
+            (expected.into(), "specular coefficient 0.9".to_owned())
+        );
+        let of = |axis: Result<Axis, String>| caption::line(&axis.expect("valid").summary());
+        let moved = Axis::path("lights[0]=[1, 8, 9]..[9, 8, 9]:3", None, &scene, &registry);
+        assert_eq!(of(moved), "Point light 1 moved: (1, 8, 9) m to (9, 8, 9) m, 3 values");
+        assert!(of(Axis::turn("lights[0]=90:3", &scene, &registry)).starts_with("Point light 1 turned: "));
+        let intensity = of(Axis::vary("lights[0].intensity=1,2", &scene, &registry));
+        assert!(intensity.starts_with("intensity of Point light 1: "), "{intensity}");
+        // The symbols of headings, too.
+        let mut shiny = Variant::default();
+        shiny.material.set("k_s", Value::Number(0.9));
+        let scene = Scene { variants: vec![shiny], ..scene };
+        let axis = Axis::vary("view=A,B", &scene, &registry).expect("two views");
+        assert_eq!(axis.summary().iter().filter(|part| part.symbol == "k_s").count(), 2, "{axis:?}");
+        assert_eq!(axis.spoken(1), "B");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! are too few left.
 
 use std::{
-    path::Path,
+    path::{Path, PathBuf},
     sync::{
         atomic::{AtomicBool, Ordering},
         mpsc::{self, RecvTimeoutError},
@@ -134,6 +134,24 @@ pub fn files(
     Ok(Written { drawn: all.len() - kept, kept })
 }
 
+/// The files of a folder in the places of a sweep's pictures that are none of them: of another scene, of other settings, or
+/// of another program.
+///
+/// # Errors
+/// Returns an error if there is no such view.
+pub fn others(sweep: &Sweep, settings: &Settings, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let other = |i: usize| {
+        let file = folder.join(sweep.file(i));
+        if !file.is_file() {
+            return Ok(None);
+        }
+        let stamp = One::new(sweep, settings, i)?.stamp;
+        let own = !stamp.is_empty() && png::text(&file, parts::KEYWORD).is_some_and(|own| own == stamp);
+        Ok((!own).then_some(file))
+    };
+    (0..sweep.count()).into_par_iter().filter_map(|i| other(i).transpose()).collect()
+}
+
 /// A picture with the labels of its rows, as in that of `lcm render`.
 fn labelled(rgb8: Vec<u8>, size: [u32; 2], scene: &Scene, registry: &Registry) -> Vec<u8> {
     let [width, height] = size;
@@ -245,10 +263,13 @@ fn each<T: Send>(
 
 #[cfg(test)]
 mod tests {
-    use std::{fs, path::PathBuf, time::Instant};
+    use std::{fs, time::Instant};
 
     use super::*;
-    use crate::sweep::Axis;
+    use crate::{
+        parameter::{NamedFile, Value},
+        sweep::Axis,
+    };
 
     const SMALL: Settings =
         Settings { size: [32, 18], samples: 1, until: Until { samples: 16, noise: None } };
@@ -310,6 +331,9 @@ mod tests {
             files(&sweep, settings, folder.path(), &|_| Ok(()), &Progress::NONE).expect("written")
         };
         assert_eq!(all(&SMALL), Written { drawn: 6, kept: 0 });
+        let others = |settings: &Settings| others(&sweep, settings, folder.path()).expect("looked for");
+        let smooth = Settings { samples: 4, ..SMALL };
+        assert_eq!((others(&SMALL).len(), others(&smooth).len()), (0, 6));
         let file = folder.path().join(sweep.file(2));
         let before = fs::read(&file).expect("there");
         fs::remove_file(&file).expect("removed");
@@ -319,6 +343,39 @@ mod tests {
         assert_eq!(all(&Settings { samples: 4, ..SMALL }), Written { drawn: 6, kept: 0 });
         fs::write(&file, &before[..before.len() / 2]).expect("written");
         assert_eq!(all(&Settings { samples: 4, ..SMALL }), Written { drawn: 1, kept: 5 });
+    }
+
+    #[test]
+    fn a_stamp_has_the_content_of_files_and_of_models_from_files() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let write = |z: f32| {
+            let text = format!("v 0 0 {z}\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+            fs::write(folder.path().join("mesh.obj"), text).expect("written");
+        };
+        let mut registry = Registry::builtin();
+        let stamp = |registry: &Registry| {
+            let mut scene = Scene::default();
+            scene.objects[0].object_type = "mesh".to_owned();
+            let shape = registry.shape("mesh").expect("built in");
+            let parameter =
+                shape.parameters.iter().find(|p| p.kind.format().is_some()).expect("names a file");
+            let format = parameter.kind.format().expect("a file");
+            let file = NamedFile::named("mesh.obj", folder.path(), format);
+            assert_eq!(file.problem(), None);
+            scene.objects[0].shape.set(parameter.name, Value::File(file));
+            let settings = reference::Settings::default();
+            parts::stamp(&scene, &settings, Until::default(), registry)
+        };
+        write(0.0);
+        let flat = stamp(&registry);
+        assert_eq!((flat.is_empty(), &stamp(&registry)), (false, &flat));
+        write(0.5);
+        let bent = stamp(&registry);
+        assert_ne!(bent, flat);
+        registry.sources_mut().edit("models/velvet.wgsl", "// one");
+        let one = stamp(&registry);
+        registry.sources_mut().edit("models/velvet.wgsl", "// two");
+        assert!(one != bent && one != stamp(&registry));
     }
 
     #[test]

@@ -29,10 +29,12 @@ mod unused;
 mod values;
 mod write;
 
+use std::{collections::HashSet, ffi::OsString, path::Path};
+
 use rayon::prelude::*;
 
 pub use axis::Axis;
-pub use draw::{Check, Drawn, Settings, Written, files, pictures};
+pub use draw::{Check, Drawn, Settings, Written, files, others, pictures};
 pub use film::{GIF, MAX_RATE, gif};
 pub use parts::Parts;
 pub use sheet::{Against, Grid, Page, maps};
@@ -52,6 +54,8 @@ use unused::Unused;
 pub const MAX_PICTURES: usize = 10_000;
 /// Maximum number of pixels of all pictures of a sheet or a film together: they are in memory at once.
 pub const MAX_PIXELS: u64 = 1 << 28;
+/// Maximum number of names in a folder among which pictures of others are looked for.
+const MOST_ENTRIES: usize = 100_000;
 /// Maximum number of problems named for a picture.
 const MAX_NAMED: usize = 3;
 
@@ -88,8 +92,9 @@ impl<'a> Sweep<'a> {
         let unused = Unused(checked.into_iter().collect::<Result<_, _>>()?);
         sweep.remarks = unused.remarks(&sweep)?;
         for (axis, step, mark) in unused.marks(&sweep) {
-            let label = &mut sweep.axes[axis].labels[step];
-            label.text = format!("{} ({mark})", label.text);
+            if let Some(last) = sweep.axes[axis].labels[step].last_mut() {
+                last.text = format!("{} ({mark})", last.text);
+            }
         }
         Ok(sweep)
     }
@@ -123,8 +128,8 @@ impl<'a> Sweep<'a> {
 
     /// The label of each axis in a picture.
     #[must_use]
-    pub fn labels(&self, picture: usize) -> Vec<&Words> {
-        self.axes.iter().zip(self.steps(picture)).map(|(axis, step)| &axis.labels[step]).collect()
+    pub fn labels(&self, picture: usize) -> Vec<&[Words]> {
+        self.axes.iter().zip(self.steps(picture)).map(|(axis, step)| &*axis.labels[step]).collect()
     }
 
     /// The scene that a picture shows, and its terms; `None` if there is no such view. The rules of the scene were
@@ -176,6 +181,15 @@ impl<'a> Sweep<'a> {
         name + ".png"
     }
 
+    /// The number of pictures among the names in a folder that are none of the sweep.
+    #[must_use]
+    pub fn strangers(&self, names: impl IntoIterator<Item = OsString>) -> usize {
+        let own: HashSet<OsString> = (0..self.count()).map(|i| self.file(i).into()).collect();
+        let is_picture = |name: &OsString| Path::new(name).extension().is_some_and(|end| end == "png");
+        let names = names.into_iter().take(MOST_ENTRIES);
+        names.filter(|name| is_picture(name) && !own.contains(name)).count()
+    }
+
     /// The ground of words around the pictures: that of the first.
     #[must_use]
     pub fn ground(&self) -> Ground {
@@ -199,7 +213,7 @@ impl<'a> Sweep<'a> {
         if let Some(first) = caption.facts.first_mut() {
             first.continues = false;
         }
-        caption.facts.extend(self.axes.iter().map(|axis| Words::new(0, axis.summary())));
+        caption.facts.extend(self.axes.iter().flat_map(Axis::summary));
         caption
     }
 
@@ -275,7 +289,7 @@ mod tests {
         assert_eq!(seen(1), (2.0, "lambert".to_owned()));
         assert_eq!(seen(4), (2.0, "phong".to_owned()));
         assert_eq!(made.file(4), "5_size_2_reflection-model_phong.png");
-        let words: Vec<_> = made.labels(4).into_iter().map(Words::words).collect();
+        let words: Vec<_> = made.labels(4).into_iter().map(caption::line).collect();
         assert_eq!(words, ["size 2 m", "Phong"]);
         let facts = caption::line(&made.caption().facts);
         assert!(facts.contains("size 1 m to size 3 m, 3 values"), "{facts}");
@@ -301,7 +315,7 @@ mod tests {
         }
         let made =
             sweep(&scene, &registry, &[roughness, "reflection_model=lambert,eon,phong"]).expect("EON has it");
-        let words = |axis: usize| made.axes[axis].labels.iter().map(Words::words).collect::<Vec<_>>();
+        let words = |axis: usize| made.axes[axis].labels.iter().map(|l| caption::line(l)).collect::<Vec<_>>();
         assert_eq!(words(0), ["r 0.1", "r 0.5", "r 0.9"]);
         assert_eq!(words(1), ["Lambert (no roughness)", "EON", "Phong (no roughness)"]);
         let expected = "objects[0].material.roughness has no effect in 6 of 9 pictures: Lambert has no roughness; \

@@ -23,15 +23,17 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// The end of the name of the folder.
 const END: &str = ".parts";
 
-/// A stamp of the inputs of a picture: the scene, the settings and the program; empty if these are not all, since a
-/// scene with files, or with models and shaders from files, may be drawn differently another time.
+/// A stamp of the inputs of a picture: the scene, the content of its files, models and shaders from files, the settings and
+/// the program; empty if these are not all, since a program with models of other crates may have the same version.
 pub(super) fn stamp(scene: &Scene, settings: &Settings, until: Until, registry: &Registry) -> String {
-    let from_files = registry.has_foreign() || registry.sources().edited().next().is_some();
-    if from_files || scene.files().next().is_some() {
+    if registry.has_foreign() {
         return String::new();
     }
     let mut hasher = DefaultHasher::new();
     to_json(scene, None, registry).hash(&mut hasher);
+    scene.files().for_each(|file| file.digest().hash(&mut hasher));
+    let sources = registry.sources();
+    sources.edited().for_each(|path| (path, sources.get(path)).hash(&mut hasher));
     let Settings { width, height, samples, terms } = *settings;
     (width, height, samples, terms.id(), until.samples, until.noise.map(f32::to_bits)).hash(&mut hasher);
     let version = env!("CARGO_PKG_VERSION");
@@ -116,7 +118,9 @@ impl Parts {
         files::clear(&self.folder, |path| {
             let is_number =
                 path.file_stem().is_some_and(|stem| stem.to_string_lossy().parse::<usize>().is_ok());
-            is_number && path.extension().is_some_and(|end| end == "png") && png::has_text(path, KEYWORD)
+            is_number
+                && path.extension().is_some_and(|end| end == "png")
+                && png::text(path, KEYWORD).is_some()
         });
     }
 }

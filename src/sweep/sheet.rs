@@ -10,6 +10,8 @@ use crate::{
     scene::Comparison,
 };
 
+/// The smallest letters of labels, pixels.
+const SMALLEST: f32 = 10.0;
 /// A single row has at most so many pictures, unless the user says otherwise.
 const ROW: usize = 8;
 
@@ -93,8 +95,7 @@ pub fn maps(
         }
     };
     let comparison = Comparison { amplification: Some(factor), ..*against.comparison };
-    let first = sweep.varied().next().and_then(|axis| axis.labels.get(against.column));
-    let column = first.map(Words::words).unwrap_or_default();
+    let column = sweep.varied().next().map(|axis| axis.spoken(against.column)).unwrap_or_default();
     let (names, ground) = (["this".to_owned(), column], sweep.ground());
     let one = |i: usize| {
         if i == reference(i) {
@@ -123,8 +124,8 @@ pub struct Page<'a> {
     gap: u32,
     /// The width of the names of rows.
     left: u32,
-    columns: Vec<&'a Words>,
-    rows: Vec<&'a Words>,
+    columns: Vec<&'a [Words]>,
+    rows: Vec<&'a [Words]>,
     /// True if a line above all gives the time in a film.
     is_dated: bool,
     has_maps: bool,
@@ -138,9 +139,11 @@ impl<'a> Page<'a> {
     pub fn new(axes: &[&'a super::Axis], grid: Grid, cell: [u32; 2], has_maps: bool) -> Self {
         let px = (cell[1] as f32 / 12.0).round().clamp(12.0, 28.0);
         let gap = if grid.columns * grid.rows == 1 { 0 } else { (0.4 * px).round() as u32 };
-        let labels = |axis: usize| axes.get(axis).map_or_else(Vec::new, |axis| axis.labels.iter().collect());
-        let rows: Vec<&Words> = labels(1);
-        let widest = rows.iter().map(|label| caption::line_width(std::slice::from_ref(*label), px)).max();
+        let labels = |axis: usize| -> Vec<&'a [Words]> {
+            axes.get(axis).map_or_else(Vec::new, |axis| axis.labels.iter().map(|label| &**label).collect())
+        };
+        let rows = labels(1);
+        let widest = rows.iter().map(|label| caption::line_width(label, px)).max();
         let left = widest.map_or(0, |width| width.min(cell[0]) + gap);
         let line = Lettering::Regular.height(px) + (0.3 * px).round() as u32;
         Self {
@@ -207,7 +210,7 @@ impl<'a> Page<'a> {
 
     /// The sheet of pictures in order, each with its map if there are maps; `date` is the line above all.
     #[must_use]
-    pub fn compose(&self, pictures: &[Vec<u8>], maps: &[Map], date: Option<&Words>) -> Vec<u8> {
+    pub fn compose(&self, pictures: &[Vec<u8>], maps: &[Map], date: Option<&[Words]>) -> Vec<u8> {
         let mut paper = Paper::new(self.size(), self.ground.colour);
         let [width, height] = self.cell;
         if let Some(date) = date {
@@ -231,23 +234,25 @@ impl<'a> Page<'a> {
             if let Some((map, numbers)) = maps.get(i) {
                 let y = y + head + height + self.gap;
                 paper.put(map, self.cell, [x, y]);
-                self.write(&mut paper, &Words::new(0, numbers.as_str()), [x, y + height], width);
+                self.write(&mut paper, &[Words::new(0, numbers.as_str())], [x, y + height], width);
             }
         }
         paper.rgb8
     }
 
-    /// Writes a label in the middle of a line; a longer one is shortened.
-    fn write(&self, paper: &mut Paper, label: &Words, [x, y]: [u32; 2], room: u32) {
-        let mut parts = vec![label.clone()];
-        let width = caption::line_width(&parts, self.px);
-        if width > room {
-            let short = Lettering::Regular.lines(self.px, &label.words(), room, 1);
+    /// Writes a label in the middle of a line; a longer one is smaller, and then shortened.
+    fn write(&self, paper: &mut Paper, label: &[Words], [x, y]: [u32; 2], room: u32) {
+        let (mut parts, mut px) = (label.to_vec(), self.px);
+        while caption::line_width(&parts, px) > room && px > SMALLEST {
+            px -= 1.0;
+        }
+        if caption::line_width(&parts, px) > room {
+            let short = Lettering::Regular.lines(px, &caption::line(label), room, 1);
             parts = short.into_iter().map(|text| Words::new(0, text)).collect();
         }
-        let free = room.saturating_sub(caption::line_width(&parts, self.px));
+        let free = room.saturating_sub(caption::line_width(&parts, px));
         let at = [x + free / 2, y].map(|v| v as i32);
-        caption::draw_line(&parts, &mut paper.rgb8, paper.size, at, self.px, self.ground.title);
+        caption::draw_line(&parts, &mut paper.rgb8, paper.size, at, px, self.ground.title);
     }
 }
 
@@ -335,7 +340,7 @@ mod tests {
         assert_eq!((one.size(), one.compose(&pictures[..1], &[], None) == pictures[0]), (cell, true));
         let dated = one.dated();
         assert!(dated.size()[1] > cell[1]);
-        let words = Words::new(0, "15°");
+        let words = [Words::new(0, "15°")];
         assert!(inked(&dated.compose(&pictures[..1], &[], Some(&words))) > 0);
     }
 

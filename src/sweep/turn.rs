@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3};
 
-use super::{Axis, Sweep};
+use super::{Axis, Sweep, axis::called};
 use crate::{
     caption::Part as Words,
     parameter::Value,
@@ -89,10 +89,14 @@ impl<'a> Turn<'a> {
         }
         let written: Vec<_> =
             angles.iter().map(|angle| (angle * 100.0).round() / 100.0).map(|v| v.to_string()).collect();
-        let labels =
-            written.iter().map(|angle| Words::new(0, format!("{}°", angle.replace('-', "−")))).collect();
+        let label = |angle: &String| vec![Words::new(0, format!("{}°", angle.replace('-', "−")))];
+        let labels = written.iter().map(label).collect();
+        let name = match parts.as_slice() {
+            [one] if what.ends_with(']') => called(*one, scene, registry),
+            _ => what.to_owned(),
+        };
         Ok(Axis {
-            name: format!("{what} turned"),
+            name: format!("{name} turned"),
             labels,
             moves: true,
             word: "turn".to_owned(),

@@ -182,6 +182,13 @@ mod tests {
             ("objects[0].tessellation", "4..6:9", "fewer whole numbers"),
             ("reflection_model", "lambert..phong:3", "only numbers have ranges"),
             ("reflection_model", "lambrt", "did you mean"),
+            (
+                "objects[0].material.base_colour",
+                "red,blue",
+                "base_colour is red, but the base colour must be three whole numbers from 0 to 255: [red, green, blue], \
+                 or hexadecimal: #ff8000",
+            ),
+            ("lights[0].colour", "#ff00", "[red, green, blue], or hexadecimal: #ff8000"),
         ] {
             let said = values(path, text).expect_err(text);
             assert!(said.contains(expected), "{text}: {said}");

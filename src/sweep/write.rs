@@ -19,7 +19,7 @@ use crate::{
     picture::png::{self, About},
     progress::Progress,
     reference::MAX_SIDE,
-    scene::Comparison,
+    scene::{Comparison, Scene},
 };
 
 /// The usual size of a picture among others on a sheet.
@@ -39,6 +39,14 @@ pub enum Format {
 }
 
 impl Format {
+    /// The format of a file, by its name; `None` if neither a sheet nor a film has such a name.
+    #[must_use]
+    pub fn of(file: &Path) -> Option<Self> {
+        let extension = file.extension()?;
+        let all = [("png", Self::Sheet), ("gif", Self::Gif), ("apng", Self::Apng)];
+        all.into_iter().find(|(known, _)| extension.eq_ignore_ascii_case(known)).map(|(_, format)| format)
+    }
+
     /// The first bytes of such files.
     #[must_use]
     pub fn signature(self) -> Signature {
@@ -80,6 +88,8 @@ pub struct Plan<'a> {
     time: Option<&'a Axis>,
     /// Number of pictures of each sheet.
     each: usize,
+    /// The scene in the file.
+    held: &'a Scene,
 }
 
 impl<'a> Plan<'a> {
@@ -112,7 +122,13 @@ impl<'a> Plan<'a> {
         let page = if look.words { page } else { page.silent() };
         let page = if time.is_some() { page.dated() } else { page };
         room(&page, size, sweep.count())?;
-        Ok(Self { sweep, look, settings, page, time, each })
+        Ok(Self { sweep, look, settings, page, time, each, held: sweep.scene })
+    }
+
+    /// Lets the file hold another scene than that of the sweep.
+    #[must_use]
+    pub fn holding(self, held: &'a Scene) -> Self {
+        Self { held, ..self }
     }
 
     /// Draws the pictures and writes the file, whole or not at all. `source` is the name of the scene's source. Returns the
@@ -146,13 +162,13 @@ impl<'a> Plan<'a> {
         let mut sheets = Vec::with_capacity(pictures.len() / each);
         for (i, pictures) in pictures.chunks(*each).enumerate() {
             let maps = maps.get(i * each..(i + 1) * each).unwrap_or_default();
-            let mut sheet = page.compose(pictures, maps, self.time.map(|time| &time.labels[i]));
+            let mut sheet = page.compose(pictures, maps, self.time.map(|time| &*time.labels[i]));
             if self.look.words {
                 (sheet, whole) = caption::draw(&caption, sheet, page.size());
             }
             sheets.push(sheet);
         }
-        let about = About::scene(sweep.scene, sweep.registry)
+        let about = About::scene(self.held, sweep.registry)
             .with("Description", caption::line(&caption.facts))
             .with("Source", source)
             .with("Renderer", "CPU");

@@ -44,7 +44,7 @@ impl Exports {
         if self.0.running().is_some() {
             return;
         }
-        let path = with_extension(form, path);
+        let path = file_of(form, path);
         let inputs = inputs(session.path.as_deref(), [session.document.scene()], registry);
         let before = match may_write(form, &path, overwrite, &inputs) {
             Ok(before) => before,
@@ -97,13 +97,15 @@ fn pinned(session: &Session) -> (Option<[u32; 2]>, Option<&'static str>) {
     (point, remark)
 }
 
-/// Appends the extension of the format, if the user typed none.
-fn with_extension(form: &Form, path: PathBuf) -> PathBuf {
+/// The file with the extension of the format, once.
+fn file_of(form: &Form, typed: PathBuf) -> PathBuf {
     match form.makes {
-        crate::export::Makes::File(extension) if !extension.is_empty() && path.extension().is_none() => {
-            path.with_extension(extension)
+        crate::export::Makes::File(extension) if !extension.is_empty() => {
+            let is_known =
+                |path: &Path| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension));
+            files::meant(&typed, extension, is_known)
         }
-        _ => path,
+        _ => typed,
     }
 }
 

@@ -25,7 +25,7 @@ use crate::{
     channel::{DebugChannel, Legend, Setting, layers, too_large},
     compare::{self, Pair, Shown, Unequal, cells, compose, size_around, with_legends, with_row_labels},
     export::write::inputs,
-    files::{self, Refused, Shown as _, words},
+    files::{self, Refused, Shown as _, Signature, words},
     linear::{Format, MAX_PIXELS},
     optics::TermSelection,
     panel::state::{Effect, PictureEnd, PictureOptions, Question, Session, Severity},
@@ -38,7 +38,7 @@ use crate::{
     registry::Registry,
     render::view::{Drawing, ViewSystems},
     scene::{
-        Background, Comparison, Scene,
+        Background, Comparison, Observer, Scene,
         comparison::{Compared, Layout},
         variant::LETTERS,
     },
@@ -90,9 +90,9 @@ fn take(
             pictures.work.cancel();
         }
         let Effect::Picture { view, file, overwrite } = effect.clone() else { continue };
-        // The user need not type the extension of pictures.
-        let file =
-            file.map(|file| if file.extension().is_none() { file.with_extension("png") } else { file });
+        let meant = file.as_deref().map(|typed| files::meant(typed, "png", |file| signature(file).is_some()));
+        // The dialog asked only about the exact name that was typed.
+        let (overwrite, file) = (overwrite && file == meant, meant);
         match file.as_deref().map_or(Ok(true), |file| may_write(file, overwrite, &session, &registry)) {
             Ok(true) => {
                 announce(file.as_deref(), &mut session, &registry);
@@ -220,7 +220,7 @@ impl Begun<'_> {
             light: session.channel_light(),
             is_off_screen: self.is_off_screen(),
             whole,
-            camera_is_free: session.facts.camera_is_free,
+            observer: session.observer_in_file(),
             caption: session.settings.picture_caption,
             options: PictureOptions {
                 // Different channels are not compared.
@@ -269,10 +269,15 @@ fn shown(session: &Session, cells: Vec<usize>, alone: Option<usize>) -> Vec<usiz
     }
 }
 
+/// The format of a picture with this name.
+fn signature(file: &Path) -> Option<Signature> {
+    let is_png = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    Format::of(file).map(Format::signature).or(is_png.then_some(files::PNG))
+}
+
 /// Returns false if the file exists, so that the user must be asked.
 fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registry) -> Result<bool, String> {
-    let is_png = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
-    let Some(format) = Format::of(file).map(Format::signature).or(is_png.then_some(files::PNG)) else {
+    let Some(format) = signature(file) else {
         let png = file.with_extension("png");
         return Err(format!(
             "The picture was not saved to {}: only PNG, OpenEXR (.exr) and Radiance (.hdr) files can be written; name it {}.",
@@ -309,8 +314,8 @@ struct Job {
     is_off_screen: bool,
     /// The size of the picture, if not that of the views.
     whole: Option<[u32; 2]>,
-    /// True if the camera is not at the observer of the scene.
-    camera_is_free: bool,
+    /// The observer of the scene in the file, and why it is not at the camera.
+    observer: (Observer, Option<&'static str>),
     caption: bool,
     options: PictureOptions,
     /// True for a picture of a single view, even if the scene has others.
@@ -365,7 +370,7 @@ impl Job {
                 self.save(file, &drawn).map_err(Undrawn::Failed)?;
             }
         }
-        Ok(PictureEnd::Saved(file.clone()))
+        Ok(PictureEnd::Saved { path: file.clone(), elsewhere: self.observer.1 })
     }
 
     /// The arrangement of the views.
@@ -542,15 +547,14 @@ impl Job {
         linear::write(file, format, &channels, &about).map_err(|error| Undrawn::Failed(words(&error)))
     }
 
-    /// The scene of the picture, with the observer at the camera, so that opening the picture shows the same view.
+    /// The scene of the picture, with the observer at the camera if it can be there, so that opening the picture shows the
+    /// same view.
     fn pictured(&self) -> Scene {
-        let SeenViews { scene, registry, shown, camera, .. } = &self.views;
+        let SeenViews { scene, registry, shown, .. } = &self.views;
         let alone = shown.first().filter(|_| self.alone);
         let alone = alone.and_then(|(view, _)| scene.seen(*view, registry));
         let mut scene = alone.map_or_else(|| scene.clone(), |(seen, _)| seen.alone());
-        if self.camera_is_free {
-            scene.observer = *camera;
-        }
+        scene.observer = self.observer.0;
         self.with_background(scene)
     }
 }

@@ -15,12 +15,12 @@ use crate::{
     reference,
     registry::Registry,
     scene::{Comparison, Scene, comparison::Compared},
-    sweep::{Axis, Format, Look, Parts, Plan, Settings, Sweep, instead_of_turn},
+    sweep::{Axis, Format, Look, Parts, Plan, Settings, Sweep},
 };
 
 /// The sheet being written: its file, and the error if it failed.
 #[derive(Debug, Default, Resource)]
-pub(super) struct SheetFiles(pub(super) Background<(), (PathBuf, Result<(), String>)>);
+pub(super) struct SheetFiles(pub(super) Background<(), (PathBuf, Result<Option<&'static str>, String>)>);
 
 impl SheetFiles {
     /// Starts to write a sheet, or a film, and returns at once. Calls `wake` at each step.
@@ -35,14 +35,14 @@ impl SheetFiles {
             return session
                 .say(Severity::Info, "A sheet is still being drawn: wait for it, or cancel it below.");
         }
+        let file = files::meant(&path, "png", |file| Format::of(file).is_some());
         // The dialog asked only about the exact name that was typed.
-        let asked = path.extension().is_some();
-        let file = if asked { path } else { path.with_extension("png") };
-        let mut scene = session.document.scene().clone();
-        let inputs = inputs(session.path.as_deref(), [&scene], registry);
-        let format = match format_of(&file) {
-            Ok(format) => format,
-            Err(why) => return session.sheet_written(&file, Err(why)),
+        let asked = file == path;
+        let mut held = session.document.named(registry);
+        let inputs = inputs(session.path.as_deref(), [&held], registry);
+        let Some(format) = Format::of(&file) else {
+            let why = format!("{} is the name of no sheet (.png) and no film (.gif, .apng)", file.shown());
+            return session.sheet_written(&file, Err(why));
         };
         if let Err(refused) = files::may_replace(&file, format.signature(), asked, &inputs) {
             return session.sheet_written(&file, Err(refused.to_string()));
@@ -51,16 +51,19 @@ impl SheetFiles {
             let why = "the camera is outside the room, or in the place of a light or an object; move it";
             return session.sheet_written(&file, Err(why.to_owned()));
         }
+        let elsewhere;
+        (held.observer, elsewhere) = session.observer_in_file();
         // As seen from the current camera.
-        scene.observer = session.facts.observer(scene.observer);
+        let scene = Scene { observer: session.facts.observer(held.observer), ..held.clone() };
         let options = session.settings.sheet.clone();
         let view = session.active();
         let (source, registry) = (session.title(), registry.clone());
         let broken = (file.clone(), Err("an internal error".to_owned()));
         self.0.begin((), wake, broken, move |progress| {
-            let job = Job { scene: &scene, registry: &registry, options: &options, subject, view, format };
+            let (scene, held, registry, options) = (&scene, &held, &registry, &options);
+            let job = Job { scene, held, registry, options, subject, view, format };
             let outcome = job.write(&file, &source, progress);
-            (file, outcome)
+            (file, outcome.map(|()| elsewhere))
         });
     }
 
@@ -73,20 +76,11 @@ impl SheetFiles {
     }
 }
 
-/// The format of a sheet or a film, by its name.
-fn format_of(file: &Path) -> Result<Format, String> {
-    let extension = file.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    match extension.as_deref() {
-        Some("png") => Ok(Format::Sheet),
-        Some("gif") => Ok(Format::Gif),
-        Some("apng") => Ok(Format::Apng),
-        _ => Err(format!("{} is the name of no sheet (.png) and no film (.gif, .apng)", file.shown())),
-    }
-}
-
 /// A sheet or a film to write.
 struct Job<'a> {
     scene: &'a Scene,
+    /// The scene in the file.
+    held: &'a Scene,
     registry: &'a Registry,
     options: &'a SheetOptions,
     subject: SheetOf,
@@ -98,26 +92,25 @@ struct Job<'a> {
 impl Job<'_> {
     /// Draws the sheet and writes it. Finished pictures that took long are kept for another try.
     fn write(&self, file: &Path, source: &str, progress: &Progress) -> Result<(), String> {
-        let Self { scene, registry, options, subject, view, format } = *self;
+        let Self { scene, held, registry, options, subject, view, format } = *self;
         let axis = match subject {
             SheetOf::Row(object) => Axis::copies(object, scene, registry)?,
             SheetOf::Views => Axis::views(&(0..=scene.variants.len()).collect::<Vec<_>>(), scene, registry)?,
             SheetOf::Turn(what) => {
-                let turn = format!("{}=360:{}", what.id(), options.turn);
-                if instead_of_turn(&turn, scene, registry).is_some() {
-                    return Err(format!(
-                        "on its way something would leave the room; move it nearer to the middle, or choose another turn \
-                         than that of {}",
-                        what.name().to_lowercase()
-                    ));
-                }
-                Axis::turn(&turn, scene, registry)?
+                Axis::turn(&format!("{}=360:{}", what.id(), options.turn), scene, registry)?
             }
         };
         let compares =
             options.differences && subject == SheetOf::Views && axis.count() > 1 && !format.is_film();
         let column = (options.against as usize).min(axis.count().saturating_sub(1));
-        let sweep = Sweep::new(scene, view, vec![axis], registry)?;
+        let sweep = Sweep::new(scene, view, vec![axis], registry).map_err(|why| match subject {
+            SheetOf::Turn(what) => format!(
+                "on its way something would leave the room; move it nearer to the middle, or choose another turn than \
+                 that of {}",
+                what.name().to_lowercase()
+            ),
+            _ => why,
+        })?;
         let compared = Comparison { values: Compared::Codes, ..scene.comparison };
         let look = Look {
             format,
@@ -128,7 +121,7 @@ impl Job<'_> {
             rate: options.rate,
         };
         let settings = Settings { samples: options.samples(), ..Settings::default() };
-        let plan = Plan::new(&sweep, look, settings)?;
+        let plan = Plan::new(&sweep, look, settings)?.holding(held);
         let check = |seen: &Scene| self.check(seen);
         plan.write(file, source, &check, progress).map(drop).map_err(|failure| {
             let parts = Parts::beside(file);

@@ -3,6 +3,7 @@
 use crate::{
     document::Document,
     panel::{
+        chooser,
         knob::{self, Amount, Caption},
         prelude::*,
     },
@@ -36,9 +37,9 @@ pub(super) fn row(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
         let button = ui.button("Make a row…").on_hover_text("Copies beside each other, edited as one");
         return context.on_click(&button, || Action::MakeRow(Selection::Object(i)));
     };
-    let document = context.document();
+    let (session, document) = (context.session(), context.document());
     let models = (document.model_of(row.entry), document.shading_model_of(row.entry));
-    let shown = Shown { i, row, document, registry: context.registry(), models };
+    let shown = Shown { i, row, session, document, registry: context.registry(), models };
     context.edits(shown.counts(ui));
     context.edits(shown.steps(ui));
     for j in 0..row.repeat.vary.len() {
@@ -63,6 +64,7 @@ pub(super) fn row(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
 struct Shown<'a> {
     i: usize,
     row: Row<'a>,
+    session: &'a Session,
     document: &'a Document,
     registry: &'a Registry,
     /// The reflection model and the shading model of the row.
@@ -101,7 +103,11 @@ impl Shown<'_> {
     fn counts(&self, ui: &mut Ui) -> Option<Edit> {
         let repeat = self.row.repeat;
         let count = |ui: &mut Ui, field: Field, value: u32, along: Along| {
-            let most = f64::from(self.row.most(along, self.document));
+            // The step that leaves room for labels becomes as small as more rows need.
+            let usual = Repeat { row_spacing: Repeat::default().row_spacing, ..repeat.clone() };
+            let steps = self.session.step_for_labels(&self.row, repeat.rows);
+            let repeat = if steps.is_some() && along == Along::Rows { &usual } else { repeat };
+            let most = f64::from(Row { repeat, ..self.row }.most(along, self.document));
             let limits = Limits::between(1.0, most).whole().slider(1.0, SLIDER.min(most.max(2.0)));
             let limits = Limits { because: Some("there is room for no more".to_owned()), ..limits };
             let caption = Caption { salt: field.key, ..Caption::of(&field) };
@@ -111,7 +117,11 @@ impl Shown<'_> {
         let rows = count(ui, Repeat::rows, repeat.rows, Along::Rows);
         (columns.or(rows)).map(|_| {
             let [columns, rows] = [columns.unwrap_or(repeat.columns), rows.unwrap_or(repeat.rows)];
-            self.counting(ui, "Number", |row| (row.columns, row.rows) = (columns, rows))
+            let step = self.session.step_for_labels(&self.row, rows).filter(|_| rows > 1);
+            self.counting(ui, "Number", |row| {
+                (row.columns, row.rows) = (columns, rows);
+                row.row_spacing = step.unwrap_or(row.row_spacing);
+            })
         })
     }
 
@@ -158,7 +168,7 @@ impl Shown<'_> {
             Key::Own(_) => true,
         };
         // Files are named in scene files.
-        let is_file = |one: &Variable| matches!(self.value(*one), Some(Value::File(_)));
+        let is_file = |one: &Variable| matches!(one.declared, Declared::Parameter(parameter) if parameter.kind.format().is_some());
         let all = Variable::all(&entry.object_type, self.registry).filter(used);
         let mut all: Vec<_> = all.filter(|one| !is_file(one)).collect();
         // Those of the material are asked for most.
@@ -308,8 +318,8 @@ impl Shown<'_> {
     /// The knob of a listed value. Returns another one.
     fn listed(&self, ui: &mut Ui, one: Variable, name: &str, value: &Value) -> Option<Value> {
         let caption = Caption::new(name, "", one.declared.label());
-        if let Some((number, limits)) = number_of(value).zip(one.declared.limits()) {
-            let new = knob::number_knob(ui, &caption, Amount::new(number, None, &limits))?;
+        if let Some(limits) = one.declared.limits() {
+            let new = knob::number_knob(ui, &caption, Amount::new(value.numbers()[0], None, &limits))?;
             return one.declared.of_number(new);
         }
         match (value, one.declared) {
@@ -321,6 +331,9 @@ impl Shown<'_> {
             (Value::Triple(v), Declared::Field(field)) => {
                 let limits = [(); 3].map(|()| field.limits());
                 knob::vector_knob(ui, &caption, (*v).into(), &limits).map(|v| Value::Triple(v.into()))
+            }
+            (Value::Choice(id), _) if one.key == Object::reflection_model.into() => {
+                self.model(ui, &caption, id)
             }
             (Value::Choice(word), _) => {
                 let words = one.words(self.registry);
@@ -337,6 +350,17 @@ impl Shown<'_> {
         }
     }
 
+    /// The choice of a listed reflection model, with a search. Returns another one.
+    fn model(&self, ui: &mut Ui, caption: &Caption, now: &str) -> Option<Value> {
+        let shown = self.registry.model(now).map_or(now, |model| model.declaration.name);
+        let model = knob::list_knob(ui, caption, shown, |ui, list| {
+            let height = 0.45 * ui.ctx().content_rect().height();
+            chooser::models(ui, list, height, self.session, self.registry, Some(now), None)
+        });
+        let id = model.flatten()?.declaration.id;
+        (id != now).then(|| Value::Choice(id.into()))
+    }
+
     /// The declaration of a varied value, if there is one.
     fn known(&self, varied: &Varied) -> Option<Variable> {
         Variable::with_path(&varied.parameter, &self.row.entry.object_type, self.registry)
@@ -344,9 +368,8 @@ impl Shown<'_> {
 
     /// The button that makes a range of listed values.
     fn range_instead(&self, ui: &mut Ui, j: usize, varied: &Varied) -> Option<Edit> {
-        let ends = [varied.values.first(), varied.values.last()]
-            .map(|end| end.and_then(number_of).map(|v| v as f32));
-        let [Some(from), Some(to)] = ends else { return None };
+        self.known(varied)?.declared.limits()?;
+        let [from, to] = [varied.values.first()?, varied.values.last()?].map(|end| end.numbers()[0] as f32);
         let help = "From the first of these values to the last, in equal steps";
         let range = ui.button("Range instead").on_hover_text(help).clicked();
         range.then(|| {
@@ -354,15 +377,6 @@ impl Shown<'_> {
                 (varied.values, varied.from, varied.to) = (Vec::new(), Some(from), Some(to));
             })
         })
-    }
-}
-
-/// The number that a value is, if it is one.
-fn number_of(value: &Value) -> Option<f64> {
-    match value {
-        Value::Number(v) => Some(f64::from(*v)),
-        Value::Integer(n) => Some(*n as f64),
-        _ => None,
     }
 }
 

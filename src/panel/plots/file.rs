@@ -35,14 +35,7 @@ pub(in crate::panel) fn offer(dialog: &mut FileDialog) {
 /// The file that a typed name means: vector graphics if it has no extension.
 #[must_use]
 pub fn file_of(typed: &Path) -> PathBuf {
-    match (typed.extension(), typed.file_stem().map(Path::new)) {
-        (None, _) => typed.with_extension(Format::Svg.id()),
-        // The dialog adds an extension to whatever is typed.
-        (Some(_), Some(stem)) if Format::of(typed).is_ok() && Format::of(stem).is_ok() => {
-            typed.with_file_name(stem)
-        }
-        _ => typed.to_owned(),
-    }
+    files::meant(typed, Format::Svg.id(), |path| Format::of(path).is_ok())
 }
 
 /// Calculates a plot and writes it to a file; the name determines the format. Returns the message about it. An existing

@@ -7,13 +7,19 @@ use crate::{
     export::{Form, form},
     files::{self, Shown as _},
     scene::variant::LETTERS,
+    sweep::Format,
 };
 
 /// Result of saving or copying a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PictureEnd {
     /// Saved to a file.
-    Saved(PathBuf),
+    Saved {
+        /// The file.
+        path: PathBuf,
+        /// Why its scene has the observer elsewhere than the camera, if so.
+        elsewhere: Option<&'static str>,
+    },
     /// Copied to the clipboard, with this width and height in pixels.
     Copied([u32; 2]),
     /// The user cancelled it.
@@ -68,14 +74,15 @@ impl Session {
         letter.map_or_else(|| self.stem(), |letter| format!("{}_{}", self.stem(), letter.to_lowercase()))
     }
 
-    /// Reports the result of saving a sheet of the views.
-    pub fn sheet_written(&mut self, path: &Path, outcome: Result<(), String>) {
-        let is_film = path
-            .extension()
-            .is_some_and(|extension| ["gif", "apng"].iter().any(|film| extension.eq_ignore_ascii_case(film)));
+    /// Reports the result of saving a sheet; `Ok` may have the reason why its scene has the observer elsewhere than the camera.
+    pub fn sheet_written(&mut self, path: &Path, outcome: Result<Option<&'static str>, String>) {
+        let is_film = Format::of(path).is_some_and(Format::is_film);
         let what = if is_film { "film" } else { "sheet" };
         match outcome {
-            Ok(()) => self.note_file(format!("Saved the {what} to {}.", path.shown()), path),
+            Ok(elsewhere) => {
+                let text = format!("Saved the {what} to {}.{}", path.shown(), opens(elsewhere));
+                self.note_file(text, path);
+            }
             Err(why) => self.say(Severity::Error, format!("The {what} was not saved: {why}.")),
         }
     }
@@ -83,8 +90,9 @@ impl Session {
     /// Reports the result of saving or copying a picture.
     pub fn pictured(&mut self, end: PictureEnd) {
         match end {
-            PictureEnd::Saved(path) => {
-                self.note_file(format!("Saved the picture to {}.", path.shown()), &path);
+            PictureEnd::Saved { path, elsewhere } => {
+                let text = format!("Saved the picture to {}.{}", path.shown(), opens(elsewhere));
+                self.note_file(text, &path);
             }
             PictureEnd::Copied([width, height]) => {
                 self.say(Severity::Info, format!("Copied the picture: {width}×{height} pixels."));
@@ -95,4 +103,11 @@ impl Session {
             PictureEnd::Failed(why) => self.say(Severity::Error, why),
         }
     }
+}
+
+/// The words about the scene in a picture whose observer is elsewhere than the camera.
+fn opens(elsewhere: Option<&'static str>) -> String {
+    elsewhere.map_or_else(String::new, |why| {
+        format!(" It opens with the observer’s view, not the one you turned to. {why}")
+    })
 }

@@ -16,16 +16,12 @@ use crate::{
 /// JSON.
 fn scene_file(typed: &Path, registry: &Registry) -> PathBuf {
     let known = |path: &Path| formats::can_write(path, registry);
-    match (known(typed), typed.file_stem().map(Path::new)) {
-        (false, _) => {
-            let mut name = typed.as_os_str().to_owned();
-            name.push(".json");
-            name.into()
-        }
-        // Some dialogs append an extension to whatever is typed.
-        (true, Some(stem)) if known(stem) => typed.with_file_name(stem),
-        _ => typed.to_owned(),
+    if known(typed) {
+        return files::meant(typed, "json", known);
     }
+    let mut name = typed.as_os_str().to_owned();
+    name.push(".json");
+    name.into()
 }
 
 /// Rewrites the file names among some values for a scene in this folder. Returns true if any name has changed.

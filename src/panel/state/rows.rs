@@ -8,13 +8,22 @@ use crate::{
     parameter::{ALPHA, ALPHA_X, ALPHA_Y, Parameter, ROUGHNESS, SIGMA},
     reflection::usage,
     registry::Registry,
-    scene::{Object, Repeat, Repetition, Varied, limits::significant, observer::WIDE, rows::Variable},
+    scene::{
+        Object, Repeat, Repetition, Varied,
+        limits::significant,
+        observer::WIDE,
+        repeat::Along,
+        rows::{Row, Variable},
+    },
 };
 
 /// The distance of the objects of a new row, in sizes of an object.
 const APART: f32 = 1.15;
 /// The part of the picture's width and height that a new row takes at most; the rest is a margin.
 const TAKES: f32 = 0.86;
+/// The parts of the picture's height that a line of a label takes, and the space around it.
+const LINE: f32 = 0.04;
+const AROUND: f32 = 0.03;
 /// The factor between spacings that are tried, and how often it is applied: as long as copies are easily seen, to a tenth;
 /// and at all, to a thousandth.
 const NARROWER: f32 = 0.97;
@@ -89,6 +98,30 @@ impl Session {
         let size = sized(apart);
         let repeat = Repetition::Entry(Box::new(Repeat { spacing: axis * apart, ..repeat }));
         Object { position, size, repeat, ..object.clone() }
+    }
+
+    /// The step from row to row of a grid that leaves room for labels, or as much of it as so many rows have in the room.
+    /// `None` for a row without labels, and for one whose step was chosen otherwise.
+    #[must_use]
+    pub(in crate::panel) fn step_for_labels(&self, row: &Row, rows: u32) -> Option<Vec3> {
+        let usual = Repeat::default().row_spacing;
+        let now = row.repeat.row_spacing;
+        let is_own = now != usual && now != self.step_below(row, row.repeat.rows);
+        (row.repeat.labels && !is_own).then(|| self.step_below(row, rows))
+    }
+
+    /// The step downwards past the largest copy and its label.
+    fn step_below(&self, row: &Row, rows: u32) -> Vec3 {
+        let copies = self.document.objects.get(row.range()).unwrap_or_default();
+        let largest = copies.iter().map(|copy| copy.size).fold(0.0, f32::max);
+        let seen = self.facts.camera.inverse() * (row.entry.position - self.facts.eye);
+        let height = 2.0 * seen.z.abs() * (0.5 * self.document.observer.field_of_view.to_radians()).tan();
+        let label = AROUND + LINE * row.repeat.vary.len() as f32;
+        let wanted = significant(f64::from(APART * largest + label * height), 2);
+        let repeat = Repeat { rows, ..row.repeat.clone() };
+        let ends = Row { repeat: &repeat, ..*row }.ends_of_step(Along::Rows, 1, self.document.scene_size);
+        let room = ends.map_or(wanted, |[low, _]| -low);
+        Vec3::NEG_Y * wanted.min(room) as f32
     }
 
     /// True if the camera sees a sphere, with a margin around the picture.

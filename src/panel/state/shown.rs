@@ -8,7 +8,7 @@ use crate::{
     files::printable,
     optics::TermSelection,
     registry::Registry,
-    scene::{Object, Part, Scene, Variant, check::same_place},
+    scene::{Object, Observer, Part, Scene, Variant, check::same_place},
 };
 
 impl Session {
@@ -137,6 +137,18 @@ impl Session {
         let present = |scene: &Scene| self.seen.terms.present(scene, registry);
         let seen = (view != self.active()).then(|| self.document.seen(view, registry)).flatten();
         !seen.map_or_else(|| present(self.scene()), |(scene, _)| present(&scene)).contains(&shown)
+    }
+
+    /// The observer of the scene in a file with a picture of the present view: at the camera, unless there can be none, for
+    /// the reason given.
+    #[must_use]
+    pub fn observer_in_file(&self) -> (Observer, Option<&'static str>) {
+        let own = self.document.observer;
+        let free = self.facts.camera_is_free;
+        match self.observer_problem().filter(|_| free) {
+            None if free => (self.facts.observer(own), None),
+            why => (own, why),
+        }
     }
 
     /// Why the observer can't be moved to the camera.

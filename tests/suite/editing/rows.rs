@@ -251,6 +251,37 @@ fn a_new_row_fits_room_and_picture_and_varies_what_says_most() {
 }
 
 #[test]
+fn more_rows_leave_room_for_the_labels_between_them() {
+    let scene = Scene { reflection_model: "metallic_roughness".to_owned(), ..Scene::default() };
+    let mut bench = Bench::new(Session::new(scene));
+    bench.apply(Action::MakeRow(Selection::Object(0)));
+    bench.settle();
+    bench.type_into("rows", "2");
+    let of = |bench: &Bench| {
+        let row = bench.session.document.row(0).expect("a grid");
+        (row.repeat.rows, -row.repeat.row_spacing.y, row.entry.size, row.repeat.labels)
+    };
+    let (rows, step, size, labels) = of(&bench);
+    let observer = bench.session.document.observer;
+    let height = 2.0 * 4.0 * (0.5 * observer.field_of_view.to_radians()).tan();
+    // A line of 18 pixels in 720, and its plate.
+    assert!((rows, labels) == (2, true) && step > size + 0.05 * height, "{step} for {size}, {height}");
+    bench.type_into("rows", "3");
+    assert_eq!(of(&bench).1, step, "there is room for as much");
+    // More rows are nearer to each other, and all in the room.
+    bench.type_into("rows", "5");
+    let (rows, near, ..) = of(&bench);
+    assert!(rows == 5 && near < step, "{rows} rows, {near} m");
+    let found = check::scene(&bench.session.document, &Registry::builtin());
+    assert!(found.is_empty(), "{found:?}");
+    // A step of the user's own stays.
+    let own = |row: &mut Repeat| row.row_spacing = Vec3::NEG_Y * 0.3;
+    bench.apply(Action::Edit(changed(&bench.session.document, 0, own)));
+    bench.type_into("rows", "4");
+    assert_eq!(of(&bench).1, 0.3);
+}
+
+#[test]
 fn a_new_row_of_an_object_beyond_sight_fits_the_room() {
     let registry = Registry::builtin();
     for position in [Vec3::new(5.0, 5.0, 9.9), Vec3::new(9.9, 1.0, 5.0), Vec3::new(0.05, 9.9, 0.05)] {
@@ -357,8 +388,16 @@ fn colours_and_models_are_listed_and_changed_one_by_one() {
     assert!(word(0).contains("metallic_roughness") && word(1) != word(0), "{models:?}");
     let registry = Registry::builtin();
     let name = |i: usize| registry.model(&word(i)).map_or("", |model| model.declaration.name);
-    choose(&mut bench, &format!("value 3: {}", name(2)), "Lambert");
-    assert_eq!(bench.session.document.objects[3].reflection_model.as_deref(), Some("lambert"));
+    let model = |bench: &Bench| bench.session.document.objects[3].reflection_model.clone();
+    // Among many, by a search.
+    bench.click(&format!("value 3: {}", name(2)));
+    bench.frame(vec![Event::Text("lommel".to_owned())]);
+    bench.settle();
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert_eq!(model(&bench).as_deref(), Some("lommel_seeliger"), "{:?}", bench.session.messages);
+    bench.click("value 3: Lommel–Seeliger");
+    bench.click("Lambert");
+    assert_eq!(model(&bench).as_deref(), Some("lambert"));
 }
 
 #[test]

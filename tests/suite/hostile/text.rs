@@ -3,7 +3,8 @@
 //! read or refused, on a small stack, without a panic and long before a quadratic reader would finish.
 
 use std::{
-    fs,
+    ffi::OsString,
+    fs, iter,
     path::Path,
     sync::{LazyLock, mpsc},
     thread,
@@ -24,8 +25,12 @@ use lights_camera_models::{
     parameter::Outside,
     recovery::Store,
     registry::Registry,
-    scene::load::{self, Defaults},
+    scene::{
+        Scene,
+        load::{self, Defaults},
+    },
     shape::mesh_file,
+    sweep::{Axis, Sweep},
 };
 
 use rayon::prelude::*;
@@ -393,6 +398,20 @@ fn readers() -> Vec<Reader> {
             },
         },
         Reader {
+            name: "values of a sweep",
+            around: ["objects[0].size=".into(), String::new()],
+            pairs: &[("[", "]")],
+            phrases: &["1,", "1..", "1..2:3", ":log", "[1, 2, 3],", "1..2:10000,"],
+            read: |text| sweep_of(text, Axis::vary),
+        },
+        Reader {
+            name: "way of a sweep",
+            around: ["lights[0]=[1, 8, 9]..".into(), "[9, 8, 9]:24".into()],
+            pairs: &[("[", "]")],
+            phrases: &["[1, 2, 3]..", "..", "1, ", ":3"],
+            read: |text| sweep_of(text, |text, scene, registry| Axis::path(text, None, scene, registry)),
+        },
+        Reader {
             name: "settings",
             around: ["{\"recent_files\": ".into(), "}".into()],
             pairs: &[("[", "]"), ("{\"a\":", "}")],
@@ -421,6 +440,15 @@ fn readers() -> Vec<Reader> {
             read: recovery,
         },
     ]
+}
+
+/// Reads an axis of a sweep of the default scene.
+fn sweep_of(
+    text: &[u8],
+    read: impl Fn(&str, &Scene, &Registry) -> Result<Axis, String>,
+) -> Result<(), String> {
+    let text = std::str::from_utf8(text).map_err(|error| error.to_string())?;
+    read(text, &Scene::default(), &REGISTRY).map(drop)
 }
 
 /// The hostile inputs of a reader, with their names.
@@ -525,4 +553,15 @@ fn what_is_put_around_hostile_text_is_read() {
             Err(what) => assert!(!expected.is_empty() && what.contains(expected), "{}: {what}", reader.name),
         }
     }
+}
+
+#[test]
+fn a_folder_without_end_is_looked_through_up_to_a_limit() {
+    let scene = Scene::default();
+    let axis = Axis::vary("objects[0].size=1,2", &scene, &REGISTRY).expect("two values");
+    let sweep = Sweep::new(&scene, 0, vec![axis], &REGISTRY).expect("valid");
+    let endless = iter::repeat_with(|| OsString::from("another.png"));
+    assert_eq!(sweep.strangers(endless), 100_000);
+    let names = ["1_size_1.png", "3_size_3.png", "notes.txt"].map(OsString::from);
+    assert_eq!(sweep.strangers(names), 1);
 }
