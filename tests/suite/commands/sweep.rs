@@ -79,6 +79,51 @@ fn a_folder_gets_a_picture_with_its_scene_for_each_value() {
 }
 
 #[test]
+fn pictures_of_something_else_are_replaced_only_when_asked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    done(folder.path(), &["--vary", SIZES, "-o", "all"]);
+    let before = fs::read(at("all/2_size_2.png")).expect("there");
+    // Another scene, and other settings.
+    let mut other = Scene::default();
+    other.display.exposure = 1.0;
+    fs::write(at("other.json"), save::to_json(&other, None, &Registry::builtin())).expect("written");
+    let others = [&["other.json"][..], &["--samples", "1"]];
+    for more in others {
+        let arguments = [more, &["--vary", SIZES, "-o", "all"]].concat();
+        let run = sweep(folder.path(), &arguments);
+        refused(&run, 4, "all has 3 pictures in the place of this sweep's, such as 1_size_1.png");
+        assert!(run.err.contains("--overwrite replaces them"), "{}", run.err);
+        assert!(fs::read(at("all/2_size_2.png")).expect("there") == before);
+        assert_eq!(names(&at("all")).len(), 3);
+    }
+    for more in others {
+        let arguments = [more, &["--vary", SIZES, "-o", "all", "--overwrite"]].concat();
+        assert_eq!(done(folder.path(), &arguments).err.trim(), "wrote 3 pictures into all");
+    }
+    refused(
+        &sweep(folder.path(), &["--vary", SIZES, "-o", "x.png", "--overwrite"]),
+        2,
+        "--overwrite is for folders",
+    );
+    // A model from a file is part of the scene.
+    let scene = r#"{ "scene_size": { "height": 10, "width": 10, "depth": 10 }, "reflection_model": "lambert",
+        "shading_model": "flat", "lights": [{ "type": "ambient", "intensity": 1 }],
+        "observer": { "position": [5, 5, 9.5], "direction": [0, 0, -1] },
+        "objects": [{ "type": "mesh", "file": "m.obj", "position": [5, 5, 5], "size": 3 }] }"#;
+    fs::write(at("mesh.json"), scene).expect("written");
+    let sweep_of_mesh = ["mesh.json", "--vary", SIZES, "-o", "meshes"];
+    fs::write(at("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    done(folder.path(), &sweep_of_mesh);
+    let again = done(folder.path(), &sweep_of_mesh);
+    assert_eq!(again.err.trim(), "wrote 0 pictures into meshes; 3 were there already");
+    fs::write(at("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n").expect("written");
+    refused(&sweep(folder.path(), &sweep_of_mesh), 4, "meshes has 3 pictures in the place of this sweep's");
+    let run = done(folder.path(), &[&sweep_of_mesh[..], &["--overwrite"]].concat());
+    assert_eq!(run.err.trim(), "wrote 3 pictures into meshes");
+}
+
+#[test]
 fn sheets_and_films_are_the_same_bytes_each_time_and_open_as_scenes() {
     let folder = tempfile::tempdir().expect("a folder");
     let models = "reflection_model=lambert,phong";

@@ -1,8 +1,11 @@
 //! The copies of a row are drawn as single objects are, by both renderers, and belong to a row as long as nothing
 //! changes one of them alone.
 
+use std::fs;
+
 use bevy::prelude::*;
 use lights_camera_models::{
+    export::{FORMS, Progress, Request},
     reference::{self, Settings},
     registry::Registry,
     render::{
@@ -10,10 +13,14 @@ use lights_camera_models::{
         entities::{CurrentScene, SceneEntities},
         parts::SceneObject,
     },
-    scene::{Object, Repetition, Scene, examples::EXAMPLES},
+    scene::{
+        Object, Repetition, Scene,
+        examples::EXAMPLES,
+        load::{self, Defaults},
+    },
 };
 
-use crate::helpers::support::{read, written};
+use crate::helpers::support::{lcm_in, read, written};
 
 /// The shipped row.
 fn five() -> Scene {
@@ -47,6 +54,58 @@ fn both_renderers_draw_a_row_as_the_same_scene_of_single_objects_bit_for_bit() {
         renderer.read_rgb8().expect("the picture can be read")
     });
     assert!(gpu[0] == gpu[1], "the GPU draws them differently");
+}
+
+#[test]
+fn a_row_is_explained_and_compared_as_the_same_scene_of_single_objects() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let registry = Registry::builtin();
+    let put = |name: &str, scene: &Scene| {
+        let file = folder.path().join(name);
+        fs::create_dir_all(file.parent().expect("a folder")).expect("made");
+        fs::write(file, written(scene)).expect("written");
+    };
+    let matt = |scene: Scene| Scene { reflection_model: "lambert".to_owned(), ..scene };
+    for (place, scene) in [("row", five()), ("singles", singles(&five()))] {
+        put(&format!("{place}/a.json"), &scene);
+        put(&format!("{place}/b.json"), &matt(scene));
+    }
+    let row =
+        load::file(&folder.path().join("row/a.json"), &registry, Defaults::Refuse).expect("valid").scene;
+    assert!(row.row(2).is_some_and(|row| row.count == 5));
+    let of = |place: &str, arguments: &[&str]| {
+        let run = lcm_in(&folder.path().join(place), arguments, b"");
+        assert_eq!(run.status, Some(0), "{arguments:?}: {}", run.err);
+        run.out
+    };
+    let both = |arguments: &[&str]| ["row", "singles"].map(|place| of(place, arguments));
+    for form in [&[][..], &["--json"]] {
+        let [row, apart] =
+            both(&[&["explain", "a.json", "--at", "160,90", "--size", "320x180"], form].concat());
+        assert!(row.contains("ball 3") && row == apart, "{row}\nnot\n{apart}");
+    }
+    let [row, apart] = both(&["compare", "a.json", "b.json", "--size", "160x90"]);
+    assert!(row.contains("\"rmse\"") && row == apart, "{row}\nnot\n{apart}");
+    let same = ["compare", "row/a.json", "singles/a.json", "--size", "160x90", "--fail-above", "rmse=0"];
+    assert!(of("", &same).contains("\"rmse\": 0.0"));
+}
+
+#[test]
+fn a_row_is_exported_as_the_same_scene_of_single_objects() {
+    let registry = Registry::builtin();
+    // Every form has a matt surface.
+    let row = Scene { reflection_model: "lambert".to_owned(), ..five() };
+    let apart = singles(&row);
+    for form in FORMS.iter().filter(|form| form.id != "executable") {
+        let [of_row, of_singles] = [&row, &apart].map(|scene| {
+            let request =
+                Request { scene, registry: &registry, stem: "room", size: (64, 36), object: 2, point: None };
+            (form.make)(&request, &Progress::NONE).unwrap_or_else(|error| panic!("{}: {error}", form.id))
+        });
+        assert!(of_row.files == of_singles.files, "{} differs", form.id);
+        let more: Vec<_> = of_row.notes.iter().filter(|note| !of_singles.notes.contains(note)).collect();
+        assert!(more.iter().all(|note| note.contains("labels of rows")), "{}: {more:?}", form.id);
+    }
 }
 
 #[test]

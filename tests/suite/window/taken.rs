@@ -149,6 +149,55 @@ fn views_are_taken_together_or_one_alone() {
 }
 
 #[test]
+fn pictures_from_outside_the_room_open_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut app = lab(folder.path());
+    side_by_side(&mut app);
+    session(&mut app).settings.sheet =
+        SheetOptions { size: [60, 40], labels: false, ..SheetOptions::default() };
+    let own = session(&mut app).document.observer;
+    let file = folder.path().join("outside.png");
+    let outside = |app: &mut App, z: f32| {
+        let facts = &mut session(app).facts;
+        (facts.eye.z, facts.camera_is_free) = (z, true);
+    };
+    for (z, expected) in [(9.0, 9.0), (14.0, own.position.z)] {
+        let takes: [&dyn Fn(&mut App) -> Vec<(Severity, String)>; 3] =
+            [&|app| take(app, None, &file, true), &|app| take(app, Some(1), &file, true), &|app| {
+                sheet(app, SheetOf::Views, &file)
+            }];
+        for (i, take) in takes.iter().enumerate() {
+            outside(&mut app, z);
+            let said = take(&mut app);
+            assert_eq!(opened(&file).observer.position.z, expected, "{i}: {said:?}");
+            let kept = said[0].1.contains("It opens with the observer’s view, not the one you turned to.");
+            assert_eq!(kept, z > 10.0, "{i}: {said:?}");
+        }
+    }
+}
+
+#[test]
+fn an_extension_behind_a_typed_one_is_left_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut app = lab(folder.path());
+    let at = |name: &str| folder.path().join(name);
+    let said = take(&mut app, None, &at("row.png.png"), true);
+    assert!(
+        said[0].1.contains("row.png.") && at("row.png").exists() && !at("row.png.png").exists(),
+        "{said:?}"
+    );
+    // The dialog asked about another name.
+    let _ = take(&mut app, None, &at("row.png.png"), true);
+    let asked = session(&mut app).questions.open.take();
+    assert_eq!(asked, Some(Question::ReplacePicture { view: None, path: at("row.png") }));
+    let _ = take(&mut app, None, &at("light.exr.png"), false);
+    assert!(at("light.exr").exists());
+    session(&mut app).settings.sheet = SheetOptions { size: [60, 40], ..SheetOptions::default() };
+    let _ = sheet(&mut app, SheetOf::Views, &at("views.gif.png"));
+    assert!(fs::read(at("views.gif")).expect("written").starts_with(b"GIF89a"));
+}
+
+#[test]
 fn nothing_is_replaced_unasked_and_only_pictures_are_written() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut app = lab(folder.path());
