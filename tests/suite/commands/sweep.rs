@@ -110,7 +110,7 @@ fn pictures_of_something_else_are_replaced_only_when_asked() {
     let scene = r#"{ "scene_size": { "height": 10, "width": 10, "depth": 10 }, "reflection_model": "lambert",
         "shading_model": "flat", "lights": [{ "type": "ambient", "intensity": 1 }],
         "observer": { "position": [5, 5, 9.5], "direction": [0, 0, -1] },
-        "objects": [{ "type": "mesh", "file": "m.obj", "position": [5, 5, 5], "size": 3 }] }"#;
+        "objects": [{ "type": "mesh", "path": "m.obj", "position": [5, 5, 5], "size": 3 }] }"#;
     fs::write(at("mesh.json"), scene).expect("written");
     let sweep_of_mesh = ["mesh.json", "--vary", SIZES, "-o", "meshes"];
     fs::write(at("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
