@@ -12,7 +12,7 @@ use lights_camera_models::{
     parameter::Value,
     registry::Registry,
     scene::{
-        Background, Object, Repeat, Repetition, Scene, Variant,
+        Background, Light, Object, Repeat, Repetition, Scene, Variant,
         comparison::Layout,
         load::{self, Defaults},
     },
@@ -623,6 +623,14 @@ fn a_sheet_has_its_options_and_may_show_a_row() {
     assert!(saved[0].1.starts_with("Saved the sheet to "), "{saved:?}");
     let copies = Picture::read(&file);
     assert!(copies.width == views.width && copies.height > views.height, "{}", copies.height);
+    let said = sheet(&mut app, SheetOf::Turn(Turning::Lights), &file);
+    assert!(said[0].1.contains("lights cannot turn: no position"), "{said:?}");
+    session(&mut app).document.change(
+        "Lamp",
+        lights_camera_models::document::Extent::Light(0),
+        Default::default(),
+        |scene| scene.lights[0] = Light { position: Some([0.5, 9.0, 0.5].into()), ..Light::default() },
+    );
     // The lamp is in a corner, from which it would leave the room.
     let said = sheet(&mut app, SheetOf::Turn(Turning::Lights), &file);
     assert!(said[0].1.contains("something would leave the room; move it nearer"), "{said:?}");
