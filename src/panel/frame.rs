@@ -189,6 +189,9 @@ fn apply(
 ) -> Vec<Effect> {
     let mut effects = Vec::new();
     for action in actions {
+        if menu::moves_focus(ctx, &action) {
+            continue;
+        }
         let action = explain::placed(ctx, session, action);
         effects.extend(session.apply(action, registry));
     }

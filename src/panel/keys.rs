@@ -4,8 +4,8 @@ use std::{collections::BTreeMap, ops::DerefMut, sync::LazyLock};
 
 use super::{
     command::{self, Command, Group, own},
-    focus,
     kept::Same,
+    menu,
     prelude::*,
     settings,
     state::{Replaced, Shortcut},
@@ -190,14 +190,9 @@ pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Act
     let table = bindings(session, registry);
     let mut actions = Vec::new();
     let mut stop_tab = false;
-    let mut panels = None;
     ctx.input_mut(|input| {
         input.events.retain(|event| {
             let egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
-            if *key == Key::F6 {
-                panels = Some(modifiers.shift);
-                return false;
-            }
             let Some(binding) = table.iter().find(|b| b.shortcut.matches(*key, *modifiers)) else {
                 return true;
             };
@@ -223,9 +218,8 @@ pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Act
     if stop_tab {
         ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
     }
-    if let Some(back) = panels {
-        focus::next_region(ctx, back);
-    }
+    // The widgets of this frame already know.
+    actions.retain(|action| !menu::moves_focus(ctx, action));
     actions
 }
 
@@ -280,7 +274,7 @@ mod tests {
         let shading: Vec<_> =
             registry.shading_models().iter().map(|s| s.declaration.key.to_string()).collect();
         let table = bindings(&Session::default(), &registry);
-        let letter = |s: &Shortcut| !s.ctrl && !s.shift && s.key.name().len() == 1;
+        let letter = |s: &Shortcut| !s.ctrl && !s.shift && !s.alt && s.key.name().len() == 1;
         let letters = table.iter().map(|b| b.shortcut).filter(letter).map(|s| s.key.name().to_owned());
         let letters = letters.filter(|l| l.chars().all(|c| c.is_ascii_uppercase()) && !shading.contains(l));
         let mut letters: Vec<_> = letters.collect();

@@ -6,8 +6,9 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    focus::{focused, stops},
+    focus::{focused, next_region, stops},
     prelude::*,
+    state::FocusMove,
     theme::says,
 };
 
@@ -17,6 +18,8 @@ const PATIENCE: u64 = 4;
 /// The known state of the menus.
 #[derive(Clone, Default)]
 struct Known {
+    /// The menu to open or close as soon as the bar is shown, and the last pass in which it can.
+    asked: Option<(&'static str, u64)>,
     /// The menu whose first entry gets the focus as soon as it is shown, and the last pass in which it can.
     entered: Option<(Id, u64)>,
     /// A list and its entry that is chosen now: where arrow keys begin.
@@ -29,27 +32,41 @@ fn enter(ctx: &Context, menu: Id) {
     ctx.request_repaint();
 }
 
-/// The bar of menus: each opens with Alt and its letter, the first with F10; Left and Right go to the neighbours.
-pub(super) fn bar(ctx: &Context, menus: &[(Key, Response)]) {
+/// Moves the keyboard focus if that is the action.
+pub(super) fn moves_focus(ctx: &Context, action: &Action) -> bool {
+    let Action::Focus(to) = action else { return false };
+    match to {
+        FocusMove::NextPanel => next_region(ctx, false),
+        FocusMove::PreviousPanel => next_region(ctx, true),
+        FocusMove::Menu(name) => {
+            let last = ctx.cumulative_pass_nr() + PATIENCE;
+            kept::with(ctx, |known: &mut Known| known.asked = Some((name, last)));
+        }
+    }
+    ctx.request_repaint();
+    true
+}
+
+/// The bar of menus: opens the one that is asked for; Left and Right go to the neighbours.
+pub(super) fn bar(ctx: &Context, menus: &[(&str, Response)]) {
+    let asked = kept::with(ctx, |known: &mut Known| known.asked.take());
     // A question or a choice that must be dealt with first has the keys.
     if ctx.memory(egui::Memory::top_modal_layer).is_some() {
         return;
     }
     let ids: Vec<Id> = menus.iter().map(|(_, button)| Popup::default_response_id(button)).collect();
     let open = ids.iter().position(|id| Popup::is_id_open(ctx, *id));
-    let wanted = ctx.input_mut(|input| {
-        let by_letter = menus.iter().position(|(key, _)| input.consume_key(Modifiers::ALT, *key));
-        let first = input.consume_key(Modifiers::NONE, Key::F10).then_some(0);
-        let count = ids.len();
-        let sideways = open.and_then(|at| {
-            let right = input.consume_key(Modifiers::NONE, Key::ArrowRight).then_some((at + 1) % count);
-            right.or_else(|| {
-                input.consume_key(Modifiers::NONE, Key::ArrowLeft).then_some((at + count - 1) % count)
-            })
-        });
-        by_letter.or(first).or(sideways)
+    let count = ids.len();
+    let sideways = ctx.input_mut(|input| {
+        let at = open?;
+        let right = input.consume_key(Modifiers::NONE, Key::ArrowRight).then_some((at + 1) % count);
+        right.or_else(|| {
+            input.consume_key(Modifiers::NONE, Key::ArrowLeft).then_some((at + count - 1) % count)
+        })
     });
-    let Some(wanted) = wanted else { return };
+    let asked = asked.filter(|(_, last)| ctx.cumulative_pass_nr() <= *last);
+    let asked = asked.and_then(|(name, _)| menus.iter().position(|(menu, _)| *menu == name));
+    let Some(wanted) = asked.or(sideways) else { return };
     ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
     if open == Some(wanted) {
         Popup::close_id(ctx, ids[wanted]);
@@ -161,7 +178,7 @@ pub(super) fn walk(ctx: &Context) {
         return;
     }
     let mut step = steps(ctx);
-    let Known { entered, current } = kept::get(ctx);
+    let Known { entered, current, .. } = kept::get(ctx);
     let entering = entered.filter(|(_, last)| ctx.cumulative_pass_nr() <= *last).map(|(menu, _)| menu);
     if entering.is_some() {
         step = 1;

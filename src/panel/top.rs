@@ -147,7 +147,7 @@ fn menus(ui: &mut Ui, context: &mut PanelContext<'_>) {
         egui::containers::menu::menu_style(ui.style_mut());
         ui.spacing_mut().item_spacing.x = 0.0;
         ui.spacing_mut().button_padding = vec2(7.0, 3.0);
-        let bar = command::BAR.map(|(key, name)| {
+        let bar = command::BAR.map(|(_, name)| {
             let menu = ui.menu_button(name, |ui| {
                 let all = command::all(session, registry, has_sides(ui.ctx(), session));
                 if let Some(menu) = all.find(name) {
@@ -155,7 +155,7 @@ fn menus(ui: &mut Ui, context: &mut PanelContext<'_>) {
                 }
             });
             point::menu(ui, name, menu.response.rect);
-            (key, menu.response)
+            (name, menu.response)
         });
         menu::bar(ui.ctx(), &bar);
     });

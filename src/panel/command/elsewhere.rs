@@ -2,10 +2,12 @@
 
 use glam::Vec3;
 
-use super::{Command, Group, List, command};
+use super::{BAR, Command, Group, List, command};
 use crate::{
     channel::DebugChannel,
-    panel::state::{Action, CompareCommand, Effect, LessonCommand, MODEL_SLOTS, Steer, ViewChange},
+    panel::state::{
+        Action, CompareCommand, Effect, FocusMove, LessonCommand, MODEL_SLOTS, Steer, ViewChange,
+    },
 };
 
 /// One press turns by so much, degrees.
@@ -27,6 +29,7 @@ pub(super) fn elsewhere(to: &mut List) {
     let previous = lesson("previous_step", "Previous step", LessonCommand::Previous).keys("Alt+Left");
     to.add(next.unless(none, "No lesson is open"));
     to.add(previous.unless(none, "No lesson is open"));
+    focus(to);
 }
 
 fn models(to: &mut List) {
@@ -120,5 +123,21 @@ fn nudges(to: &mut List) {
         let name = format!("Nudge the selection {name}");
         let nudge = command(format!("nudge_{id}"), name, Action::Nudge(way)).row(row);
         to.add(nudge.keys(&format!("Ctrl+{keys}")).group(Group::Handles).rank(1));
+    }
+}
+
+/// The keyboard focus: panels and menus. Their keys are the last of the window's.
+fn focus(to: &mut List) {
+    let to_focus = |command: Command| command.group(Group::Window).rank(2).anywhere();
+    let next = command("next_panel", "Next panel", Action::Focus(FocusMove::NextPanel));
+    to.add(to_focus(next).keys("F6"));
+    let previous = command("previous_panel", "Previous panel", Action::Focus(FocusMove::PreviousPanel));
+    to.add(to_focus(previous).keys("Shift+F6"));
+    let first = command("menu_bar", "Menu bar", Action::Focus(FocusMove::Menu(BAR[0].1)));
+    to.add(to_focus(first).keys("F10").at_desk());
+    for (key, menu) in BAR {
+        let id = format!("menu.{}", menu.to_lowercase());
+        let open = command(id, format!("{menu} menu"), Action::Focus(FocusMove::Menu(menu)));
+        to.add(to_focus(open).keys(key).at_desk());
     }
 }

@@ -7,8 +7,6 @@
 
 use std::borrow::Cow;
 
-use bevy_egui::egui::Key;
-
 use super::state::{Action, LessonCommand, Session, Shortcut};
 use crate::{declared::texts, registry::Registry, text::quoted};
 
@@ -21,9 +19,9 @@ pub mod own;
 pub(super) mod show;
 mod view;
 
-/// The menus of the bar, each with the letter that opens it with Alt.
-pub(super) const BAR: [(Key, &str); 4] =
-    [(Key::F, "File"), (Key::E, "Edit"), (Key::V, "View"), (Key::H, "Help")];
+/// The menus of the bar, each with its default key.
+pub(super) const BAR: [(&str, &str); 4] =
+    [("Alt+F", "File"), ("Alt+E", "Edit"), ("Alt+V", "View"), ("Alt+H", "Help")];
 
 /// The id of the finder.
 pub(super) const FINDER: &str = "find";

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use bevy_egui::egui::Key;
 use serde_json::Value as Json;
 
-use super::{BAR, Command, Menu};
+use super::{Command, Menu};
 use crate::{
     panel::state::{GivenKeys, Replaced, Shortcut},
     text::{did_you_mean, listed, quoted, sentence, shortened},
@@ -23,9 +23,6 @@ fn reserved(shortcut: Shortcut) -> Option<&'static str> {
     match key {
         Key::Escape => Some("closes what is open"),
         Key::Enter => Some("presses what has the focus"),
-        Key::F6 => Some("goes to the next panel"),
-        Key::F10 => Some("opens the menus"),
-        _ if alt && !ctrl && BAR.iter().any(|(letter, _)| *letter == key) => Some("opens a menu"),
         Key::A | Key::C | Key::V | Key::X if ctrl && !shift && !alt => {
             Some("selects, copies, pastes or cuts text")
         }
@@ -252,8 +249,13 @@ mod tests {
             (r#"{ "manual": "" }"#, "it has no key; it stays without a key."),
             (r#"{ "save": ["F4", 3] }"#, "a list of keys"),
             (r#"{ "save": ["F4","F4","F4","F4","F4","F4","F4","F4","F4"] }"#, "must have at most 8 keys"),
-            (r#"{ "save": "F6" }"#, "cannot be used, since F6 goes to the next panel; choose another key"),
-            (r#"{ "save": "Alt+F" }"#, "Alt+F opens a menu"),
+            (
+                r#"{ "save": "Enter" }"#,
+                "cannot be used, since Enter presses what has the focus; choose another key",
+            ),
+            (r#"{ "save": "F6" }"#, "keys.save has F6, which is the key of \"next_panel\""),
+            (r#"{ "save": "F10" }"#, "keys.save has F10, which is the key of \"menu_bar\""),
+            (r#"{ "save": "Alt+F" }"#, "keys.save has Alt+F, which is the key of \"menu.file\""),
             (r#"{ "save": "Ctrl+V" }"#, "since Ctrl+V selects, copies, pastes or cuts text"),
             (r#"{ "save": "F4", "save": "F12" }"#, "keys.save is given twice; the first counts."),
             (

@@ -101,12 +101,25 @@ pub enum Action {
     Plot(PlotCommand),
     /// A command for lessons.
     Lesson(LessonCommand),
+    /// Move the keyboard focus, which the panels do.
+    Focus(FocusMove),
     /// Show a message.
     Say(Severity, String),
     /// Dismiss a message.
     Dismiss(usize),
     /// Dismiss all messages.
     DismissAll,
+}
+
+/// A movement of the keyboard focus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FocusMove {
+    /// To the next panel.
+    NextPanel,
+    /// To the panel before.
+    PreviousPanel,
+    /// Into the menu of this name, or out of it.
+    Menu(&'static str),
 }
 
 /// The answer to a question.
@@ -238,7 +251,7 @@ impl Session {
             Action::View(change) => self.change_view(change),
             Action::Pin => self.toggle_pin(),
             // The panels have made a movement of it, or a message.
-            Action::LookFromSide => {}
+            Action::LookFromSide | Action::Focus(_) => {}
             Action::Do(effect) => self.request(effect),
             Action::Model(ask) => self.author(ask, registry),
             Action::Export(command) => self.export(command),

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::{Deref, DerefMut, Resource};
 
-pub use action::{Action, Answer, ExportCommand, ModelCommand};
+pub use action::{Action, Answer, ExportCommand, FocusMove, ModelCommand};
 pub use area::{Cell, PictureArea};
 pub use aside::Aside;
 pub(super) use author::BUILT_IN;

@@ -246,7 +246,11 @@ fn the_list_of_keys_has_the_groups_and_rows_in_their_order() {
     );
     assert_eq!(
         rows("Window"),
-        ["Ctrl++", "Ctrl+−", "Ctrl+0", "F5", "F11", "F1", "Ctrl+F", "F8", "F7", "F9"].map(str::to_owned)
+        [
+            "Ctrl++", "Ctrl+−", "Ctrl+0", "F5", "F11", "F1", "Ctrl+F", "F8", "F7", "F9", "F6", "Shift+F6",
+            "F10", "Alt+F", "Alt+E", "Alt+V", "Alt+H"
+        ]
+        .map(str::to_owned)
     );
     assert_eq!(rows("Comparison")[0], "Ctrl+B");
 }
@@ -284,6 +288,28 @@ fn own_keys_are_pressed_and_shown_wherever_keys_are() {
     let messages = bench.find("Messages: 0").expect("shown").rect.center();
     bench.hover(messages);
     assert!(bench.texts().iter().any(|text| text == "Show messages (F12)"));
+}
+
+#[test]
+fn panels_and_menus_are_reached_by_commands_like_all_others() {
+    let mut bench = with_keys_of(r#"{ "next_panel": "F12", "menu.edit": "Ctrl+M" }"#);
+    assert!(bench.session.messages.is_empty(), "{:?}", bench.session.messages);
+    bench.key(Key::F6, Modifiers::NONE);
+    assert_eq!(bench.ctx.memory(|m| m.focused()), None, "the usual key does it no more");
+    bench.key(Key::F12, Modifiers::NONE);
+    assert!(bench.ctx.memory(|m| m.focused()).is_some());
+    bench.key(Key::M, Modifiers::COMMAND);
+    assert!(bench.says("New reflection model…"));
+    bench.key(Key::M, Modifiers::COMMAND);
+    assert!(!bench.says("New reflection model…"));
+    run(&mut bench, "view menu");
+    assert!(bench.says("Focus selection"), "the finder opens it");
+    bench.key(Key::Escape, Modifiers::NONE);
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.key(Key::F10, Modifiers::NONE);
+    bench.key(Key::F5, Modifiers::NONE);
+    bench.settle();
+    assert!(!bench.says("New default scene"), "what a presentation cannot show is forgotten");
 }
 
 #[test]
