@@ -56,6 +56,8 @@ pub(super) struct Column {
     pub(super) component: Option<usize>,
     /// The names of the components of the list.
     entries: &'static [&'static str],
+    /// The names of the columns of the components.
+    pub(super) components: Vec<String>,
     /// The parts in which a field of this name is a text.
     texts: Vec<Part>,
     /// The parts that have the field.
@@ -68,12 +70,6 @@ impl Column {
         self.texts.contains(&part)
     }
 
-    /// The names of the columns of the components.
-    pub(super) fn components(&self) -> Vec<String> {
-        let letter = |entry: &&str| entry.chars().take(1).collect::<String>();
-        self.entries.iter().map(|entry| format!("{}.{}", self.name, letter(entry))).collect()
-    }
-
     /// True if each component has its own column in a new table: coordinates have, colours have not.
     pub(super) fn is_spread(&self) -> bool {
         self.entries == AXES
@@ -82,7 +78,21 @@ impl Column {
 
 /// All columns that a table may have, in the order of a new table.
 pub(super) fn all(registry: &Registry) -> Vec<Column> {
-    let mut all = All(Vec::new());
+    collected(|all| fill(all, registry))
+}
+
+/// The columns that a function adds.
+fn collected(fill: impl Fn(&mut All)) -> Vec<Column> {
+    // Components keep clear of the names of all fields.
+    let mut fields = All::default();
+    fill(&mut fields);
+    let names = fields.list.into_iter().filter(|column| column.component.is_none()).map(|column| column.name);
+    let mut all = All { fields: names.collect(), ..All::default() };
+    fill(&mut all);
+    all.list
+}
+
+fn fill(all: &mut All, registry: &Registry) {
     for key in ["type", "name"] {
         for part in Part::ALL {
             let field = part.fields().iter().find(|field| field.key == key);
@@ -105,11 +115,15 @@ pub(super) fn all(registry: &Registry) -> Vec<Column> {
         fields.iter().for_each(|field| all.field(Part::Scene, Some(within), field));
     }
     all.field(Part::Scene, None, &Scene::description);
-    all.0
 }
 
-/// The columns collected so far.
-struct All(Vec<Column>);
+#[derive(Default)]
+struct All {
+    /// The columns collected so far.
+    list: Vec<Column>,
+    /// The names of the columns of whole fields.
+    fields: HashSet<String>,
+}
 
 impl All {
     fn parameters(&mut self, part: Part, before: &[&'static str], parameters: &'static [Parameter]) {
@@ -126,18 +140,25 @@ impl All {
 
     fn add(&mut self, part: Part, keys: Vec<&'static str>, entries: &'static [&'static str], is_text: bool) {
         let (name, component, texts, of) = (keys.join("."), None, Vec::new(), Vec::new());
-        let whole = Column { name, keys, component, entries, texts, of };
-        let each = whole.components().into_iter().enumerate();
+        // Lists under one key have one set of columns.
+        let same = |known: &&Column| known.name == name && known.component.is_none();
+        let listed = |known: &Column| if known.entries.is_empty() { entries } else { known.entries };
+        let entries =
+            if entries.is_empty() { entries } else { self.list.iter().find(same).map_or(entries, listed) };
+        let components = self.components(&name, entries);
+        let whole = Column { name, keys, component, entries, components, texts, of };
+        let each = whole.components.iter().cloned().enumerate();
         let each = each.map(|(i, name)| Column { name, component: Some(i), ..whole.clone() });
         for column in [whole.clone()].into_iter().chain(each) {
-            let at = self.0.iter().position(|known| known.name == column.name).unwrap_or_else(|| {
-                self.0.push(column);
-                self.0.len() - 1
+            let same = |known: &Column| (&known.name, known.component) == (&column.name, column.component);
+            let at = self.list.iter().position(same).unwrap_or_else(|| {
+                self.list.push(column);
+                self.list.len() - 1
             });
-            let column = &mut self.0[at];
+            let column = &mut self.list[at];
             // A key may stand for one number in some parts, and for a list in others.
             if column.entries.is_empty() {
-                column.entries = entries;
+                (column.entries, column.components) = (entries, whole.components.clone());
             }
             if is_text && !column.texts.contains(&part) {
                 column.texts.push(part);
@@ -146,6 +167,21 @@ impl All {
                 column.of.push(part);
             }
         }
+    }
+}
+
+impl All {
+    /// The names of the columns of components: with the first letter of each, or where that is not enough to tell all
+    /// columns apart, with its name or its number.
+    fn components(&self, name: &str, entries: &[&str]) -> Vec<String> {
+        let letters = entries.iter().map(|entry| entry.chars().take(1).collect::<String>()).collect();
+        let words = entries.iter().map(ToString::to_string).collect();
+        let numbers = (1..=entries.len()).map(|i| i.to_string()).collect();
+        let named = |each: Vec<String>| each.iter().map(|one| format!("{name}.{one}")).collect();
+        let apart = |all: &Vec<String>| {
+            all.iter().enumerate().all(|(i, one)| !all[..i].contains(one) && !self.fields.contains(one))
+        };
+        [letters, words, numbers].into_iter().map(named).find(apart).unwrap_or_default()
     }
 }
 
@@ -236,10 +272,47 @@ pub fn table(registry: &Registry) -> String {
         column.keys[0] == "material" || (lights || shapes) && !column.is_spread()
     };
     for column in all(registry).iter().filter(|column| column.component.is_none() && !parameters(column)) {
-        let spread: String = column.components().iter().map(|name| format!(", `{name}`")).collect();
+        let spread: String = column.components.iter().map(|name| format!(", `{name}`")).collect();
         let rows: Vec<_> = column.of.iter().map(|part| part.name()).collect();
         // Writing to a String cannot fail.
         let _ = writeln!(text, "| `{}`{spread} | {} |", column.name, rows.join(", "));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn components_that_share_a_letter_or_the_name_of_a_field_are_kept_apart() {
+        let names = |fill: fn(&mut All)| collected(fill).into_iter().map(|c| c.name).collect::<Vec<_>>();
+        let found = names(|all| {
+            all.add(Part::Light, vec!["tint"], &["red", "green", "blue"], false);
+            all.add(Part::Light, vec!["grain"], &["red", "rough", "ridge"], false);
+            all.add(Part::Light, vec!["material"], &["red", "green", "blue"], false);
+            all.add(Part::Light, vec!["scale"], &["x", "y"], false);
+            all.add(Part::Object, vec!["material", "r"], &[], false);
+            all.add(Part::Object, vec!["scale", "x"], &[], false);
+        });
+        let tint = ["tint", "tint.r", "tint.g", "tint.b"];
+        let grain = ["grain", "grain.red", "grain.rough", "grain.ridge"];
+        let material = ["material", "material.red", "material.green", "material.blue"];
+        let scale = ["scale", "scale.1", "scale.2"];
+        let expected = [&tint[..], &grain, &material, &scale, &["material.r", "scale.x"]].concat();
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn a_key_that_is_a_number_in_one_part_is_a_list_in_another() {
+        let all = collected(|all| {
+            all.add(Part::Light, vec!["size"], &[], false);
+            all.add(Part::Object, vec!["size"], &AXES, false);
+        });
+        let of: Vec<_> = all.iter().map(|column| (&*column.name, column.component, &*column.of)).collect();
+        let object = &[Part::Object][..];
+        let each = [("size.x", Some(0), object), ("size.y", Some(1), object), ("size.z", Some(2), object)];
+        assert_eq!(of, [&[("size", None, &[Part::Light, Part::Object][..])], &each[..]].concat());
+        assert!(all[0].is_spread() && all[0].components.len() == 3);
+    }
 }

@@ -155,12 +155,12 @@ fn flatten(
         }
         Ast::Array(list) => {
             let column = known.iter().find(|column| column.name == name);
-            let each = column.map_or_else(Vec::new, Column::components);
+            let each = column.map_or(&[][..], |column| &column.components);
             let has = |name: &str| manner.columns.iter().any(|column| column == name);
             let is_spread =
                 each.iter().any(|name| has(name)) || column.is_some_and(Column::is_spread) && !has(name);
             if is_spread {
-                cells.extend(each.into_iter().zip(list.elements.iter().map(number)));
+                cells.extend(each.iter().cloned().zip(list.elements.iter().map(number)));
             } else {
                 let all: Vec<_> = list.elements.iter().map(number).collect();
                 cells.push((name.to_owned(), all.join(" ")));
