@@ -99,6 +99,12 @@ impl Kind {
         }
     }
 
+    /// True for numbers that have a unit: those of colours are codes.
+    #[must_use]
+    pub const fn is_measured(&self) -> bool {
+        !matches!(self, Self::Colour)
+    }
+
     /// True for yes or no.
     #[must_use]
     pub const fn is_flag(&self) -> bool {

@@ -126,14 +126,8 @@ fn key(name: &str, registry: &Registry) -> Subject {
             Subject { name, unit }
         }
         None => {
-            let unit = match name {
-                "exposure" => "EV",
-                "colour_temperature" => "K",
-                "luminous_flux" => "lm",
-                "field_of_view" => "°",
-                _ => "",
-            };
-            Subject { name: format!("the {}", plain()), unit }
+            let field = controls::field(name).filter(|field| field.kind.is_measured());
+            Subject { name: format!("the {}", plain()), unit: field.map_or("", |field| field.unit) }
         }
     }
 }

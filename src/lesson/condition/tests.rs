@@ -395,7 +395,7 @@ fn the_part_that_fails_is_said_with_its_value() {
             "scene.objects[0].material.base_colour[0] > 200 and scene.objects[0].material.base_colour[1] < 60",
             "green of the base colour is 68; it must be below 60",
         ),
-        ("scene.lights[0].position[2] < 0", "z of the position is 9; it must be below 0"),
+        ("scene.lights[0].position[2] < 0", "z of the position is 9 m; it must be below 0 m"),
         ("scene.objects[0].rotation[1] > 10", "y of the rotation is 0°; it must be above 10°"),
         ("scene.lights[0].colour[2] < 10", "blue of the colour is 255; it must be below 10"),
         ("scene.objects.count = 2", "the number of objects is 1; it must be higher"),
@@ -458,7 +458,7 @@ fn the_part_that_fails_is_said_with_its_value() {
     assert_eq!(
         condition("scene.objects[1].size > 3 or scene.objects[0].size > 3").unmet(&two).as_deref(),
         Some(
-            "the size of “ball” is 2; it must be above 3. Or: the size of object 1 is 2; it must be above 3"
+            "the size of “ball” is 2 m; it must be above 3 m. Or: the size of object 1 is 2 m; it must be above 3 m"
         )
     );
 }
