@@ -9,7 +9,7 @@ use crate::{
     document::Selection,
     lesson::{Situation, controls, kind_of, state},
     matching::highlight_width,
-    optics::{Frame, TermSelection, albedo::directional_in_batches, colour::luminance, geometry::direction},
+    optics::{Frame, TermSelection, colour::luminance, geometry::direction},
     reflection::{ModelEntry, Surface},
     registry::Registry,
     scene::{Scene, error::Path, variant::LETTERS},
@@ -247,14 +247,8 @@ fn peak(surface: &dyn Surface) -> f64 {
 
 /// The largest directional albedo over the colour channels and these viewing angles.
 fn albedo(surface: &dyn Surface, angles: &[f64]) -> f64 {
-    let views: Vec<_> = angles.iter().map(|angle| direction(*angle, 0.0)).collect();
-    let integrated = directional_in_batches(&views, |pairs| {
-        Ok::<_, std::convert::Infallible>(
-            pairs.iter().map(|(l, v)| surface.response(*l, *v, &Frame::LOCAL)).collect(),
-        )
-    });
-    let Ok(albedos) = integrated;
-    albedos.iter().map(|albedo| albedo.max_element()).fold(f64::NEG_INFINITY, f64::max)
+    let albedos = angles.iter().map(|angle| surface.directional_albedo(direction(*angle, 0.0)));
+    albedos.map(|albedo| albedo.max_element()).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The value of a parameter of the selected part.

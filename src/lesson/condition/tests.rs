@@ -117,6 +117,12 @@ fn curves_follow_the_parameters_of_the_selected_object() {
         let Ok(Value::Number(found)) = asked.value(&matte) else { panic!("{text}") };
         assert!((found - expected).abs() < 1e-4, "{text}: {found} {expected}");
     }
+    // A smooth pane mirrors light without spreading it, which counts too.
+    let pane = Scene { reflection_model: "thin_glass".to_owned(), ..Scene::default() };
+    let pane = situation(&pane, &registry);
+    let asked = quantity::asked("curve.albedo(0)").expect("known");
+    let Ok(Value::Number(found)) = asked.value(&pane) else { panic!("the albedo of a pane") };
+    assert!((0.05..0.1).contains(&found), "{found}");
     assert!(condition("curve.peak = 0").holds(&matte));
     assert_eq!(
         condition("curve.highlight_width < 5").missing(&matte).as_deref(),
