@@ -723,7 +723,7 @@ fn awkward() -> Vec<(String, Lamp, Vec<Vec3>)> {
     all
 }
 
-/// What is wrong with light in a direction.
+/// The flaw of light from a direction, if it has one.
 fn odd(l: Vec3, radiance: Vec3, pdf: f32) -> Option<&'static str> {
     match () {
         () if !(l.is_finite() && radiance.is_finite() && pdf.is_finite()) => Some("not finite"),

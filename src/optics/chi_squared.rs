@@ -15,8 +15,8 @@ pub fn chi_squared(
     over::<32>(sample, pdf)
 }
 
-/// The same over another number of rows, each with twice as many boxes, and 64 samples for each box: a quarter of the rows
-/// takes a sixteenth of the time.
+/// [`chi_squared`] over another number of rows, each with twice as many boxes, and 64 samples for each box: a quarter of
+/// the rows takes a sixteenth of the time.
 pub fn over<const ROWS: usize>(
     sample: impl Fn(&mut dyn FnMut() -> f32) -> Option<Vec3>,
     pdf: impl Fn(Vec3) -> f32,

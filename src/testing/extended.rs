@@ -115,16 +115,8 @@ pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
-    use crate::{
-        light::{Emitter, LightRecord},
-        optics::chi_squared::chi_squared,
-        parameter::Value,
-        registry::Registry,
-        scene::{self, Light, Scene},
-    };
+    use crate::registry::Registry;
 
     #[test]
     fn wrong_twins_are_noticed() {
@@ -145,86 +137,6 @@ mod tests {
             assert_eq!(all(light, &sources), Ok(()), "{id}");
             sources.edit(path, text.replace(right, wrong));
             assert!(all(light, &sources).is_err(), "{id}: {wrong}");
-        }
-    }
-
-    /// A lamp at the origin that shines along z, with values of its parameters.
-    fn lamp(id: &str, values: &[(&'static str, Value)]) -> (Box<dyn Emitter>, LightRecord) {
-        let registry = Registry::builtin();
-        let mut light = Light::default();
-        light.set_type(registry.light(id).expect("built in"), &registry, Scene::default().scene_size);
-        values.iter().for_each(|(name, value)| light.parameters.set(*name, value.clone()));
-        (light.position, light.direction) = (Some(Vec3::ZERO), Some(Vec3::Z));
-        let (_, emitter, record) = scene::emitter(&light, &registry, Encoding::Srgb).expect("it is known");
-        (emitter, record)
-    }
-
-    #[test]
-    fn samples_of_flat_and_round_lamps_have_the_density_that_they_claim() {
-        let number = |name, v| (name, Value::Number(v));
-        for (id, values) in [
-            ("rectangle", vec![number("width", 1.2), number("height", 0.8)]),
-            ("disc", vec![number("radius", 0.6)]),
-            ("sphere", vec![number("radius", 0.4)]),
-        ] {
-            let (emitter, record) = lamp(id, &values);
-            let p = Vec3::new(0.2, 0.1, 0.7);
-            let sample = |random: &mut dyn FnMut() -> f32| {
-                let found = emitter.sample(&record, p, Vec2::new(random(), random()));
-                (found.pdf > 0.0).then_some(found.l)
-            };
-            let claimed = |l: Vec3| emitter.seen(&record, p, l).pdf;
-            let (found, boxes) = chi_squared(sample, claimed);
-            assert!(boxes > 50.0 && found < 2.0 * boxes, "{id} {values:?}: {found} in {boxes} boxes");
-            // The wrong twin: a density that leans to one side.
-            let (leaning, boxes) = chi_squared(sample, |l| claimed(l) * (1.0 + 0.3 * l.x));
-            assert!(leaning > 4.0 * boxes, "{id} {values:?}: {leaning} in {boxes} boxes");
-        }
-    }
-
-    #[test]
-    fn skies_have_the_luminances_of_the_cie() {
-        // S 011/E:2003: L/L_z = f(χ) φ(Z)/(f(Z_s) φ(0)), with a to e of the types 1, 5 and 12.
-        let types = [
-            ("1", [4.0f64, -0.7, 0.0, -1.0, 0.0]),
-            ("5", [0.0, -1.0, 0.0, -1.0, 0.0]),
-            ("12", [-1.0, -0.32, 10.0, -3.0, 0.45]),
-        ];
-        let elevation = 40.0f64;
-        for (kind, [a, b, c, d, e]) in types {
-            let values = [
-                ("source", Value::Choice("sky".into())),
-                ("sky_type", Value::Choice(kind.into())),
-                ("sun_elevation", Value::Number(elevation as f32)),
-                ("sun_azimuth", Value::Number(0.0)),
-            ];
-            let (emitter, record) = lamp("environment", &values);
-            let along = |elevation: f64, azimuth: f64| {
-                let (up, across) = elevation.to_radians().sin_cos();
-                let (east, north) = azimuth.to_radians().sin_cos();
-                let l = DVec3::new(across * east, up, -across * north).as_vec3();
-                f64::from(emitter.seen(&record, Vec3::ONE, l).radiance.y)
-            };
-            let zenith = along(90.0, 0.0);
-            let phi = |z: f64| 1.0 + a * (b / z.cos().max(1e-6)).exp();
-            let f = |x: f64| {
-                1.0 + c * ((d * x).exp() - (d * std::f64::consts::FRAC_PI_2).exp()) + e * x.cos().powi(2)
-            };
-            let sun = (90.0 - elevation).to_radians();
-            // The sun is where the sky is brightest, if it shines through.
-            let turn = (0..360).map(f64::from).max_by(|x, y| along(39.0, *x).total_cmp(&along(39.0, *y)));
-            let turn = turn.expect("there are directions");
-            for z in [0.0f64, 20.0, 50.0, 75.0, 89.0] {
-                let seen = along(90.0 - z, turn);
-                let z = z.to_radians();
-                let expected = zenith * f((z - sun).abs()) * phi(z) / (f(sun) * phi(0.0));
-                assert!((seen - expected).abs() < 0.02 * expected, "{kind}, {z}: {seen} {expected}");
-                // The wrong twin: the sun at 20°.
-                let high = 70f64.to_radians();
-                let twin = zenith * f((z - high).abs()) * phi(z) / (f(high) * phi(0.0));
-                let differs = kind != "12" || z == 0.0 || (seen - twin).abs() > 0.05 * expected;
-                assert!(differs, "{kind}, {z}: {seen} {twin}");
-            }
         }
     }
 }
