@@ -29,7 +29,7 @@ use crate::files::Shown as _;
 use crate::{
     caption::{self, Sampled},
     channel::{DebugChannel, Layer, LayerKind, Legend, Setting, layers, too_large},
-    compare::{self, Cell, Shown, View, compose, with_legends, with_row_labels},
+    compare::{self, Cell, Shown, View, compose, metric, with_legends, with_row_labels},
     export::write::inputs,
     failure::Failure,
     files::{Kind, PNG, is_descriptor, kind, printable},
@@ -94,8 +94,10 @@ pub(super) struct Arguments {
     /// Add a strip below the picture that says what it shows; the height of the strip is added to that of --size
     #[arg(long)]
     caption: bool,
-    /// Add the numbers of the difference between view A and the others to the caption: RMSE, FLIP, SSIM, PSNR
-    #[arg(long, requires = "caption")]
+    #[arg(long, requires = "caption", help = format!(
+        "Add the numbers of the difference between view A and the others to the caption: {}",
+        metric::names_in_window().join(", "),
+    ))]
     numbers: bool,
     /// Draw this view alone: A, B, C or D, or the name of a variant
     #[arg(long, value_name = "VIEW", conflicts_with = "layout")]

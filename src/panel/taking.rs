@@ -10,9 +10,11 @@ use super::{
 };
 use crate::{
     channel::LayerKind,
+    compare::metric,
     reference::MAX_SIDE,
     scene::{comparison, limits::Limits},
     sweep::MAX_RATE,
+    text::listed,
 };
 
 /// Id of the window.
@@ -123,9 +125,14 @@ fn check(ui: &mut Ui, on: &mut bool, name: &str, tip: &str, why_not: Option<&str
 /// Width and height.
 fn sides(ui: &mut Ui, [width, height]: &mut [u32; 2], typed: &mut Typed) {
     let limits = Limits::between(1.0, f64::from(MAX_SIDE)).whole();
-    number(ui, ["Width in pixels", "Width, from 1 to 16384 pixels"], (width, &limits), typed);
+    number(ui, ["Width in pixels", &format!("Width, from 1 to {MAX_SIDE} pixels")], (width, &limits), typed);
     ui.label("×");
-    number(ui, ["Height in pixels", "Height, from 1 to 16384 pixels"], (height, &limits), typed);
+    number(
+        ui,
+        ["Height in pixels", &format!("Height, from 1 to {MAX_SIDE} pixels")],
+        (height, &limits),
+        typed,
+    );
     ui.label(theme::small(ui, "pixels"));
 }
 
@@ -177,9 +184,9 @@ fn picture(ui: &mut Ui, view: Option<usize>, next: &mut TakeDraft, (typed, sessi
         (false, true) => Some("The numbers stand in the caption."),
         (true, true) => None,
     };
-    let tip =
-        "RMSE, FLIP, SSIM and PSNR between the views, in the caption: over the pixels that objects cover";
-    check(ui, &mut options.numbers, "Numbers of the difference in the caption", tip, why);
+    let metrics = listed(&metric::names_in_window(), "and");
+    let tip = format!("{metrics} between the views, in the caption: over the pixels that objects cover");
+    check(ui, &mut options.numbers, "Numbers of the difference in the caption", &tip, why);
     let tip = "The legends of debug channels and of the map of a difference: colours and their values";
     let plain = !has_legend(view, session);
     let why =
@@ -245,14 +252,16 @@ fn sheet(ui: &mut Ui, now: SheetOf, next: &mut TakeDraft, (typed, context): (&mu
     });
     if let SheetOf::Turn(_) = subject {
         line(ui, "Pictures", "Number of pictures of the full turn", |ui| {
-            let limits = Limits::between(2.0, f64::from(SheetOptions::MAX_TURN)).whole();
-            number(ui, ["Pictures", "From 2 to 360"], (&mut options.turn, &limits), typed);
+            let (least, most) = (SheetOptions::MIN_TURN, SheetOptions::MAX_TURN);
+            let limits = Limits::between(least.into(), most.into()).whole();
+            let tip = format!("From {least} to {most}");
+            number(ui, ["Pictures", &tip], (&mut options.turn, &limits), typed);
         });
     }
     line(ui, "Columns", "Number of pictures beside each other; further ones begin a new row", |ui| {
         let limits = Limits::between(0.0, f64::from(SheetOptions::MAX_COLUMNS)).whole();
-        let tip = "From 1 to 100; 0 leaves it to the program";
-        number(ui, ["Columns", tip], (&mut options.columns, &limits), typed);
+        let tip = format!("From 1 to {}; 0 leaves it to the program", SheetOptions::MAX_COLUMNS);
+        number(ui, ["Columns", &tip], (&mut options.columns, &limits), typed);
         ui.label(theme::small(ui, if options.columns == 0 { "as many as suit" } else { "" }));
     });
     line(
@@ -261,7 +270,12 @@ fn sheet(ui: &mut Ui, now: SheetOf, next: &mut TakeDraft, (typed, context): (&mu
         "A name that ends in .gif or .apng makes a film: the pictures one after the other",
         |ui| {
             let limits = Limits::between(1.0, f64::from(MAX_RATE)).whole();
-            number(ui, ["Pictures per second", "From 1 to 50"], (&mut options.rate, &limits), typed);
+            number(
+                ui,
+                ["Pictures per second", &format!("From 1 to {MAX_RATE}")],
+                (&mut options.rate, &limits),
+                typed,
+            );
             ui.label(theme::small(ui, "pictures per second, in .gif and .apng files"));
         },
     );

@@ -98,6 +98,12 @@ pub fn in_window() -> Vec<(&'static str, &'static InWindow)> {
     known
 }
 
+/// The names of those metrics.
+#[must_use]
+pub fn names_in_window() -> Vec<&'static str> {
+    in_window().into_iter().map(|(_, metric)| metric.name).collect()
+}
+
 /// A number with three digits after the point.
 fn in_thousandths(number: f64) -> String {
     format!("{number:.3}")

@@ -46,12 +46,12 @@ fn chosen_values(ui: &mut Ui, now: &mut Comparison) {
 
 /// The amplification: a number, or automatic to fit the largest difference.
 fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
-    let help = "Differences are multiplied by this before they become colours, 1 to 100.";
-    ui.label(theme::small(ui, "amplify ×")).on_hover_text(help);
+    let Limits { min, max, .. } = Comparison::amplification.limits();
+    let help = format!("Differences are multiplied by this before they become colours, {min} to {max}.");
+    ui.label(theme::small(ui, "amplify ×")).on_hover_text(&help);
     // Equal views have no largest difference.
     let largest = session.facts.comparison.as_ref().map(|numbers| numbers.largest.unwrap_or(0.0));
     let used = now.amplification.or_else(|| Some(fitting_amplification(now.values, largest?)));
-    let Limits { min, max, .. } = Comparison::amplification.limits();
     let mut factor = used.unwrap_or(min as f32);
     let mut field = egui::DragValue::new(&mut factor).range(min..=max).speed(0.2).max_decimals(0);
     if used.is_none() {

@@ -177,6 +177,9 @@ with_defaults! {
 impl SheetOptions {
     /// Maximum number of columns.
     pub const MAX_COLUMNS: u32 = 100;
+    /// Minimum number of pictures of a turn.
+    pub const MIN_TURN: u32 = 2;
+
     /// Maximum number of pictures of a turn.
     pub const MAX_TURN: u32 = 360;
 
@@ -189,7 +192,7 @@ impl SheetOptions {
     pub(super) fn tidy(&mut self) {
         self.size = sides(self.size).unwrap_or(Self::default().size);
         self.columns = self.columns.min(Self::MAX_COLUMNS);
-        self.turn = self.turn.clamp(2, Self::MAX_TURN);
+        self.turn = self.turn.clamp(Self::MIN_TURN, Self::MAX_TURN);
         self.rate = self.rate.clamp(1, MAX_RATE);
     }
 }
