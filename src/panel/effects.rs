@@ -22,7 +22,10 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
         }
         Effect::CheckFile { discard } => return reload::check(session, registry, discard, files),
         Effect::ExpectFile { path, version } => files.expect(&path, Some(version)),
-        Effect::SaveSettings => settings::save_settings(session),
+        Effect::SaveSettings => {
+            let saved = settings::save_own(&session.settings);
+            session.warn(saved);
+        }
         Effect::OpenLesson(path) => {
             let read = Lesson::read(&path, registry, &session.outside);
             session.lesson_read(path, read, registry);
@@ -33,7 +36,10 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
                 session.lesson_edited(read, registry);
             }
         }
-        Effect::SaveProgress(name) => progress::save_progress(session, &name),
+        Effect::SaveProgress(name) => {
+            let saved = progress::save_own(&session.progress, &name);
+            session.warn(saved);
+        }
         other => return vec![other],
     }
     session.requests()

@@ -2,7 +2,7 @@
 
 use std::{thread, time::Duration};
 
-use super::prelude::*;
+use super::{prelude::*, state::Messages};
 
 /// Time for which a message is shown, in seconds; twice as long for problems.
 const MOMENT: f64 = 5.0;
@@ -22,10 +22,10 @@ struct Told {
 
 /// Shows the current message in the corner of `rect`, in letters of this size; the presentation started at `since`, in
 /// seconds.
-pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, session: &Session) {
+pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, messages: &Messages) {
     let (now, pass) = (ui.input(|i| i.time), ui.ctx().cumulative_pass_nr());
     let mut told: Told = kept::get(ui.ctx());
-    let added = session.messages.added();
+    let added = messages.added();
     if told.pass + 2 <= pass {
         told = Told { added, ..Told::default() };
     } else if told.added != added {
@@ -33,7 +33,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, session: &Session
     }
     told.pass = pass;
     kept::set(ui.ctx(), told);
-    let message = session.messages.last().zip(told.since);
+    let message = messages.last().zip(told.since);
     let message = message.filter(|(message, said)| now - said <= moment(Some(message.severity)));
     match message {
         Some((message, said)) => plate(ui, rect, size, &message.text, Some(message.severity), said == now),

@@ -52,19 +52,20 @@ fn own_folder() -> Option<PathBuf> {
     data_folder().map(program::own)
 }
 
-/// Loads the progress of earlier sessions into the state, and reports if that fails.
-pub fn load_progress(session: &mut Session) {
-    let Some(folder) = own_folder() else { return };
+/// Loads the user's progress in earlier sessions. Returns a complaint too if that fails.
+#[must_use]
+pub fn load_own() -> (Progress, Option<String>) {
+    let Some(folder) = own_folder() else { return Default::default() };
     let _ = tidy(&folder);
-    let (progress, complaint) = load(&folder);
-    session.progress = progress;
-    complaint.into_iter().for_each(|complaint| session.say(Severity::Warning, complaint));
+    load(&folder)
 }
 
-/// Saves the progress in a lesson, and reports if that fails.
-pub fn save_progress(session: &mut Session, name: &str) {
-    let complaint = own_folder().and_then(|folder| save(&folder, &session.progress, name).err());
-    complaint.into_iter().for_each(|complaint| session.say(Severity::Warning, complaint));
+/// Saves the user's progress in a lesson.
+///
+/// # Errors
+/// Returns a complaint.
+pub fn save_own(progress: &Progress, name: &str) -> Result<(), String> {
+    own_folder().map_or(Ok(()), |folder| save(&folder, progress, name))
 }
 
 #[cfg(test)]

@@ -110,21 +110,21 @@ pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
     write().map_err(|e| format!("The settings cannot be written to {}: {e}.", path.shown()))
 }
 
-/// Loads the settings of the last session into the state, and reports if that fails.
-pub fn load_settings(session: &mut Session) {
-    if let Some(folder) = folder() {
-        // Only settings could be left unfinished there, and they are loaded next.
-        let _ = tidy(&folder);
-        let (settings, complaint) = load(&folder);
-        session.adopt(settings);
-        complaint.into_iter().for_each(|complaint| session.say(Severity::Warning, complaint));
-    }
+/// Loads the user's settings of the last session. Returns a complaint too if that fails.
+#[must_use]
+pub fn load_own() -> (Settings, Option<String>) {
+    let Some(folder) = folder() else { return Default::default() };
+    // Only settings could be left unfinished there, and they are loaded next.
+    let _ = tidy(&folder);
+    load(&folder)
 }
 
-/// Saves the settings for the next session, and reports if that fails.
-pub fn save_settings(session: &mut Session) {
-    let complaint = folder().and_then(|folder| save(&folder, &session.settings).err());
-    complaint.into_iter().for_each(|complaint| session.say(Severity::Warning, complaint));
+/// Saves the user's settings for the next session.
+///
+/// # Errors
+/// Returns a complaint.
+pub fn save_own(settings: &Settings) -> Result<(), String> {
+    folder().map_or(Ok(()), |folder| save(&folder, settings))
 }
 
 #[cfg(test)]

@@ -33,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         export::progress(ui, context);
         matching::progress(ui, context);
         taking::progress(ui, context);
-        samples(ui, session);
+        samples(ui, &session.facts.converged);
         let mut selected = format!("{} selected", session.name_of(session.selection, context.registry()));
         if let Some(key) = keys::of(ui.ctx(), "keys") {
             selected.push_str(&format!(" · {key} keys"));
@@ -62,8 +62,8 @@ fn samples_in_words(converged: &[Converging]) -> Option<(String, Vec<String>)> {
 }
 
 /// Shows the convergence of pictures with light with extent.
-fn samples(ui: &mut Ui, session: &Session) {
-    let Some((words, lines)) = samples_in_words(&session.facts.converged) else { return };
+fn samples(ui: &mut Ui, converged: &[Converging]) {
+    let Some((words, lines)) = samples_in_words(converged) else { return };
     ui.add(Label::new(theme::small(ui, words))).on_hover_ui(|ui| {
         ui.set_max_width(320.0);
         ui.label(

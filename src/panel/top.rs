@@ -9,6 +9,7 @@ use super::{
     maths, menu, model_override,
     prelude::*,
     segmented::{segment_width, segmented},
+    state::Facts,
     welcome,
 };
 
@@ -42,7 +43,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         shading(ui, &names, apart, context);
         pointed(ui, "shading", from);
         model_override::whose(ui, session, registry);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, session));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, &session.facts));
     });
 }
 
@@ -199,11 +200,10 @@ fn prepare_digits(ui: &Ui) {
     });
 }
 
-fn renderer(ui: &mut Ui, session: &Session) {
+fn renderer(ui: &mut Ui, facts: &Facts) {
     if ui.available_width() < 40.0 {
         return;
     }
-    let facts = &session.facts;
     let mut parts = Vec::new();
     if facts.fps() > 0.0 {
         parts.push(format!("{:.0} fps", facts.fps()));

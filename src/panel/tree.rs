@@ -34,7 +34,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         i if i == 3 + lights => Row::Objects,
         i => Row::Part(Selection::Object(i - 4 - lights)),
     };
-    context.actions.extend(step(ui, session).map(Action::Select));
+    context.actions.extend(step(ui, &session.document).map(Action::Select));
     focus::first(ui.ctx(), row_id(session.selection));
     ui.spacing_mut().item_spacing.y = 0.0;
     let total = 4 + lights + objects;
@@ -96,15 +96,15 @@ fn add_objects(ui: &mut Ui, context: &mut PanelContext<'_>) {
 }
 
 /// The part that an arrow key moves to from the focused row; it gets the focus.
-fn step(ui: &Ui, session: &Session) -> Option<Selection> {
+fn step(ui: &Ui, scene: &Scene) -> Option<Selection> {
     let focus = ui.memory(egui::Memory::focused)?;
     let keys = [Key::ArrowUp, Key::ArrowDown];
     let way = keys.map(|key| ui.input(|i| i.num_presses(key)));
     if way == [0, 0] || ui.input(|i| i.modifiers.any()) || Popup::is_any_open(ui.ctx()) {
         return None;
     }
-    let lights = (0..session.document.lights.len()).map(Selection::Light);
-    let objects = (0..session.document.objects.len()).map(Selection::Object);
+    let lights = (0..scene.lights.len()).map(Selection::Light);
+    let objects = (0..scene.objects.len()).map(Selection::Object);
     let parts: Vec<_> =
         [Selection::Room, Selection::Observer].into_iter().chain(lights).chain(objects).collect();
     let at = parts.iter().position(|part| row_id(*part) == focus)?;
@@ -196,7 +196,7 @@ impl<'a> PartRow<'a> {
         }
         let between = if narrow { 22.0 } else { 24.0 };
         let right = ground.right() - if nested { 2.0 * between } else { 8.0 };
-        let colour = if is_there(session, part) { palette.text } else { palette.weak };
+        let colour = if is_there(&session.document, part) { palette.text } else { palette.weak };
         let room = (right - text_left).max(8.0);
         let body = TextStyle::Body.resolve(ui.style());
         let (galley, cut) = theme::elided_within(ui, name, &body, colour, room);
@@ -245,7 +245,7 @@ impl<'a> PartRow<'a> {
     /// The eye of an object, or the lamp of a light.
     fn toggle(&self, ui: &mut Ui, centre: Pos2, row_hovered: bool, context: &mut PanelContext<'_>) {
         let (palette, part) = (Palette::here(ui), self.part);
-        let there = is_there(self.session, part);
+        let there = is_there(&self.session.document, part);
         let says = format!("{} {}", toggle_words(part, there), self.name);
         let response = spot(ui, centre, ui.id().with(("toggle", part)), &says);
         let icon = match (part, there) {
@@ -339,7 +339,7 @@ fn menu(ui: &mut Ui, part: Selection, nested: bool, context: &mut PanelContext<'
     if nested {
         item(ui, "Rename", Action::BeginRename(part));
         item(ui, "Duplicate", Action::Duplicate(part));
-        item(ui, toggle_words(part, is_there(session, part)), Action::Toggle(part));
+        item(ui, toggle_words(part, is_there(&session.document, part)), Action::Toggle(part));
         ui.separator();
         item(ui, "Delete", Action::Remove(part));
     } else {
@@ -354,10 +354,10 @@ fn menu(ui: &mut Ui, part: Selection, nested: bool, context: &mut PanelContext<'
 }
 
 /// False if a part is hidden or switched off.
-fn is_there(session: &Session, part: Selection) -> bool {
+fn is_there(scene: &Scene, part: Selection) -> bool {
     match part {
-        Selection::Light(i) => session.document.lights.get(i).is_none_or(|light| light.enabled),
-        Selection::Object(i) => session.document.objects.get(i).is_none_or(|object| object.visible),
+        Selection::Light(i) => scene.lights.get(i).is_none_or(|light| light.enabled),
+        Selection::Object(i) => scene.objects.get(i).is_none_or(|object| object.visible),
         Selection::Room | Selection::Observer => true,
     }
 }

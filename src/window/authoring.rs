@@ -12,7 +12,7 @@ use crate::{
     library::assets::{self, Exported, Folders},
     panel::{
         keys,
-        state::{Effect, ModelDraft, Session, Severity},
+        state::{Authoring, Effect, ModelDraft, Session, Severity},
     },
     registry::Registry,
     text::sentence,
@@ -23,7 +23,7 @@ use crate::{
 pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Option<PathBuf> {
     let (said, folder) = match effect {
         Effect::NewModel { of, id, name } => (new_model(session, registry, of, id, name), None),
-        Effect::AdoptModel(path) => (adopt(session, registry, path), None),
+        Effect::AdoptModel(path) => (adopt(&mut session.authoring, registry, path), None),
         Effect::ExportShaders(folder) => match assets::export(folder, registry) {
             Ok(exported) => (Ok(told(&exported, folder)), Some(folder.clone())),
             Err(why) => (Err(format!("The shaders were not exported: {why}.")), None),
@@ -47,18 +47,18 @@ fn models_folder(registry: &Registry) -> Result<PathBuf, String> {
 
 /// Writes the file of a model, which is selected as soon as it is read. `taken` says what to do if there is such a file.
 fn new_file(
-    session: &mut Session,
+    authoring: &mut Authoring,
     path: &Path,
     text: &str,
-    taken: impl FnOnce(&mut Session) -> &'static str,
+    taken: impl FnOnce(&mut Authoring) -> &'static str,
 ) -> Result<(), String> {
     match write_new(path, text) {
         Ok(()) => {
-            session.authoring.wanted_model = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            authoring.wanted_model = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
             Ok(())
         }
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
-            Err(format!("{} already exists and was not changed; {}.", path.shown(), taken(session)))
+            Err(format!("{} already exists and was not changed; {}.", path.shown(), taken(authoring)))
         }
         Err(e) => Err(format!("{} could not be written: {}.", path.shown(), words(&e))),
     }
@@ -77,9 +77,9 @@ fn new_model(
         None => custom::template(id, name),
     };
     let path = models_folder(registry)?.join(format!("{id}.{}", custom::EXTENSION));
-    new_file(session, &path, &text, |session| {
+    new_file(&mut session.authoring, &path, &text, |authoring| {
         // Asks again, with the typed name.
-        session.authoring.draft = Some(ModelDraft { of: of.clone(), name: name.to_owned() });
+        authoring.draft = Some(ModelDraft { of: of.clone(), name: name.to_owned() });
         "choose another name"
     })?;
     let open = keys::hint_beside(session, registry, "Open it in an editor", "edit_model");
@@ -96,12 +96,12 @@ fn copy_of(model: &str, registry: &Registry, id: &str, name: &str) -> Result<Str
 }
 
 /// Copies a model into the folder of custom models.
-fn adopt(session: &mut Session, registry: &Registry, from: &Path) -> Result<String, String> {
+fn adopt(authoring: &mut Authoring, registry: &Registry, from: &Path) -> Result<String, String> {
     let folder = models_folder(registry)?;
     let name = from.file_name().unwrap_or_default();
     let text = custom::file::read(from, &name.to_string_lossy());
     let text = text.map_err(|problem| format!("{} was not copied: {}.", from.shown(), problem.message))?;
-    new_file(session, &folder.join(name), &text, |_| "rename the other file")?;
+    new_file(authoring, &folder.join(name), &text, |_| "rename the other file")?;
     Ok(format!("{} was copied to {}.", from.shown(), folder.shown()))
 }
 

@@ -28,8 +28,7 @@ use crate::{
         effects,
         files::Files as _,
         follow::follow_registry,
-        progress::load_progress,
-        settings::load_settings,
+        progress, settings,
         state::{Action, Effect, LessonCommand, Session, Severity},
     },
     registry::Registry,
@@ -68,8 +67,7 @@ impl Plugin for DocumentPlugin {
         session.disk.use_defaults = options.use_defaults;
         session.view.examples_open = options.examples;
         if self.for_user {
-            load_settings(&mut session);
-            load_progress(&mut session);
+            restore(&mut session);
         } else {
             app.insert_resource(Unattended);
         }
@@ -129,7 +127,10 @@ impl Plugin for DocumentPlugin {
                     known.add_missing(&registry);
                     *registry = known;
                 }
-                None if self.for_user => declare_custom(&mut registry, &mut session),
+                None if self.for_user => {
+                    let declared = declare_custom(&mut registry);
+                    declared.err().into_iter().for_each(|why| session.say(Severity::Error, why));
+                }
                 None => {}
             }
             session.model_slots.fill(&registry);
@@ -162,16 +163,22 @@ impl Plugin for DocumentPlugin {
     }
 }
 
+/// Restores the settings of the last session, and the progress in lessons.
+fn restore(session: &mut Session) {
+    let (settings, unread) = settings::load_own();
+    session.adopt(settings);
+    let (progress, unknown) = progress::load_own();
+    session.progress = progress;
+    [unread, unknown].into_iter().flatten().for_each(|why| session.say(Severity::Warning, why));
+}
+
 /// Declares the custom models in the user's folder.
-fn declare_custom(registry: &mut Registry, session: &mut Session) {
-    match Folders::find(None, None) {
-        Ok(folders) => {
-            folders.shaders.iter().for_each(|folder| registry.set_shader_folder(folder));
-            // Their problems are reported when the models are checked.
-            folders.models.iter().for_each(|folder| drop(declare_folder(folder, registry)));
-        }
-        Err(why) => session.say(Severity::Error, why.to_string()),
-    }
+fn declare_custom(registry: &mut Registry) -> Result<(), String> {
+    let folders = Folders::find(None, None).map_err(|why| why.to_string())?;
+    folders.shaders.iter().for_each(|folder| registry.set_shader_folder(folder));
+    // Their problems are reported when the models are checked.
+    folders.models.iter().for_each(|folder| drop(declare_folder(folder, registry)));
+    Ok(())
 }
 
 /// Opens a file with everything registered with the app in addition to `known`. With [`Defaults::Ask`], the window asks

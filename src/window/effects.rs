@@ -30,6 +30,13 @@ pub(super) struct Work<'w> {
     proxy: Option<Res<'w, EventLoopProxyWrapper>>,
 }
 
+fn show_manual(session: &mut Session) {
+    match manual::show() {
+        Ok(said) => session.say(Severity::Info, said),
+        Err(why) => session.say(Severity::Warning, why),
+    }
+}
+
 impl Work<'_> {
     /// Reports the tasks that have ended. Shows the folder of an export to the user, if there is one.
     fn report(&self, session: &mut ResMut<Session>, registry: &Registry, unattended: bool) {
@@ -42,7 +49,7 @@ impl Work<'_> {
         if let Some(path) = self.exports.report(session)
             && !unattended
         {
-            exports::reveal(&path, session);
+            session.warn(exports::reveal(&path));
         }
         self.matches.report(session, registry);
         self.plots.report(session);
@@ -122,8 +129,8 @@ pub(super) fn carry_out(
             Effect::Complain(text) => watching::complain(&text),
             // The panels handle the clipboard. Pictures are taken elsewhere, since the views must be read back first.
             Effect::CopyText(_) | Effect::Picture { .. } | Effect::CancelPicture => {}
-            Effect::OpenManual => manual::show(&mut session),
-            Effect::Reveal(folder) => exports::reveal(&folder, &mut session),
+            Effect::OpenManual => show_manual(&mut session),
+            Effect::Reveal(folder) => session.warn(exports::reveal(&folder)),
             dialog @ Effect::Pick(_) => session.wanted_dialog = Some(dialog),
             model @ (Effect::NewModel { .. } | Effect::AdoptModel(_) | Effect::ExportShaders(_)) => {
                 if let Some(folder) = authoring::write(&model, &mut session, &registry) {

@@ -123,12 +123,8 @@ fn written(form: &Form, request: &Request, path: &Path, before: &Before, progres
     Ok(export.notes)
 }
 
-/// Shows a folder in the file manager.
-pub(super) fn reveal(folder: &Path, session: &mut Session) {
-    if let Err(error) = ::open::that_detached(folder) {
-        session.say(
-            Severity::Warning,
-            format!("The folder {} could not be shown: {}.", folder.shown(), files::words(&error)),
-        );
-    }
+/// Shows a folder in the file manager. The error is a sentence.
+pub(super) fn reveal(folder: &Path) -> Result<(), String> {
+    ::open::that_detached(folder)
+        .map_err(|why| format!("The folder {} could not be shown: {}.", folder.shown(), files::words(&why)))
 }

@@ -5,10 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::{
     files::{self, Shown as _},
     library::assets::data_folder,
-    panel::{
-        manual,
-        state::{Session, Severity},
-    },
+    panel::manual,
 };
 
 /// File name.
@@ -32,18 +29,15 @@ pub fn write(folder: &Path) -> Result<PathBuf, String> {
     Ok(path)
 }
 
-/// Shows the manual in the browser, or reports why it cannot.
-pub(super) fn show(session: &mut Session) {
+/// Shows the manual in the browser. Returns a message in either case.
+pub(super) fn show() -> Result<String, String> {
     let folder = data_folder().unwrap_or_else(|| std::env::temp_dir().join("lights-camera-models"));
-    let shown = write(&folder).and_then(|path| match ::open::that_detached(&path) {
-        Ok(()) => Ok(path),
+    let path = write(&folder)?;
+    match ::open::that_detached(&path) {
+        Ok(()) => Ok(format!("The browser shows the manual, {}.", path.shown())),
         Err(why) => {
             let why = files::words(&why);
             Err(format!("No browser could be started ({why}): the manual is {}.", path.shown()))
         }
-    });
-    match shown {
-        Ok(path) => session.say(Severity::Info, format!("The browser shows the manual, {}.", path.shown())),
-        Err(why) => session.say(Severity::Warning, why),
     }
 }

@@ -95,7 +95,8 @@ fn take(
         let (overwrite, file) = (overwrite && file == meant, meant);
         match file.as_deref().map_or(Ok(true), |file| may_write(file, overwrite, &session, &registry)) {
             Ok(true) => {
-                announce(file.as_deref(), &mut session, &registry);
+                let said = file.as_deref().and_then(|file| announcement(file, &session.document, &registry));
+                said.into_iter().for_each(|text| session.say(Severity::Info, text));
                 pictures.wanted.push_back(Wanted { view, file, since: Instant::now() });
             }
             Ok(false) => {
@@ -150,7 +151,7 @@ impl Pictures {
         let whole = wanted.options(session).pixels();
         let of_view = found.as_ref().and_then(|found| found.first()).map(|view| view.view.size);
         let size = match whole {
-            Some(whole) => cell_of(session, &numbers, whole),
+            Some(whole) => cell_of(&session.document, &numbers, whole),
             None => of_view.ok_or_else(|| not_on_screen(wanted.view)),
         };
         if begun.is_off_screen() || size.is_err() {
@@ -243,11 +244,10 @@ fn not_on_screen(view: Option<usize>) -> String {
 }
 
 /// The size of each view in a picture of a size.
-fn cell_of(session: &Session, numbers: &[usize], whole: [u32; 2]) -> Result<UVec2, String> {
+fn cell_of(scene: &Scene, numbers: &[usize], whole: [u32; 2]) -> Result<UVec2, String> {
     if numbers.len() < 2 {
         return Ok(whole.into());
     }
-    let scene = &session.document;
     let all = cells(&scene.comparison, scene.variants.len(), whole);
     let cell = all.as_deref().and_then(|cells| cells.first());
     let [width, height] = whole;
@@ -293,13 +293,10 @@ fn may_write(file: &Path, overwrite: bool, session: &Session, registry: &Registr
     }
 }
 
-/// Says that a linear picture takes long, if it does.
-fn announce(file: Option<&Path>, session: &mut Session, registry: &Registry) {
-    let linear = file.filter(|file| Format::of(file).is_some());
-    if let Some(file) = linear.filter(|_| session.document.rests_on_samples(registry)) {
-        let text = format!("{} is drawn on the CPU with its layers, which takes a while.", file.shown());
-        session.say(Severity::Info, text);
-    }
+/// The message that a linear picture takes long, if it does.
+fn announcement(file: &Path, scene: &Scene, registry: &Registry) -> Option<String> {
+    let takes_long = Format::of(file).is_some() && scene.rests_on_samples(registry);
+    takes_long.then(|| format!("{} is drawn on the CPU with its layers, which takes a while.", file.shown()))
 }
 
 /// A picture with all its inputs.

@@ -127,7 +127,7 @@ impl Footer {
             let galley = theme::elided(ui, &text, FontId::proportional(CAPTION * height), ink, room);
             ui.painter().galley(place.min + vec2(padding.x, top), galley, ink);
         }
-        notice::show(ui, whole.with_max_y(place.top()), CAPTION * height, since(ui), session);
+        notice::show(ui, whole.with_max_y(place.top()), CAPTION * height, since(ui), &session.messages);
     }
 }
 

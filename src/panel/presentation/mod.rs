@@ -162,7 +162,7 @@ impl Stage {
         let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width);
         words.paint(ui, self.caption.min + padding, palette.text);
         let below = self.picture.with_max_y(self.caption.top().min(self.picture.bottom()));
-        notice::show(ui, below, CAPTION * height, since(ui), session);
+        notice::show(ui, below, CAPTION * height, since(ui), &session.messages);
         let mut free = self.picture;
         if !self.equation.is_empty() {
             ui.painter().rect_filled(self.plate, 8.0, palette.panel);

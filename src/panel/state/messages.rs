@@ -150,6 +150,13 @@ impl Session {
         self.note(Note::new(severity, text));
     }
 
+    /// Reports a failure, if it is one.
+    pub fn warn(&mut self, outcome: Result<(), String>) {
+        if let Err(why) = outcome {
+            self.say(Severity::Warning, why);
+        }
+    }
+
     pub(in crate::panel) fn note(&mut self, note: Note) {
         if note.severity == Severity::Error {
             if !self.sees(MESSAGES_TAB) && self.messages.unfolded.is_none() {
