@@ -18,7 +18,7 @@ parameters! {
     pub struct Blind {
         /// Slats per metre.
         slats: number = SLATS,
-        /// What a slat lets through, linear.
+        /// Light that a slat lets through, linear.
         tint: colour = TINT,
     }
 }

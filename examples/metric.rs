@@ -29,7 +29,7 @@ static UNEQUAL: Pixels = Pixels {
     },
 };
 
-/// Their part of all pixels.
+/// The fraction of pixels that differ.
 pub static CHANGED: Metric = Metric::new("changed", Way::Pixels(&UNEQUAL, |sum, pixels| sum / pixels));
 
 pub fn main() {

@@ -9,7 +9,7 @@ use lights_camera_models::{
     prelude::*,
 };
 
-/// Its state: the part of the light that stays, per cent.
+/// The part of the light that stays, per cent: the state of the panel.
 pub struct Dimmer(f32);
 
 impl Default for Dimmer {

@@ -15,7 +15,7 @@ const BELLY: Parameter = Parameter::number("belly", 0.0..=1.0, 0.6)
 parameters! {
     /// A pear, standing.
     pub struct Pear {
-        /// How much wider the lower half is.
+        /// Extra width of the lower half.
         belly: number = BELLY,
     }
 }

@@ -46,7 +46,7 @@ def add_model(name: str, wgsl: str) -> None:
     Parameters
     ----------
     name
-        Its id: lower-case letters, digits and underscores. It is known to :class:`Model` and to scenes read from now on.
+        The id: lower-case letters, digits and underscores. It is known to :class:`Model` and to scenes read from now on.
     wgsl
         The text of one file: a declaration in a comment that begins with ``lcm``, and ``fn response``; see *A model in
         one file* in the manual. The CPU interprets it.

@@ -21,7 +21,7 @@ class Comparison:
     #: Every metric over all pixels, by name: ``rmse``, ``psnr``, ``ssim``, ``flip``, ``light_rmse``, … ``None`` if infinite.
     #: Metrics that need unknown data are missing. ``pixels`` is the number of pixels.
     metrics: dict[str, Any]
-    #: The same over the pixels that objects cover; ``None`` where that is unknown.
+    #: The metrics over the pixels that objects cover; ``None`` if those are unknown.
     covered: dict[str, Any] | None
     #: The largest difference and its place; ``None`` if the pictures are equal.
     largest: dict[str, Any] | None

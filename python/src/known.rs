@@ -83,13 +83,13 @@ pub fn models() -> Vec<&'static str> {
     registry().models().iter().map(|model| model.declaration.id).collect()
 }
 
-/// What a model declares, as JSON.
+/// The declaration of a model, as JSON.
 #[pyfunction]
 pub fn describe(id: &str) -> PyResult<String> {
     Ok(described(&find(&registry(), id)?))
 }
 
-/// What a model declares, as JSON.
+/// The declaration of a model, as JSON.
 pub fn described(model: &ModelEntry) -> String {
     let declaration = model.declaration;
     let parameters: Vec<_> = model

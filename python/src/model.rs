@@ -58,7 +58,7 @@ impl Model {
         Ok(model)
     }
 
-    /// What the model declares, as JSON.
+    /// The declaration of the model, as JSON.
     fn describe(&self) -> String {
         known::described(&self.entry)
     }

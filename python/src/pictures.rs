@@ -21,7 +21,7 @@ use crate::{
 /// Metrics as JSON, the differences, and their map as codes.
 type Compared3<'py> = (String, Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<u8>>);
 
-/// What is compared: the channel, the sign, and the amplification of the map.
+/// The subject of a comparison: the channel, the sign, and the amplification of the map.
 type How = (String, String, Option<f32>);
 
 /// Compares two pictures of display codes, of the same size.
@@ -138,7 +138,7 @@ fn chosen<T: Word>(name: &str, word: &str) -> PyResult<T> {
     })
 }
 
-/// A number; JSON has no infinite ones.
+/// A number, or null if it is infinite, which JSON cannot express.
 fn finite(number: f64) -> serde_json::Value {
     if number.is_finite() { number.into() } else { serde_json::Value::Null }
 }

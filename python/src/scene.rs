@@ -54,7 +54,7 @@ pub struct Wanted<'a> {
 
 #[pymethods]
 impl Scene {
-    /// Reads a scene from JSON. The files that it names are in the folder; its name is empty if it is no file. Texts stand
+    /// Reads a scene from JSON. The files that it names are in the folder; its name is empty if it is not a file. Texts stand
     /// for custom models in place of the known ones.
     #[new]
     #[pyo3(signature = (json, name, folder, use_defaults, custom = Vec::new()))]

@@ -50,7 +50,7 @@ pub fn long<T: Send>(py: Python<'_>, work: impl FnOnce(&Progress) -> T + Send) -
     })
 }
 
-/// The same for work on several threads, which looks at a flag that Ctrl+C sets.
+/// Runs work on several threads until Ctrl+C sets the flag that it watches.
 pub fn until_stopped<T: Send>(py: Python<'_>, work: impl FnOnce(&AtomicBool) -> T + Send) -> PyResult<T> {
     let pool = pool()?;
     let cancelled = AtomicBool::new(false);

@@ -15,7 +15,7 @@ const MOST: u32 = 1 << 20;
 /// Default maximum number of samples if the noise decides.
 const MOST_FOR_NOISE: u32 = 1 << 16;
 
-/// What is said of the samples of lights with extent, which the CPU renderer counts.
+/// The samples of lights with extent, as given on the command line; the CPU renderer counts them.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub(super) struct Sampling {
     /// Samples of each light with extent, and as many of the directions in which objects reflect most, on the CPU: 1 to 1048576;

@@ -57,7 +57,7 @@ pub struct NotFinite {
 pub enum Scope {
     /// All.
     All,
-    /// Those without tests in this crate: custom models, and types of other crates.
+    /// Models without tests in this crate: custom models, and types of other crates.
     Untested,
 }
 

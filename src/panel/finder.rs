@@ -27,7 +27,7 @@ const PADDING: f32 = 8.0;
 /// The part of the window above it, and the part that its list takes.
 const ABOVE: f32 = 0.09;
 const LIST: f32 = 0.58;
-/// So many of the latest commands come first.
+/// Number of the latest commands that come first.
 const RECENT: usize = 5;
 
 pub(super) const WORDS: Words = Words {
@@ -42,7 +42,7 @@ fn id() -> Id {
     Id::new("finder")
 }
 
-/// Something that can be found.
+/// An entry that can be found.
 struct Found {
     id: String,
     title: String,
@@ -143,14 +143,14 @@ fn remember(ctx: &Context, command: &str) {
     ctx.data_mut(|d| d.insert_temp(id().with("latest"), all));
 }
 
-/// All of it in the order of the menus, after the latest.
+/// All entries in the order of the menus, after the latest.
 fn listed<'f>(ctx: &Context, all: &'f [Found]) -> Vec<(&'static str, &'f Found)> {
     let latest = latest(ctx);
     let again = latest.iter().filter_map(|id| all.iter().find(|found| found.id == *id));
     again.map(|found| ("Used last", found)).chain(all.iter().map(|found| (found.heading, found))).collect()
 }
 
-/// Those that fit the typed text, the best first.
+/// The entries that match the typed text, best first.
 fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> {
     let fits = |found: &'f Found| Some((rank(&found.title, &found.more, search)?, found));
     let mut found: Vec<_> = all.iter().filter_map(fits).collect();

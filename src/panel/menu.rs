@@ -12,7 +12,7 @@ use super::{
     theme::says,
 };
 
-/// A menu is shown within so many passes; one that has no entries never gets the focus.
+/// Number of passes within which a menu is shown; one without entries never gets the focus.
 const PATIENCE: u64 = 4;
 
 /// The known state of the menus.

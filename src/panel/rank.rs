@@ -6,7 +6,7 @@ const MOST: usize = 12;
 
 /// The rank of a word that is said beside the name.
 const SAID: i32 = 20;
-/// By so much letters with gaps stand behind everything else.
+/// Amount by which letters with gaps rank behind everything else.
 const GAPS: i32 = 100_000;
 
 /// The words of a text, in lower case.

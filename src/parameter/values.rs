@@ -43,7 +43,7 @@ impl Values {
         self.0.insert(name.into(), value);
     }
 
-    /// Those values that are legal for one of some parameters.
+    /// The values that are legal for one of some parameters.
     #[must_use]
     pub fn legal(&self, parameters: &[Parameter]) -> Self {
         let legal = |p: &Parameter| {

@@ -50,7 +50,7 @@ impl Watches {
         }
     }
 
-    /// Also watches the component of a type.
+    /// Watches the component of a type too.
     pub(super) fn add(&mut self, component: Watch) {
         self.others.push(component);
     }

@@ -157,7 +157,7 @@ fn letters() -> Vec<[&'static str; 3]> {
 }
 
 impl Comparison {
-    /// The same with the edge of a wipe at another place, or at the nearest one that is legal.
+    /// Moves the edge of a wipe to a place, or to the nearest legal one.
     #[must_use]
     pub fn with_split(self, split: f32) -> Self {
         let limits = Self::split.limits();

@@ -35,7 +35,7 @@ choice! {
 }
 
 impl Scale {
-    /// So many numbers from one to another; both ends are exact.
+    /// Numbers from one to another, evenly spaced on this scale; both ends are exact.
     pub fn between(self, [from, to]: [f64; 2], count: usize) -> impl Iterator<Item = f64> {
         (0..count).map(move |i| match i {
             0 => from,

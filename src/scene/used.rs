@@ -9,7 +9,7 @@ use crate::{
     text::{listed, with_article},
 };
 
-/// Why a value has no effect.
+/// The reason why a value has no effect.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Idle {
     /// The reason: "Lambert has no roughness".

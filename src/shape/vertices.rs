@@ -46,7 +46,7 @@ pub struct Vertices {
 }
 
 impl Vertices {
-    /// Those for shading models that interpolate over shared vertices.
+    /// The vertices for shading models that interpolate over shared ones.
     #[must_use]
     pub fn shared(mesh: &PolygonMesh) -> Self {
         let attributes = vec![
@@ -57,7 +57,7 @@ impl Vertices {
         Self { attributes, indices: mesh.triangles().flat_map(|(_, corners)| corners).collect() }
     }
 
-    /// Those for shading models that calculate per polygon: no vertex is shared, and each has the data of its
+    /// The vertices for shading models that calculate per polygon: no vertex is shared, and each has the data of its
     /// polygon.
     #[must_use]
     pub fn apart(mesh: &PolygonMesh) -> Self {

@@ -9,7 +9,7 @@ mod sheen;
 
 use lights_camera_models::{bevy::prelude::*, cli, light::Spot, prelude::*};
 
-/// What scenes may name. The shaders are followed while they are edited.
+/// The types that scenes may name. The shaders are followed while they are edited.
 pub fn types(to: &mut impl Register) {
     to.add_reflection_model::<sheen::Sheen>()
         .add_shading_model::<lazy::Lazy>()

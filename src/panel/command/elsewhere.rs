@@ -10,9 +10,9 @@ use crate::{
     },
 };
 
-/// One press turns by so much, degrees.
+/// Angle of a turn by one press, degrees.
 const TURN: f32 = 5.0;
-/// One press moves the edge of a wipe by so much of the picture.
+/// Distance that one press moves the edge of a wipe, as a fraction of the picture.
 const EDGE: f32 = 0.02;
 
 pub(super) fn elsewhere(to: &mut List) {

@@ -12,9 +12,9 @@ use crate::{
     text::{did_you_mean, listed, quoted, sentence, shortened},
 };
 
-/// More problems are counted.
+/// Maximum number of problems that are described; further ones are counted.
 const MOST: usize = 12;
-/// A command has no more keys of its own.
+/// Maximum number of custom keys of a command.
 const MOST_KEYS: usize = 8;
 
 /// Keys that belong to no command, with their effects.

@@ -17,12 +17,12 @@ fn view(id: &'static str, name: &'static str, change: ViewChange) -> Command {
     command(id, name, Action::View(change))
 }
 
-/// One that is on or off.
+/// A command that switches something on or off.
 fn switch(id: &'static str, name: &'static str, on: bool, change: ViewChange) -> Command {
     view(id, name, change).mark(Mark::Check(on))
 }
 
-/// One of several choices, called as the choice.
+/// A command that makes one of several choices, named after it.
 fn choice(kind: &str, id: &str, name: &'static str, on: bool, change: ViewChange) -> Command {
     command(format!("{kind}.{id}"), name, Action::View(change)).mark(Mark::Radio(on))
 }

@@ -83,10 +83,10 @@ impl Drawn {
     }
 }
 
-/// Why there is no curve.
+/// The reason why there is no curve.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoCurve {
-    /// Nobody wants it any more.
+    /// The request was cancelled.
     Cancelled,
     /// A sentence without its point.
     Because(String),

@@ -152,7 +152,7 @@ fn fit(built: &mut Built, [width, height]: [f64; 2], screen: &Screen) {
     }
 }
 
-/// A name that is no wider than this.
+/// A name shortened to this width.
 fn cut(name: &str, width: f64, screen: &Screen) -> String {
     let fits = |text: &str| screen.width(17.0, text) <= width;
     if fits(name) {

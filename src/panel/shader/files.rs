@@ -71,7 +71,7 @@ pub(super) fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// What the files belong to, and, if there is room beside the button that exports them, where they come from.
+/// The owner of the files, and their origin if there is room beside the button that exports them.
 fn heading(ui: &mut Ui, title: String, files: &[File], context: &PanelContext<'_>) {
     let label = Label::new(theme::strong(ui, title)).truncate();
     ui.add(label).on_hover_text("The picture is made of these files.");

@@ -63,7 +63,7 @@ impl Session {
         }
     }
 
-    /// Why the compared views have no statistics and no difference map; `None` if they have.
+    /// The reason why the compared views lack statistics and a difference map, if they do.
     #[must_use]
     pub fn incomparable(&self) -> Option<String> {
         let with = self.compared_with();

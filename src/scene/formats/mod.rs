@@ -190,7 +190,7 @@ impl SceneFormats for Registry {
 
 /// The built-in formats.
 static BUILT_IN: [&dyn SceneFormat; 5] = [&Json, &Csv, &Png, &Exr, &Hdr];
-/// Those of pictures.
+/// The formats of pictures.
 static PICTURES: [&dyn SceneFormat; 3] = [&Png, &Exr, &Hdr];
 
 /// All formats: the built-in ones, JSON first, and those that were added.
