@@ -12,14 +12,17 @@ use crate::{
 /// Maximum number of samples of lights with extent.
 const MOST: u32 = 1 << 20;
 
+/// Maximum number of samples on the GPU, where nothing shows the progress.
+const MOST_ON_GPU: u32 = 4096;
+
 /// Default maximum number of samples if the noise decides.
 const MOST_FOR_NOISE: u32 = 1 << 16;
 
 /// The samples of lights with extent, as given on the command line; the CPU renderer counts them.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub(super) struct Sampling {
-    /// Samples of each light with extent, and as many of the directions in which objects reflect most, on the CPU: 1 to 1048576;
-    /// by default 256, with --noise 65536
+    /// Samples of each light with extent, and as many of the directions in which objects reflect most: 1 to 1048576, on the GPU
+    /// to 4096; by default 256, with --noise 65536
     #[arg(long, value_name = "N", value_parser = light_samples, allow_hyphen_values = true)]
     light_samples: Option<u32>,
     /// Take samples of lights with extent until the noise is this low, on the CPU: the standard error of pixels over their mean
@@ -33,6 +36,22 @@ impl Sampling {
     pub(super) fn until(self) -> Until {
         let default = if self.noise.is_some() { MOST_FOR_NOISE } else { Until::default().samples };
         Until { samples: self.light_samples.unwrap_or(default), noise: self.noise }
+    }
+
+    /// The reason why the GPU renderer cannot take these samples.
+    pub(super) fn fits_gpu(self) -> Result<(), String> {
+        if self.noise.is_some() {
+            let way = "use --light-samples, or --renderer cpu";
+            return Err(format!(
+                "--noise cannot be used with --renderer gpu, which does not measure it; {way}"
+            ));
+        }
+        match self.light_samples {
+            Some(many) if many > MOST_ON_GPU => Err(format!(
+                "--light-samples is {many}, but with --renderer gpu it must be at most {MOST_ON_GPU}; use --renderer cpu"
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// The given options, for messages.

@@ -38,7 +38,7 @@ use crate::{
     picture::png::About,
     program::HAS_WINDOW,
     progress::Progress,
-    reference::{self, LightSamples, Reached},
+    reference::{self, Reached},
     registry::Registry,
     scene::{Comparison, Scene, comparison::Layout, variant::LETTERS},
     text::{listed, quoted},
@@ -210,7 +210,8 @@ impl Job<'_> {
 
     /// A view of the picture, for the GPU.
     fn order<'a>(&'a self, part: &'a Part, registry: &'a Registry) -> Order<'a> {
-        Order { part, samples: self.arguments.samples, registry, file: self.file }
+        let Arguments { samples, sampling, .. } = *self.arguments;
+        Order { part, samples, light_samples: sampling.until().samples, registry, file: self.file }
     }
 
     /// True if what is shown of a scene depends on samples of lights with extent.
@@ -387,7 +388,7 @@ fn compares(arguments: &Arguments, plan: &Plan) -> Result<(), String> {
     Err(format!("--numbers compares views, but the picture shows one; {rule}"))
 }
 
-/// The requested renderer. Samples of lights with extent are counted on the CPU.
+/// The requested renderer. It is the CPU's that measures noise, and that is quick with any number of samples.
 fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
     let Some(given) = arguments.sampling.given() else { return Ok(arguments.renderer) };
     if let Some(channel) = arguments.channel.filter(|channel| !channel.rests_on_samples()) {
@@ -398,10 +399,7 @@ fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
         return Err(Failure::Usage(format!("{said}, which does not depend on light samples; {rule}")));
     }
     match arguments.renderer {
-        Renderer::Gpu => Err(Failure::Usage(format!(
-            "{given} cannot be used with --renderer gpu, which always takes {} samples; use --renderer cpu",
-            LightSamples::DEFAULT
-        ))),
+        Renderer::Gpu => arguments.sampling.fits_gpu().map(|()| Renderer::Gpu).map_err(Failure::Usage),
         Renderer::Auto | Renderer::Cpu => Ok(Renderer::Cpu),
     }
 }
@@ -533,7 +531,7 @@ impl Painter {
         let (shown, remark) = self.pictures()?.draw(&job.order(part, registry), job.channel)?;
         let reached = job
             .converges(&part.scene, registry)
-            .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
+            .then_some(Reached { samples: job.arguments.sampling.until().samples, noise: None });
         Ok(Drawn { shown, reached, remarks: remark.into_iter().collect() })
     }
 
@@ -549,7 +547,7 @@ impl Painter {
         let reached = part
             .scene
             .rests_on_samples(registry)
-            .then_some(Reached { samples: LightSamples::DEFAULT, noise: None });
+            .then_some(Reached { samples: job.arguments.sampling.until().samples, noise: None });
         Ok((channels, reached, remark.into_iter().collect()))
     }
 

@@ -175,8 +175,9 @@ impl<'a> Overlaid<'_, 'a> {
             });
         }
         if let Some((map, reason)) = arrangement.map.zip(session.no_difference()) {
-            let font = TextStyle::Body.resolve(ui.style());
-            self.written.push(plate(ui, map, Align2::CENTER_CENTER, map.center(), &reason, font, 0.0));
+            // Objects are in the middle.
+            let (font, low) = (TextStyle::Body.resolve(ui.style()), map.center_bottom() - vec2(0.0, 16.0));
+            self.written.push(plate(ui, map, Align2::CENTER_BOTTOM, low, &reason, font, 0.0));
         }
         ui.scope(|ui| {
             if session.view.presenting {

@@ -18,8 +18,9 @@ use crate::{
 pub struct Until {
     /// Maximum number of samples of each light. A picture without any noise after [`Until::FEWEST_FOR_NOISE`] ends there.
     pub samples: u32,
-    /// Noise at which it ends earlier: the root mean square of the standard error of the luminance over all lit pixels,
-    /// divided by their mean luminance. It is estimated from the blocks of samples of which the picture is the mean;
+    /// Noise at which it ends earlier: the root mean square of the standard error of the luminance over all pixels in which
+    /// samples differ, divided by their mean luminance. So lamps and surroundings in the picture, which have no noise, do not
+    /// count, however bright they are. It is estimated from the blocks of samples of which the picture is the mean;
     /// since these are more evenly distributed together than alone, it is an overestimate.
     pub noise: Option<f32>,
 }
@@ -120,7 +121,7 @@ fn noise_of(mean: &[Vec4], squares: &[f64], blocks: u32, samples: u32) -> f32 {
     let mut sums = [0.0f64; 3];
     for (mean, squares) in mean.iter().zip(squares) {
         let here = f64::from(luminance(mean.truncate()));
-        if here > 0.0 {
+        if here > 0.0 && *squares > 0.0 {
             let of = [f64::from(AT_ONCE) * squares, here, 1.0];
             sums.iter_mut().zip(of).for_each(|(sum, part)| *sum += part);
         }
@@ -128,7 +129,7 @@ fn noise_of(mean: &[Vec4], squares: &[f64], blocks: u32, samples: u32) -> f32 {
     if sums[1] > 0.0 { relative_error(sums, blocks, samples) } else { 0.0 }
 }
 
-/// The noise of a picture from sums over its lit pixels: the squares about the mean luminance, counted once
+/// The noise of a picture from sums over its pixels that have any: the squares about the mean luminance, counted once
 /// for each sample of their block; the mean luminance; the number of pixels. It is the noise of a picture of
 /// several blocks that have this many samples together.
 pub(crate) fn relative_error([squares, luminance, pixels]: [f64; 3], blocks: u32, samples: u32) -> f32 {
@@ -250,12 +251,35 @@ mod tests {
 
     #[test]
     fn noise_is_the_standard_error_over_the_mean() {
-        // Two pixels of the mean luminance 2, four blocks with the sums of squares 12 and 0: variances of the
-        // mean 1 and 0.
-        let mean = [Vec4::new(2.0, 2.0, 2.0, 1.0); 2];
-        let noise = noise_of(&mean, &[12.0, 0.0], 4, 4 * AT_ONCE);
-        assert!((noise - 0.5f32.sqrt() / 2.0).abs() < 1e-6, "{noise}");
+        // Pixels of the mean luminance 2, four blocks with the sums of squares 12 and 3: variances of the mean 1 and 0.25. One
+        // without any is a lamp, and does not count.
+        let mean = [Vec4::new(2.0, 2.0, 2.0, 1.0); 3];
+        let noise = noise_of(&mean, &[12.0, 3.0, 0.0], 4, 4 * AT_ONCE);
+        assert!((noise - 0.625f32.sqrt() / 2.0).abs() < 1e-6, "{noise}");
         assert_eq!(noise_of(&[Vec4::ZERO], &[0.0], 4, 4 * AT_ONCE), 0.0, "darkness has no noise");
+    }
+
+    #[test]
+    fn a_lamp_in_the_picture_does_not_hide_the_noise() {
+        let registry = Registry::builtin();
+        let without = lit(&registry);
+        let mut with = without.clone();
+        let mut lamp = without.lights[0].clone();
+        let eye = without.observer;
+        // Before the object and towards the observer: it lights nothing.
+        let ahead = eye.direction.normalize();
+        lamp.position = Some(eye.position + 2.0 * ahead + 0.7 * ahead.any_orthonormal_vector());
+        lamp.direction = Some(-ahead);
+        lamp.parameters.set("width", Value::Number(0.3));
+        lamp.intensity = 1e4;
+        lamp.parameters.set("visible", Value::Choice("true".into()));
+        with.lights.push(lamp);
+        let noise = |scene: &Scene| until(scene, &registry, 64, None);
+        let [(dark, plain), (bright, lamp)] = [noise(&without), noise(&with)];
+        let brightest = |picture: &Picture| picture.pixels.iter().map(|p| p.x).fold(0.0, f32::max);
+        assert!(brightest(&bright) > 100.0 * brightest(&dark), "the lamp is seen");
+        let ratio = lamp.noise.expect("known") / plain.noise.expect("known");
+        assert!((0.5..2.0).contains(&ratio), "{ratio}");
     }
 
     #[test]

@@ -1,5 +1,5 @@
 //! The noise of converging pictures, measured on the GPU: the root mean square of the standard error of the
-//! luminance over all pixels that are not empty, divided by their mean luminance. Frames are more evenly
+//! luminance over all pixels in which frames differ, divided by their mean luminance. Frames are more evenly
 //! distributed together than alone, so it is an overestimate.
 //!
 //! The pass that adds a frame to the mean updates the sum of the squares about the mean, after B. Welford

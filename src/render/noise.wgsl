@@ -1,4 +1,4 @@
-// The noise of a picture that converges: sums over the pixels in which something is seen, of one workgroup each.
+// The noise of a picture that converges: sums over the pixels in which samples differ, of one workgroup each.
 
 @group(0) @binding(0) var mean: texture_2d<f32>;
 @group(0) @binding(1) var squares: texture_2d<f32>;
@@ -20,8 +20,10 @@ fn sum(
             let here = textureLoad(mean, vec2(x, y), 0);
             let luminance = dot(here.rgb, vec3(0.2126, 0.7152, 0.0722));
             // As in mean.wgsl: where nothing is seen, the opacity is 1.
-            if here.a < 1.0 && luminance > 0.0 {
-                part += vec4(textureLoad(squares, vec2(x, y), 0).r, luminance, 1.0, 0.0);
+            let spread = textureLoad(squares, vec2(x, y), 0).r;
+            // Lamps and surroundings in the picture have no noise, and would hide that of surfaces.
+            if here.a < 1.0 && luminance > 0.0 && spread > 0.0 {
+                part += vec4(spread, luminance, 1.0, 0.0);
             }
         }
     }

@@ -66,6 +66,8 @@ pub(super) struct Order<'a> {
     pub(super) part: &'a Part,
     /// Samples per pixel.
     pub(super) samples: u32,
+    /// Samples of each light with extent.
+    pub(super) light_samples: u32,
     pub(super) registry: &'a Registry,
     /// The picture's file, for messages.
     pub(super) file: &'a Path,

@@ -72,7 +72,10 @@ impl Gpu {
             self.last = Some((key, renderer.map_err(|e| failed(order, e))?));
         }
         match &mut self.last {
-            Some((_, renderer)) => Ok(renderer),
+            Some((_, renderer)) => {
+                renderer.set_light_samples(order.light_samples);
+                Ok(renderer)
+            }
             None => Err(failed(order, GpuError::NoAdapter)),
         }
     }

@@ -52,9 +52,14 @@ pub struct Hemisphere {
     pub side: usize,
     /// Row by row from the top: means over the part of each pixel inside the disc; `None` outside.
     pub pixels: Vec<Option<Above>>,
-    /// The mean of the product over the disc times π: the integral over all lights with extent.
+    /// The mean of the product over the disc times π: the integral over all lights with extent, unless some of them are
+    /// smaller than a pixel.
     pub integral: Vec3,
-    /// Lights with a single direction that shine on the point.
+    /// The same by the samples of the explanation, which find the smallest light.
+    sampled: Vec3,
+    /// The largest values, in any direction that was looked at.
+    pub brightest: Above,
+    /// Lights with a single direction, or smaller than a pixel, that shine on the point.
     pub points: Vec<PointLight>,
     /// Direction to the viewer in the disc.
     pub view: Vec2,
@@ -95,15 +100,20 @@ impl Shining {
         extended.map(|(emitter, record, _)| emitter.seen(record, p, l).radiance * record.colour).sum()
     }
 
-    /// The lights with a single direction above a point.
-    fn points(&self, p: Vec3, frame: &Frame) -> Vec<PointLight> {
-        let point = |(emitter, record, extent): &(Box<dyn Emitter>, LightRecord, bool)| match emitter
-            .incident(record, p)
-        {
-            Incident::From { l, intensity } if !extent && frame.n.dot(l) > 0.0 && intensity != Vec3::ZERO => {
-                Some(PointLight { place: frame.to_local(l).truncate(), light: intensity * record.colour })
-            }
-            _ => None,
+    /// The lights above a point that have a single direction, or whose cone has at most this half-angle.
+    fn points(&self, p: Vec3, frame: &Frame, small: f32) -> Vec<PointLight> {
+        let point = |(emitter, record, extent): &(Box<dyn Emitter>, LightRecord, bool)| {
+            let (l, light) = match emitter.incident(record, p) {
+                _ if *extent => {
+                    emitter.bounds(record, p).filter(|cone| cone.half_angle <= small)?;
+                    let middle = emitter.sample(record, p, Vec2::splat(0.5));
+                    (middle.l, middle.radiance / middle.pdf)
+                }
+                Incident::From { l, intensity } => (l, intensity),
+                _ => return None,
+            };
+            let shines = frame.n.dot(l) > 0.0 && light.is_finite() && light != Vec3::ZERO;
+            shines.then(|| PointLight { place: frame.to_local(l).truncate(), light: light * record.colour })
         };
         self.0.iter().filter_map(point).collect()
     }
@@ -158,6 +168,7 @@ impl Hemisphere {
             Some([arriving, lobe, arriving * lobe])
         };
         let (mut sum, mut count) = (Vec3::ZERO, 0.0f32);
+        let mut most = [Vec3::ZERO; 3];
         let mut pixels = Vec::with_capacity(side * side);
         let fine = (side * FINE) as f32;
         for pixel in 0..side * side {
@@ -168,6 +179,8 @@ impl Hemisphere {
                 let y = (row * FINE + part / FINE) as f32 + 0.5;
                 let Some(found) = at(Vec2::new(2.0 * x / fine - 1.0, 1.0 - 2.0 * y / fine)) else { continue };
                 all.iter_mut().zip(found).for_each(|(sum, part)| *sum += part);
+                let finite = |v: Vec3| if v.is_finite() { v } else { Vec3::ZERO };
+                most.iter_mut().zip(found).for_each(|(most, part)| *most = most.max(finite(part)));
                 n += 1.0;
             }
             (sum, count) = (sum + all[2], count + n);
@@ -176,17 +189,23 @@ impl Hemisphere {
         }
         let integral = std::f32::consts::PI * sum / count.max(1.0);
         let [view, mirror] = [spot.view, mirror(spot.view, frame.n)].map(place);
-        let points = shining.points(spot.position, frame);
+        let points = shining.points(spot.position, frame, 2.0 / side as f32);
         let sharp = surface.sharp(spot.view, frame).iter().next().is_some();
-        Self { side, pixels, integral, points, view, mirror, sharp, solid: surface.interior().is_some() }
+        let solid = surface.interior().is_some();
+        let [arriving, lobe, product] = most;
+        let brightest = Above { arriving, lobe, product };
+        let extended = spot.lights.iter().filter(|lit| lit.integral.is_some());
+        let sampled = extended.map(|lit| lit.response.select(terms)).sum();
+        Self { side, pixels, integral, sampled, brightest, points, view, mirror, sharp, solid }
     }
 
     /// The discs in words: what is missing in them, if anything, and the integral.
     #[must_use]
     pub fn said(&self) -> Vec<String> {
-        // From the pixels of the disc, which give two digits.
-        let integral = rounded_number_or_triple(self.integral, 2);
-        let rest = if self.sharp || self.solid { "the rest of " } else { "" };
+        let apart = self.sharp || self.solid;
+        // The pixels of the disc give two digits, and know nothing of light that does not spread.
+        let integral = rounded_number_or_triple(if apart { self.integral } else { self.sampled }, 2);
+        let rest = if apart { "the rest of " } else { "" };
         let mean = format!(
             "The mean of the product times π is {rest}the light to the observer from lights with extent: about {integral}"
         );
@@ -271,6 +290,22 @@ mod tests {
         assert!(found.pixels.iter().flatten().all(|above| (above.lobe - lobe).abs().max_element() < 1e-3));
         assert_eq!(found.points.len(), 1);
         assert!((found.view + found.mirror).length() < 1e-4, "beside each other's opposite");
+    }
+
+    #[test]
+    fn a_light_smaller_than_a_pixel_is_marked_and_counted() {
+        let mut sun = light("sun", 10.0);
+        sun.parameters.set("diameter", Value::Number(0.05));
+        let (found, sum) = hemisphere(&scene("lambert", vec![sun.clone()]), above);
+        assert!((found.integral - sum).length() > 0.5 * sum.length(), "the discs miss it");
+        let said = found.said().concat();
+        assert!(said.ends_with(&rounded_number_or_triple(sum, 2)), "{said} {sum}");
+        let mark = found.points.first().expect("a mark").light;
+        assert!((mark - 10.0).abs().max_element() < 0.1, "{mark}");
+        // One that fills pixels has no mark, and is as bright as its lamp where it is seen at all.
+        let (found, _) = hemisphere(&scene("lambert", vec![light("rectangle", 10.0)]), above);
+        assert!(found.points.is_empty());
+        assert_eq!(found.brightest.arriving, Vec3::splat(10.0));
     }
 
     #[test]

@@ -65,8 +65,7 @@ impl Hemisphere {
     #[must_use]
     pub fn end_of_scale(&self, disc: &Disc) -> String {
         let white = self.white(disc.of);
-        let values = self.pixels.iter().flatten().map(|above| (disc.of)(above).max_element());
-        let largest = values.filter(|v| v.is_finite()).fold(white, f32::max);
+        let largest = (disc.of)(&self.brightest).max_element().max(white);
         let [white, largest] = [white, largest].map(|v| rounded(v, 3));
         let end = format!("{white} {}", disc.unit).trim_end().to_owned();
         if largest == white { end } else { format!("{end}; brightest: {largest}") }

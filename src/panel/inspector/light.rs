@@ -2,7 +2,7 @@
 
 use super::part::{header, knob_of, section, type_knob, vector};
 use crate::{
-    light::LightEntry,
+    light::{Declaration, LightEntry},
     optics::temperature,
     panel::{
         knob::{self, Amount, Caption},
@@ -70,7 +70,8 @@ fn equation(ui: &mut Ui, entry: &LightEntry) {
         theme::note(ui, d.summary);
     }
     maths::equation(ui, &[EquationPart::new(Term::Total, d.equation)], |symbol| match symbol {
-        "I" => Some("the intensity of the light".to_owned()),
+        letter if letter == strength(d).0 => Some(strength(d).1.to_owned()),
+        "L_s" => Some("the luminance of its source, cd/m²".to_owned()),
         other => {
             let own = entry.parameters.iter().find(|p| maths::same_symbol(p.symbol, other));
             own.map(|p| p.label).or_else(|| maths::meaning(other)).map(str::to_owned)
@@ -78,12 +79,22 @@ fn equation(ui: &mut Ui, entry: &LightEntry) {
     });
 }
 
+/// The letter of a light's intensity in its equations, and its meaning.
+fn strength(d: &Declaration) -> (&'static str, &'static str) {
+    match d.unit {
+        "cd/m²" => ("L", "the luminance of the light, the same from each of its points"),
+        "cd" => ("I", "the intensity of the light: what it sends into each direction"),
+        _ => ("I", "the intensity of the light"),
+    }
+}
+
 /// The brightness of a light: its intensity, or, for types that have one, its luminous flux.
 fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Option<Edit> {
     let d = entry.declaration;
     let intensity = f64::from(light.intensity_as(entry));
     let help = unit_help(d.unit);
-    let caption = Caption { symbol: "I", unit: d.unit, help, ..Caption::of(&Light::intensity) };
+    let (symbol, meaning) = strength(d);
+    let caption = Caption { symbol, unit: d.unit, help, ..Caption::of(&Light::intensity) };
     let default = f64::from(d.default_intensity);
     let limits = limits::intensity(d);
     let Some(solid_angle) = entry.solid_angle(&light.parameters) else {
@@ -101,12 +112,12 @@ fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Opt
         _ => ("lm", "", "factor"),
     };
     let conversion = if as_flux {
-        format!("I = Φ / ({} {of}) = {}{unit}", rounded(solid_angle), rounded(intensity))
+        format!("{symbol} = Φ / ({} {of}) = {}{unit}", rounded(solid_angle), rounded(intensity))
     } else {
-        format!("Φ = I · {} {of} = {} lm", rounded(solid_angle), rounded(flux))
+        format!("Φ = {symbol} · {} {of} = {} lm", rounded(solid_angle), rounded(flux))
     };
     maths::equation_of(ui, &[(Term::Total, &conversion)], maths::Sizes::default(), |symbol| match symbol {
-        "I" => Some("the intensity of the light: what it sends into each direction".to_owned()),
+        letter if letter == symbol => Some(meaning.to_owned()),
         "Φ" => Some("the luminous flux: what it sends out in all directions together".to_owned()),
         _ => None,
     });

@@ -22,6 +22,7 @@ use bevy::{
 use super::gpu::{GpuError, GpuRenderer, PATIENCE};
 use crate::{
     channel::DebugChannel,
+    reference::LightSamples,
     registry::Registry,
     render::{
         camera::{ForDisplay, PictureCamera},
@@ -70,8 +71,8 @@ impl GpuRenderer {
         }
     }
 
-    /// True if a frame cannot take all samples: each of them follows light through a mesh, and software Vulkan ends all
-    /// loops of a pixel after 65 536 turns together.
+    /// True if a frame cannot take all samples: there are more than usual, or each of them follows light through a mesh, and
+    /// software Vulkan ends all loops of a pixel after 65 536 turns together.
     fn takes_parts(&self) -> bool {
         let world = self.app.world();
         let (scene, registry) = (&world.resource::<CurrentScene>().0, world.resource::<Registry>());
@@ -80,7 +81,8 @@ impl GpuRenderer {
             model.is_some_and(|model| model.passage(&object.material).solid)
         };
         let at_once = self.channel.is_some_and(DebugChannel::is_of_remaining);
-        !at_once && scene.shown().any(is_body) && scene.rests_on_samples(registry)
+        let many = world.resource::<Convergence>().target > LightSamples::DEFAULT;
+        !at_once && (many || scene.shown().any(is_body)) && scene.rests_on_samples(registry)
     }
 
     /// Draws frames with a part of the samples each, or all samples in each frame.
@@ -171,8 +173,7 @@ impl GpuRenderer {
 
     /// Draws frames until nothing is waiting to be loaded or compiled.
     fn draw_frames(&mut self) -> Result<(), GpuError> {
-        let start = Instant::now();
-        let mut ready = 0;
+        let (mut ready, mut state, mut since) = (0, None, Instant::now());
         // The first frame is drawn before the target, hence two; but a slow one for which everything was
         // ready is not repeated.
         while ready < 2 {
@@ -189,11 +190,22 @@ impl GpuRenderer {
                 // Another process is using the processors for trials.
                 std::thread::sleep(Duration::from_millis(2));
             }
-            if start.elapsed() > PATIENCE {
+            // A software driver may take minutes for large shaders, one after the other.
+            let now = Some((ready, self.prepared(), self.made()));
+            if state != now {
+                (state, since) = (now, Instant::now());
+            } else if since.elapsed() > PATIENCE {
                 return Err(GpuError::TimedOut { limit: PATIENCE, waiting: self.missing() });
             }
         }
         Ok(())
+    }
+
+    /// The number of pipelines that are compiled.
+    fn made(&self) -> usize {
+        let Some(render_app) = self.app.get_sub_app(RenderApp) else { return 0 };
+        let pipelines = render_app.world().resource::<PipelineCache>().pipelines();
+        pipelines.filter(|p| matches!(p.state, CachedPipelineState::Ok(_))).count()
     }
 
     /// The part that is not ready yet, for an error.

@@ -78,6 +78,38 @@ fn converged(scene: &Scene, samples: u32, noise: Option<f32>) -> (reference::Pic
 }
 
 #[test]
+fn the_gpu_takes_as_many_samples_as_it_is_told() {
+    let folder = folder();
+    let samples = |renderer: &str, count: &str| {
+        let (picture, said) = drawn(
+            folder.path(),
+            &[
+                "--renderer",
+                renderer,
+                "--light-samples",
+                count,
+                "--size",
+                "64x36",
+                "--samples",
+                "1",
+                "-o",
+                "p.png",
+                "softbox.json",
+            ],
+        );
+        assert!(said.contains(&format!("{count} samples of each light")), "{said}");
+        picture
+    };
+    let off = |a: &[u8], b: &[u8]| a.iter().zip(b).map(|(a, b)| u64::from(a.abs_diff(*b))).sum::<u64>();
+    let few = samples("gpu", "2");
+    assert!(
+        off(&few, &samples("cpu", "2")) * 4 < off(&few, &samples("cpu", "256")),
+        "others than on the CPU"
+    );
+    assert!(off(&samples("gpu", "300"), &samples("cpu", "300")) * 4 < off(&few, &samples("cpu", "300")));
+}
+
+#[test]
 fn wrong_samples_and_noise_are_refused_with_what_would_be_right() {
     let folder = folder();
     let whole = "it must be a whole number from 1 to 1048576, e.g. 1000";
@@ -105,12 +137,12 @@ fn wrong_samples_and_noise_are_refused_with_what_would_be_right() {
     }
     for (more, expected) in [
         (
-            &["--renderer", "gpu", "--light-samples", "9"][..],
-            "--light-samples cannot be used with --renderer gpu, which always takes 256 samples; use --renderer cpu",
+            &["--renderer", "gpu", "--light-samples", "4097"][..],
+            "--light-samples is 4097, but with --renderer gpu it must be at most 4096; use --renderer cpu",
         ),
         (
             &["--renderer", "gpu", "--noise", "1", "--light-samples", "99"],
-            "--light-samples and --noise cannot be used with --renderer gpu",
+            "--noise cannot be used with --renderer gpu, which does not measure it; use --light-samples, or --renderer cpu",
         ),
         (
             &["--channel", "normals", "--noise", "1"],
