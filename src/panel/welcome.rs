@@ -237,33 +237,75 @@ pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Actio
     let columns = (1..=columns).rev().find(has_room).unwrap_or(1);
     let width = (room / columns as f32).clamp(least, most);
     ui.set_width(columns as f32 * width);
+    let heights: Vec<_> = (0..EXAMPLES.len()).map(|i| Entry::new(ui, i, width).height).collect();
+    let ends = balanced(&heights, columns);
     ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
-            let each = EXAMPLES.len().div_ceil(columns);
-            for column in 0..columns {
-                let examples = (column * each..EXAMPLES.len()).take(each);
+            let mut first = 0;
+            for end in ends {
                 ui.vertical(|ui| {
                     ui.set_width(width);
-                    examples.for_each(|i| entry(ui, i, registry, actions));
+                    (first..end).for_each(|i| entry(ui, i, registry, actions));
                 });
+                first = end;
             }
         });
     });
 }
 
+/// The ends of columns that are as equally high as the order allows.
+fn balanced(heights: &[f32], columns: usize) -> Vec<usize> {
+    let filled = |most: f32| {
+        let (mut ends, mut height) = (Vec::new(), 0.0);
+        for (i, one) in heights.iter().enumerate() {
+            if height > 0.0 && height + one > most {
+                ends.push(i);
+                height = 0.0;
+            }
+            height += one;
+        }
+        ends.push(heights.len());
+        ends
+    };
+    let mut most = heights.iter().sum::<f32>() / columns.max(1) as f32;
+    let mut ends = filled(most);
+    while ends.len() > columns.max(1) {
+        most += 8.0;
+        ends = filled(most);
+    }
+    ends
+}
+
+/// The texts of an entry, laid out.
+struct Entry {
+    name: Arc<Galley>,
+    words: Arc<Galley>,
+    /// Left and upper edge of the words in the entry.
+    at: Vec2,
+    height: f32,
+}
+
+impl Entry {
+    fn new(ui: &Ui, i: usize, width: f32) -> Self {
+        let example = &EXAMPLES[i];
+        let left = 4.0 + ROW.x + 10.0;
+        let width = width - left - 12.0;
+        let name = theme::elided(ui, &example.name, theme::bold(ui), Palette::here(ui).text, width);
+        let mut job = maths::prose(ui, &example.description, TextStyle::Small);
+        job.wrap.max_width = width;
+        let words = ui.painter().layout_job(job);
+        let below = name.size().y + 3.0;
+        let height = (below + words.size().y + 2.0).max(ROW.y) + 8.0;
+        Self { name, words, at: vec2(left, below), height }
+    }
+}
+
 /// The entry of an example: picture, name and description.
 fn entry(ui: &mut Ui, i: usize, registry: &Registry, actions: &mut Vec<Action>) {
-    let example = &EXAMPLES[i];
     let palette = Palette::here(ui);
-    let left = 4.0 + ROW.x + 10.0;
-    let width = ui.available_width() - left - 12.0;
-    let name = theme::elided(ui, &example.name, theme::bold(ui), palette.text, width);
-    let mut job = maths::prose(ui, &example.description, TextStyle::Small);
-    job.wrap.max_width = width;
-    let words = ui.painter().layout_job(job);
-    let below = name.size().y + 3.0;
-    let height = (below + words.size().y + 2.0).max(ROW.y) + 8.0;
+    let Entry { name, words, at, height } = Entry::new(ui, i, ui.available_width());
+    let (left, below) = (at.x, at.y);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     if response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 4.0, palette.hovered);
@@ -293,4 +335,18 @@ fn frame(ui: &Ui, rect: Rect, response: &Response) {
     let (width, edge) = if theme::is_hot(response) { (2.0, palette.accent) } else { (1.0, palette.line) };
     let stroke = Stroke::new(width, edge);
     ui.painter().rect_stroke(rect, 2.0, stroke, StrokeKind::Inside);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_equally_high_in_the_order_of_the_entries() {
+        assert_eq!(balanced(&[1.0; 6], 3), [2, 4, 6]);
+        assert_eq!(balanced(&[4.0, 1.0, 1.0, 1.0, 1.0], 2), [1, 5]);
+        assert_eq!(balanced(&[5.0, 90.0], 1), [2]);
+        assert!(balanced(&[3.0, 50.0, 2.0, 41.0, 7.0], 3).len() <= 3);
+        assert_eq!(balanced(&[], 3), [0]);
+    }
 }

@@ -205,7 +205,7 @@ impl Axis {
     }
 }
 
-/// The name of a part, as the window shows it: "Point light 1".
+/// The name of a part, as the window shows it: "Point 1".
 pub(super) fn called(part: Part, scene: &Scene, registry: &Registry) -> String {
     let selection = match part {
         Part::Light(i) => Selection::Light(i),
@@ -336,10 +336,10 @@ mod tests {
         );
         let of = |axis: Result<Axis, String>| caption::line(&axis.expect("valid").summary());
         let moved = Axis::path("lights[0]=[1, 8, 9]..[9, 8, 9]:3", None, &scene, &registry);
-        assert_eq!(of(moved), "Point light 1 moved: (1, 8, 9) m to (9, 8, 9) m, 3 values");
-        assert!(of(Axis::turn("lights[0]=90:3", &scene, &registry)).starts_with("Point light 1 turned: "));
+        assert_eq!(of(moved), "Point 1 moved: (1, 8, 9) m to (9, 8, 9) m, 3 values");
+        assert!(of(Axis::turn("lights[0]=90:3", &scene, &registry)).starts_with("Point 1 turned: "));
         let intensity = of(Axis::vary("lights[0].intensity=1,2", &scene, &registry));
-        assert!(intensity.starts_with("intensity of Point light 1: "), "{intensity}");
+        assert!(intensity.starts_with("intensity of Point 1: "), "{intensity}");
         // The symbols of headings, too.
         let mut shiny = Variant::default();
         shiny.material.set("k_s", Value::Number(0.9));
