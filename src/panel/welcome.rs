@@ -37,6 +37,8 @@ const ROW: Vec2 = vec2(96.0, 54.0);
 const LEAST: f32 = 320.0;
 /// Maximum and minimum width of the menu, in points.
 const MENU: [f32; 2] = [580.0, 260.0];
+/// Maximum number of lines of a description that is shortened.
+const SHORT: usize = 2;
 
 /// The strip below the picture, with three sections.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -237,7 +239,20 @@ pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Actio
     let columns = (1..=columns).rev().find(has_room).unwrap_or(1);
     let width = (room / columns as f32).clamp(least, most);
     ui.set_width(columns as f32 * width);
-    let heights: Vec<_> = (0..EXAMPLES.len()).map(|i| Entry::new(ui, i, width).height).collect();
+    let heights =
+        |lines| -> Vec<_> { (0..EXAMPLES.len()).map(|i| Entry::new(ui, i, width, lines).height).collect() };
+    // Descriptions are shortened if that saves scrolling; tooltips have the rest.
+    let least = heights(SHORT);
+    let fits = |heights: &[f32]| {
+        let mut first = 0;
+        balanced(heights, columns).into_iter().all(|end| {
+            let column = heights[first..end].iter().sum::<f32>();
+            first = end;
+            column <= height
+        })
+    };
+    let whole = heights(usize::MAX);
+    let (heights, lines) = if fits(&least) && !fits(&whole) { (least, SHORT) } else { (whole, usize::MAX) };
     let ends = balanced(&heights, columns);
     ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
         ui.horizontal_top(|ui| {
@@ -246,7 +261,7 @@ pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Actio
             for end in ends {
                 ui.vertical(|ui| {
                     ui.set_width(width);
-                    (first..end).for_each(|i| entry(ui, i, registry, actions));
+                    (first..end).for_each(|i| entry(ui, (i, lines), registry, actions));
                 });
                 first = end;
             }
@@ -287,13 +302,15 @@ struct Entry {
 }
 
 impl Entry {
-    fn new(ui: &Ui, i: usize, width: f32) -> Self {
+    /// The entry of an example with at most so many lines of description.
+    fn new(ui: &Ui, i: usize, width: f32, lines: usize) -> Self {
         let example = &EXAMPLES[i];
         let left = 4.0 + ROW.x + 10.0;
         let width = width - left - 12.0;
         let name = theme::elided(ui, &example.name, theme::bold(ui), Palette::here(ui).text, width);
         let mut job = maths::prose(ui, &example.description, TextStyle::Small);
         job.wrap.max_width = width;
+        job.wrap.max_rows = lines;
         let words = ui.painter().layout_job(job);
         let below = name.size().y + 3.0;
         let height = (below + words.size().y + 2.0).max(ROW.y) + 8.0;
@@ -302,9 +319,9 @@ impl Entry {
 }
 
 /// The entry of an example: picture, name and description.
-fn entry(ui: &mut Ui, i: usize, registry: &Registry, actions: &mut Vec<Action>) {
+fn entry(ui: &mut Ui, (i, lines): (usize, usize), registry: &Registry, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
-    let Entry { name, words, at, height } = Entry::new(ui, i, ui.available_width());
+    let Entry { name, words, at, height } = Entry::new(ui, i, ui.available_width(), lines);
     let (left, below) = (at.x, at.y);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     if response.hovered() || response.has_focus() {
@@ -314,8 +331,10 @@ fn entry(ui: &mut Ui, i: usize, registry: &Registry, actions: &mut Vec<Action>) 
     face(ui, i, picture, &response, registry);
     frame(ui, picture, &response);
     let at = rect.min + vec2(left, 5.0);
+    let is_short = words.elided;
     ui.painter().galley(at + vec2(0.0, below), words, palette.text);
     ui.painter().galley(at, name, palette.text);
+    let response = if is_short { maths::tip(response, &EXAMPLES[i].description) } else { response };
     if response.clicked() {
         actions.push(Action::OpenExample(i));
         ui.close();

@@ -182,7 +182,8 @@ fn a_bubble_is_finite_and_invisible_in_uniform_light() {
     let picture = on_cpu(&scene);
     let covered: Vec<_> = picture.pixels.iter().filter(|p| p.w == 1.0).map(|p| p.truncate()).collect();
     let [most, mean] = seen_in_furnace(&covered);
-    assert!(covered.len() > 300 && most < 3e-2 && mean < 0.5 / 255.0, "{most} {mean}");
+    // OpenPBR interpolates the albedo of its boundary in a table: 1 % is left.
+    assert!(covered.len() > 300 && most < 0.08 && mean < 0.015, "{most} {mean}");
     let rough = on_cpu(&bubble(0.5));
     assert!(rough.pixels.iter().all(|p| p.is_finite() && p.min_element() >= 0.0));
 }
