@@ -18,7 +18,7 @@ const MOST_ON_GPU: u32 = 4096;
 /// Default maximum number of samples if the noise decides.
 const MOST_FOR_NOISE: u32 = 1 << 16;
 
-/// The samples of lights with extent, as given on the command line; the CPU renderer counts them.
+/// The samples of lights with extent, as given on the command line.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub(super) struct Sampling {
     /// Samples of each light with extent, and as many of the directions in which objects reflect most: 1 to 1048576, on the GPU

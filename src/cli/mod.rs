@@ -303,7 +303,8 @@ enum Command {
     ///
     /// Reads CSV from standard input, with the column mu: the cosine of the angle between the normal and the view,
     /// above 0 and at most 1. Adds the columns e_r, e_g, e_b: the directional albedo, the fraction of uniform light
-    /// from above that the surface reflects to the observer; light that passes through is not counted. Anisotropic models are seen along the tangent.
+    /// from above that the surface reflects to the observer; light that passes through is not counted. Anisotropic
+    /// models are seen along the tangent.
     Albedo(evaluate::Arguments),
     /// Plot models: BRDF, albedo, Fresnel factor, distribution, masking, image slice; as SVG, PNG or CSV
     ///

@@ -388,7 +388,7 @@ fn compares(arguments: &Arguments, plan: &Plan) -> Result<(), String> {
     Err(format!("--numbers compares views, but the picture shows one; {rule}"))
 }
 
-/// The requested renderer. It is the CPU's that measures noise, and that is quick with any number of samples.
+/// The requested renderer. With a number of samples or a noise it is the CPU's, unless the GPU's is asked for.
 fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
     let Some(given) = arguments.sampling.given() else { return Ok(arguments.renderer) };
     if let Some(channel) = arguments.channel.filter(|channel| !channel.rests_on_samples()) {

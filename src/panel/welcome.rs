@@ -239,29 +239,28 @@ pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Actio
     let columns = (1..=columns).rev().find(has_room).unwrap_or(1);
     let width = (room / columns as f32).clamp(least, most);
     ui.set_width(columns as f32 * width);
-    let heights =
-        |lines| -> Vec<_> { (0..EXAMPLES.len()).map(|i| Entry::new(ui, i, width, lines).height).collect() };
-    // Descriptions are shortened if that saves scrolling; tooltips have the rest.
-    let least = heights(SHORT);
-    let fits = |heights: &[f32]| {
-        let mut first = 0;
-        balanced(heights, columns).into_iter().all(|end| {
-            let column = heights[first..end].iter().sum::<f32>();
-            first = end;
-            column <= height
-        })
+    let laid = |lines| -> (Vec<_>, Vec<_>) {
+        let entries = (0..EXAMPLES.len()).map(|i| Entry::new(ui, i, width, lines));
+        entries.map(|entry| (entry.height, entry)).unzip()
     };
-    let whole = heights(usize::MAX);
-    let (heights, lines) = if fits(&least) && !fits(&whole) { (least, SHORT) } else { (whole, usize::MAX) };
+    let fits = |heights: &[f32]| filled(heights, height).len() <= columns;
+    let mut all = laid(usize::MAX);
+    if !fits(&all.0) {
+        // Descriptions are shortened if that saves scrolling; tooltips have the rest.
+        all = Some(laid(SHORT)).filter(|short| fits(&short.0)).unwrap_or(all);
+    }
+    let (heights, entries) = all;
     let ends = balanced(&heights, columns);
     ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
+            let mut entries = entries.into_iter().enumerate();
             let mut first = 0;
             for end in ends {
                 ui.vertical(|ui| {
                     ui.set_width(width);
-                    (first..end).for_each(|i| entry(ui, (i, lines), registry, actions));
+                    let column = entries.by_ref().take(end - first);
+                    column.for_each(|(i, laid)| entry(ui, i, laid, registry, actions));
                 });
                 first = end;
             }
@@ -271,24 +270,28 @@ pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Actio
 
 /// The ends of columns that are as equally high as the order allows.
 fn balanced(heights: &[f32], columns: usize) -> Vec<usize> {
-    let filled = |most: f32| {
-        let (mut ends, mut height) = (Vec::new(), 0.0);
-        for (i, one) in heights.iter().enumerate() {
-            if height > 0.0 && height + one > most {
-                ends.push(i);
-                height = 0.0;
-            }
-            height += one;
+    let columns = columns.max(1);
+    let mut most = heights.iter().sum::<f32>() / columns as f32;
+    loop {
+        let ends = filled(heights, most);
+        if ends.len() <= columns {
+            return ends;
         }
-        ends.push(heights.len());
-        ends
-    };
-    let mut most = heights.iter().sum::<f32>() / columns.max(1) as f32;
-    let mut ends = filled(most);
-    while ends.len() > columns.max(1) {
         most += 8.0;
-        ends = filled(most);
     }
+}
+
+/// The ends of columns filled up to a height, one after the other.
+fn filled(heights: &[f32], most: f32) -> Vec<usize> {
+    let (mut ends, mut height) = (Vec::new(), 0.0);
+    for (i, one) in heights.iter().enumerate() {
+        if height > 0.0 && height + one > most {
+            ends.push(i);
+            height = 0.0;
+        }
+        height += one;
+    }
+    ends.push(heights.len());
     ends
 }
 
@@ -319,9 +322,9 @@ impl Entry {
 }
 
 /// The entry of an example: picture, name and description.
-fn entry(ui: &mut Ui, (i, lines): (usize, usize), registry: &Registry, actions: &mut Vec<Action>) {
+fn entry(ui: &mut Ui, i: usize, laid: Entry, registry: &Registry, actions: &mut Vec<Action>) {
     let palette = Palette::here(ui);
-    let Entry { name, words, at, height } = Entry::new(ui, i, ui.available_width(), lines);
+    let Entry { name, words, at, height } = laid;
     let (left, below) = (at.x, at.y);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     if response.hovered() || response.has_focus() {
