@@ -47,7 +47,8 @@ fn hundred(c: &mut Criterion) {
         b.iter_with_setup(
             || tempfile::tempdir().expect("a folder"),
             |folder| {
-                files(&sweep, &settings, folder.path(), &|_| Ok(()), &Progress::NONE).expect("written");
+                files(&sweep, &settings, (folder.path(), false), &|_| Ok(()), &Progress::NONE)
+                    .expect("written");
                 folder
             },
         );
