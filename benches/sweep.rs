@@ -1,4 +1,5 @@
-//! A sweep of a hundred default pictures beside a hundred bare renders, and the same with files.
+//! A sweep of a hundred default pictures beside a hundred bare renders, and the same with files; the encoding of a film; and a row
+//! of 25 spheres beside 25 single ones, each read from JSON and drawn.
 #![allow(missing_docs)]
 
 use criterion::{Criterion, criterion_group, criterion_main};

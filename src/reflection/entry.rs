@@ -227,8 +227,9 @@ impl ModelEntry {
             surface.spreads() || surface.interior().is_some_and(disperses)
         };
         // Most models spread light whatever their parameters are, and some take long to prepare.
-        !self.passage(values).sharp && !self.passage(values).solid
-            || samples(self.instantiate(values, Encoding::default()))
+        let Passage { sharp, solid, .. } = self.passage(values);
+        let may_be_exact = sharp || solid;
+        !may_be_exact || samples(self.instantiate(values, Encoding::default()))
     }
 
     /// True if the parameters decide how light passes.

@@ -229,3 +229,48 @@ fn odd_bodies_are_finite() {
         }
     }
 }
+
+/// The same bodies on both renderers.
+#[test]
+fn both_renderers_draw_the_same_odd_bodies() {
+    let mut renderer = renderer();
+    let black = [colour([0, 0, 0]), number("distance", 0.001)];
+    let mut cases = vec![
+        ("no refraction", body("sphere", "sky", &[number("refractive_index", 1.0)])),
+        ("hardly any", body("sphere", "sky", &[number("refractive_index", 1.0005)])),
+        ("black", body("sphere", "sky", &black)),
+    ];
+    for kind in ["point", "sphere", "rectangle"] {
+        let mut scene = body("sphere", "sky", &[]);
+        let mut lamp: Light = close_up("sphere", kind).lights.remove(0);
+        lamp.position = Some(scene.objects[0].position);
+        scene.lights.push(lamp);
+        cases.push((kind, scene));
+    }
+    let is_light = |light: &[Vec3]| light.iter().all(|p| p.is_finite() && p.min_element() >= 0.0);
+    for (what, scene) in &cases {
+        let shown = on_gpu(&mut renderer, scene);
+        assert!(is_light(&shown), "{what}");
+        let share = unlike(&shown, &on_cpu(scene));
+        assert!(share < 0.01, "{what}: {share}");
+        // The wrong twin: common glass, in which no lamp is seen.
+        if !["point", "sphere", "rectangle"].contains(what) {
+            assert!(unlike(&shown, &on_cpu(&body("sphere", "sky", &[]))) > 0.1, "{what}");
+        }
+    }
+    // An index below 1, and the observer inside.
+    let mut bubble = body("sphere", "sky", &[number("transmission_weight", 1.0), number("roughness", 0.0)]);
+    bubble.reflection_model = "openpbr".to_owned();
+    bubble.objects[0].material.set("specular_ior", Value::Number(1.0 / 1.5));
+    let (shown, cpu) = (on_gpu(&mut renderer, &bubble), on_cpu(&bubble));
+    assert!(is_light(&shown));
+    let within: Vec<_> = cpu.pixels.iter().zip(&shown).filter(|(cpu, _)| cpu.w == 1.0).collect();
+    let ours: f32 = within.iter().map(|(cpu, _)| cpu.y).sum();
+    let theirs: f32 = within.iter().map(|(_, gpu)| gpu.y).sum();
+    assert!(within.len() > 300 && (theirs / ours - 1.0).abs() < 0.01, "{theirs} {ours}");
+    for values in [&[][..], &[number("roughness", 0.5)]] {
+        let mut inside = body("sphere", "sky", values);
+        inside.observer = Observer::at(inside.objects[0].position, Vec3::NEG_Z);
+        assert!(is_light(&on_gpu(&mut renderer, &inside)), "{values:?}");
+    }
+}
