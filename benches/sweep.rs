@@ -1,4 +1,5 @@
-//! A sweep of a hundred default pictures beside a hundred bare renders, and the same with files.
+//! A sweep of a hundred default pictures beside a hundred bare renders, and the same with files; the encoding of a film; and a row
+//! of 25 spheres beside 25 single ones, each read from JSON and drawn.
 #![allow(missing_docs)]
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -47,7 +48,8 @@ fn hundred(c: &mut Criterion) {
         b.iter_with_setup(
             || tempfile::tempdir().expect("a folder"),
             |folder| {
-                files(&sweep, &settings, folder.path(), &|_| Ok(()), &Progress::NONE).expect("written");
+                files(&sweep, &settings, (folder.path(), false), &|_| Ok(()), &Progress::NONE)
+                    .expect("written");
                 folder
             },
         );

@@ -241,12 +241,10 @@ impl Job<'_> {
         let folder = &self.arguments.output;
         (0..self.sweep.count()).try_for_each(|i| outputs::picture(&folder.join(self.sweep.file(i)), read))?;
         let (settings, check) = (self.settings(), self.check());
-        if !self.arguments.overwrite {
-            self.spare_others(&settings)?;
-        }
         files::tidy(folder).iter().for_each(super::complain);
         let written = gauged(&self.what(), self.options, |progress| {
-            sweep::files(self.sweep, &settings, folder, &check, progress)
+            let into = (folder.as_path(), self.arguments.overwrite);
+            sweep::files(self.sweep, &settings, into, &check, progress)
         })?;
         let kept = kept(written.kept);
         self.options.tell(format_args!(
@@ -256,20 +254,6 @@ impl Job<'_> {
         ));
         self.strangers(folder);
         Ok(())
-    }
-
-    /// Refuses to replace pictures of something else, which have the same names.
-    fn spare_others(&self, settings: &Settings) -> Outcome {
-        let folder = &self.arguments.output;
-        let others = sweep::others(self.sweep, settings, folder)?;
-        let Some(first) = others.first() else { return Ok(()) };
-        Err(Failure::Write(format!(
-            "{} has {} in the place of this sweep's, such as {}: drawn with another scene, other files, settings or \
-             version; --overwrite replaces them, -o FOLDER writes elsewhere",
-            folder.shown(),
-            plural(others.len(), "picture"),
-            Path::new(first.file_name().unwrap_or_default()).shown()
-        )))
     }
 
     /// Says that the folder has pictures of something else, such as of another sweep, which nobody should take for these.

@@ -9,6 +9,34 @@ use std::{
 use super::{Document, Extent, Selection, history::Label};
 use crate::{registry::Registry, scene::Scene};
 
+/// The name that a part of a scene has in a new document, as [`Document::name_of`] gives it, without one.
+#[must_use]
+pub fn name_in(scene: &Scene, part: Selection, registry: &Registry) -> String {
+    fn number<'a>(types: impl Iterator<Item = &'a str>, i: usize, own: &str) -> usize {
+        types.take(i + 1).filter(|id| *id == own).count()
+    }
+    match part {
+        Selection::Room => "Room".to_owned(),
+        Selection::Observer => "Observer".to_owned(),
+        Selection::Light(i) => scene.lights.get(i).map_or_else(
+            || "light".to_owned(),
+            |light| {
+                let id = light.light_type.as_str();
+                let types = scene.lights.iter().map(|light| light.light_type.as_str());
+                name(&light.name, light_type(id, registry), number(types, i, id))
+            },
+        ),
+        Selection::Object(i) => scene.objects.get(i).map_or_else(
+            || "object".to_owned(),
+            |object| {
+                let id = object.object_type.as_str();
+                let types = scene.objects.iter().map(|object| object.object_type.as_str());
+                name(&object.name, object_type(id, registry), number(types, i, id))
+            },
+        ),
+    }
+}
+
 impl Document {
     /// The name of a part, or else its type and its number among parts of that type.
     #[must_use]
@@ -167,5 +195,40 @@ impl Document {
         let mut named = self.scene.clone();
         self.write_names(Extent::All, &mut named, registry);
         named
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Light, Object};
+
+    #[test]
+    fn a_scene_names_its_parts_as_a_new_document_of_it_does() {
+        let registry = Registry::builtin();
+        let object = |object_type: &str, name: Option<&str>| Object {
+            object_type: object_type.to_owned(),
+            name: name.map(str::to_owned),
+            ..Object::default()
+        };
+        let light = |light_type: &str| Light { light_type: light_type.to_owned(), ..Light::default() };
+        let scene = Scene {
+            objects: vec![
+                object("sphere", None),
+                object("cube", None),
+                object("sphere", Some("ball")),
+                object("sphere", None),
+                object("unknown", None),
+            ],
+            lights: ["point", "sun", "point"].map(light).to_vec(),
+            ..Scene::default()
+        };
+        let document = Document::new(scene.clone());
+        let objects = (0..6).map(Selection::Object);
+        let parts = objects.chain((0..4).map(Selection::Light)).chain([Selection::Room, Selection::Observer]);
+        for part in parts {
+            assert_eq!(name_in(&scene, part, &registry), document.name_of(part, &registry), "{part:?}");
+        }
+        assert_eq!(name_in(&scene, Selection::Object(3), &registry), "Sphere 3");
     }
 }

@@ -22,6 +22,8 @@ const LEAST: f32 = 1e-3;
 const LISTED: usize = 8;
 /// Cosine of the angle to the direction of view below which light comes from straight ahead.
 const STRAIGHT: f32 = 0.999_99;
+/// Change of the height of a direction below which a ray is bent to the side only, degrees.
+const LEVEL: f32 = 0.05;
 
 /// Refraction at a point.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +36,8 @@ pub struct Refraction {
     pub incidence: f32,
     /// The angle of the ray to the normal inside, degrees; `None` where everything is reflected.
     pub refracted: Option<f32>,
+    /// The direction of that ray.
+    pub enters: Option<Vec3>,
     /// The angle inside a dense body, or outside a thin one, beyond which everything is reflected, degrees.
     pub critical: f32,
     /// The part of the light that the boundary reflects where the view meets it.
@@ -61,6 +65,7 @@ impl Refraction {
             index,
             incidence: angle(frame.n.dot(view)),
             refracted: ray.map(|ray| angle(-frame.n.dot(ray))),
+            enters: ray,
             critical: critical_angle(index).to_degrees(),
             reflectance: dielectric(index, frame.n.dot(view)),
             inside: body.map(|body| body.inside(at, view, frame.n).seen_by(surface.entering(view, frame))),
@@ -119,15 +124,14 @@ impl Refraction {
                 "The light comes from straight ahead: what one face bends, the other bends back.".to_owned(),
             );
         }
-        let inside = match last {
-            0 => String::new(),
-            last => format!(", is reflected inside {}", plural(last, "time")),
+        let bent = match (last, self.enters) {
+            (0, Some(enters)) => twice(look, enters, from),
+            _ => format!(
+                "the ray is bent where it enters, is reflected inside {} and bent where it leaves.",
+                plural(last, "time")
+            ),
         };
-        let [ahead, from] = [look, from].map(elevation);
-        Some(format!(
-            "You look {ahead}, and what you see there is {from}: the ray is bent where it enters{inside} and bent where it \
-             leaves."
-        ))
+        Some(format!("You look {}, and what you see there is {}: {bent}", elevation(look), elevation(from)))
     }
 
     /// The angles outside and inside.
@@ -166,6 +170,33 @@ impl Refraction {
         };
         [critical, reflected]
     }
+}
+
+/// The two bends of a ray that goes straight through a body, and what follows if both are up or both down, past the horizon.
+fn twice(look: Vec3, enters: Vec3, from: Vec3) -> String {
+    let [bend, again] = [[look, enters], [enters, from]].map(|[before, after]| {
+        let turn = height(after) - height(before);
+        if turn.abs() < LEVEL {
+            "aside"
+        } else if turn < 0.0 {
+            "down"
+        } else {
+            "up"
+        }
+    });
+    if bend != again {
+        return format!("the ray is bent {bend} where it enters and {again} where it leaves.");
+    }
+    let seen = match bend {
+        "down" if look.y > 0.0 && from.y < 0.0 => {
+            " So what is below is seen above: the picture is upside down."
+        }
+        "up" if look.y < 0.0 && from.y > 0.0 => {
+            " So what is above is seen below: the picture is upside down."
+        }
+        _ => "",
+    };
+    format!("the ray is bent {bend} where it enters, and {bend} again where it leaves.{seen}")
 }
 
 /// The parts of the light that a smooth pane reflects and transmits, all orders together; `None` for other surfaces.
@@ -214,9 +245,14 @@ fn met(turn: &Turn, k: usize) -> String {
     }
 }
 
+/// The height of a direction above the horizon, degrees.
+fn height(direction: Vec3) -> f32 {
+    FRAC_PI_2.to_degrees() - angle(direction.y)
+}
+
 /// The height of a direction: `12.3° above the horizon`.
 fn elevation(direction: Vec3) -> String {
-    let height = FRAC_PI_2.to_degrees() - angle(direction.y);
+    let height = height(direction);
     let side = if height < 0.0 { "below" } else { "above" };
     format!("{}° {side} the horizon", rounded(height.abs(), 3))
 }
@@ -309,8 +345,26 @@ mod tests {
         assert!(
             lines[0].starts_with("You look ")
                 && lines[0].contains("° above the horizon, and what you see there is ")
-                && lines[0].contains("° below the horizon: the ray is bent"),
+                && lines[0].ends_with(
+                    "° below the horizon: the ray is bent down where it enters, and down again where it leaves. So what is \
+                     below is seen above: the picture is upside down."
+                ),
             "{lines:?}"
+        );
+        let (.., lower) = way("sphere", [50, 70]);
+        assert!(
+            lower[0].ends_with(
+                "bent up where it enters, and up again where it leaves. So what is above is seen below: the picture is upside \
+                 down."
+            ),
+            "{lower:?}"
+        );
+        // The wrong twin: a bubble, in which the picture is upright.
+        let bubble = [("transmission_weight", 1.0), ("specular_ior", 1.0 / 1.5), ("roughness", 0.0)];
+        let bubble = refraction("sphere", "openpbr", &bubble, [50, 40]).expect("a body").lines();
+        assert!(
+            bubble[0].ends_with("the ray is bent up where it enters, and up again where it leaves."),
+            "{bubble:?}"
         );
         assert!(lines[2].starts_with("1: after ") && lines[2].ends_with("° below the horizon"), "{lines:?}");
         let limit = lines.iter().position(|line| line.starts_with("θ_c")).expect("a line");

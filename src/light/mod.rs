@@ -264,6 +264,10 @@ pub trait Emitters: Send + Sync {
     /// For lights with extent: adds the weighted light arriving at `p` from each of these lobe directions.
     fn meet(&self, p: Vec3, directions: &mut Directions);
 
+    /// For lights with extent: the radiance arriving at `p` from a direction, including their colours. Densities are not
+    /// calculated.
+    fn seen(&self, p: Vec3, l: Vec3) -> Vec3;
+
     /// For a light with extent: false if all of it lies below the surface at `p` with the normal `n`,
     /// according to its [`bounds`](LightType::bounds).
     fn rises(&self, light: usize, p: Vec3, n: Vec3) -> bool;
@@ -308,6 +312,12 @@ impl<L: LightType> Emitters for Vec<(L, LightRecord)> {
                 }
             }
         }
+    }
+
+    fn seen(&self, p: Vec3, l: Vec3) -> Vec3 {
+        self.iter()
+            .map(|(emitter, light)| LightType::seen(emitter, light, p, l).radiance * light.colour)
+            .sum()
     }
 
     fn rises(&self, light: usize, p: Vec3, n: Vec3) -> bool {

@@ -52,6 +52,8 @@ pub struct Sky {
     pub scale: f32,
     /// Luminance of the ground, which is uniform.
     pub ground: f32,
+    /// exp(d π/2) of the indicatrix, which every direction needs.
+    square: f32,
 }
 
 impl Sky {
@@ -64,7 +66,8 @@ impl Sky {
         let (east, north) = azimuth.to_radians().sin_cos();
         let sun = Vec3::new(east * cosine, sine, -north * cosine);
         let coefficients = coefficients(index.min(TYPES.len() - 1));
-        let mut sky = Self { coefficients, sun, scale: 1.0, ground: 0.0 };
+        let square = (0.5 * coefficients[3] * PI).exp();
+        let mut sky = Self { coefficients, sun, scale: 1.0, ground: 0.0, square };
         sky.scale = zenith / sky.above(Vec3::Y);
         sky.ground = reflectance * sky.illuminance() / PI;
         sky
@@ -94,7 +97,7 @@ impl Sky {
         let gradation = 1.0 + a * (b / direction.y.max(0.01)).exp();
         let cosine = direction.dot(self.sun).clamp(-1.0, 1.0);
         let chi = sampling::arc_cosine(cosine);
-        let indicatrix = 1.0 + c * ((d * chi).exp() - (0.5 * d * PI).exp()) + e * cosine * cosine;
+        let indicatrix = 1.0 + c * ((d * chi).exp() - self.square) + e * cosine * cosine;
         self.scale * gradation * indicatrix
     }
 

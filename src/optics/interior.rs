@@ -71,7 +71,8 @@ impl Interior {
     /// The part of the light left after a way in metres.
     #[must_use]
     pub fn left(&self, length: f32) -> Vec3 {
-        absorption::left(self.absorption, length)
+        // Clear glass needs no exponentials.
+        if self.absorption == Vec3::ZERO { Vec3::ONE } else { absorption::left(self.absorption, length) }
     }
 }
 

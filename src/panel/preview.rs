@@ -21,16 +21,28 @@ use crate::{
     },
 };
 
-/// Width and height of a preview, in pixels.
-const SIZE: [u32; 2] = [320, 180];
-/// Samples of light with extent: noise is hardly visible in a small picture.
-const LIGHT_SAMPLES: LightSamples = LightSamples::of(32);
-/// Maximum rendering time of a preview.
+/// Ways of drawing a preview, the best first.
+const QUALITIES: [Quality; 2] = [
+    // Noise is hardly visible in a small picture.
+    Quality { size: [320, 180], samples: 4, light_samples: LightSamples::of(32) },
+    Quality { size: [160, 90], samples: 1, light_samples: LightSamples::of(8) },
+];
+/// Maximum rendering time of a preview in each quality: if the best takes longer, the next is tried.
 const PATIENCE: Duration = Duration::from_secs(3);
 /// Maximum number of previews kept.
 const MOST: usize = 128;
 /// Maximum number of lines about problems of a file.
 const LINES: usize = 6;
+
+/// A way of drawing a preview.
+struct Quality {
+    /// Pixels across and down.
+    size: [u32; 2],
+    /// Samples per pixel.
+    samples: u32,
+    /// Samples of light with extent.
+    light_samples: LightSamples,
+}
 
 /// The scene of a preview.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -135,20 +147,26 @@ fn make(ctx: &Context, source: &Source, registry: &Registry, outside: &Outside) 
             return Preview::Failed(lines.join("\n").into());
         }
     };
-    let [width, height] = SIZE;
-    let settings = reference::Settings { width, height, ..reference::Settings::default() };
-    let end = Instant::now() + PATIENCE;
-    let picture = reference::render_rgb8_until(&scene, registry, &settings, LIGHT_SAMPLES, end);
-    let picture = picture.map(|pixels| {
-        let image = ColorImage::from_rgb(SIZE.map(|n| n as usize), &pixels);
-        ctx.load_texture("preview", image, TextureOptions::LINEAR)
-    });
+    let picture = draw(&scene, registry, [PATIENCE; 2])
+        .map(|image| ctx.load_texture("preview", image, TextureOptions::LINEAR));
     Preview::Ready(Arc::new(Shown {
         facts: facts(&scene, registry),
         name: scene.name,
         description: scene.description,
         picture,
     }))
+}
+
+/// Draws a scene in the best quality for which the patience with it suffices.
+fn draw(scene: &Scene, registry: &Registry, patience: [Duration; 2]) -> Option<ColorImage> {
+    QUALITIES.iter().zip(patience).find_map(|(Quality { size, samples, light_samples }, patience)| {
+        let [width, height] = *size;
+        let settings =
+            reference::Settings { width, height, samples: *samples, ..reference::Settings::default() };
+        let end = Instant::now() + patience;
+        let pixels = reference::render_rgb8_until(scene, registry, &settings, *light_samples, end)?;
+        Some(ColorImage::from_rgb(size.map(|n| n as usize), &pixels))
+    })
 }
 
 fn facts(scene: &Scene, registry: &Registry) -> String {
@@ -170,12 +188,34 @@ pub fn paint(ui: &Ui, rect: Rect, preview: &Preview) {
                 painter.image(picture.id(), rect, whole, Color32::WHITE);
                 return;
             }
-            None => "Too large for a preview",
+            None => "Takes too long to draw",
         },
         Preview::Waiting => "…",
         Preview::Failed(_) => "No picture",
     };
     painter.rect_filled(rect, 2.0, palette.field);
     let font = TextStyle::Small.resolve(ui.style());
-    painter.text(rect.center(), Align2::CENTER_CENTER, words, font, palette.weak);
+    let words = painter.layout(words.to_owned(), font, palette.weak, rect.width() - 8.0);
+    painter.galley(rect.center() - 0.5 * words.size(), words, palette.weak);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_for_which_there_is_no_time_is_drawn_coarsely() {
+        let (scene, registry) = (Scene::default(), Registry::builtin());
+        let sizes = [[320, 180], [160, 90]];
+        let best = draw(&scene, &registry, [Duration::from_secs(60); 2]).expect("time enough");
+        assert_eq!(best.size, sizes[0]);
+        let coarse = draw(&scene, &registry, [Duration::ZERO, Duration::from_secs(60)]).expect("time enough");
+        assert_eq!(coarse.size, sizes[1]);
+        let many = |image: &ColorImage| {
+            image.pixels.iter().filter(|pixel| **pixel != image.pixels[0]).count() as f32
+                / image.pixels.len() as f32
+        };
+        assert!((many(&best) - many(&coarse)).abs() < 0.02 && many(&coarse) > 0.05, "the same picture");
+        assert!(draw(&scene, &registry, [Duration::ZERO; 2]).is_none());
+    }
 }

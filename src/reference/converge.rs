@@ -76,6 +76,11 @@ pub fn render_until(
         let picture = render_samples(scene, registry, settings, LightSamples::default(), odd);
         return Ok((picture, Reached { samples: 0, noise: None }));
     }
+    if scene.is_exact(registry) {
+        let picture = render_samples(scene, registry, settings, LightSamples::of(1), odd);
+        progress.step(1.0, "1 sample")?;
+        return Ok((picture, Reached { samples: 1, noise: Some(0.0) }));
+    }
     let pixels = settings.width as usize * settings.height as usize;
     let mut mean = vec![Vec4::ZERO; pixels];
     // Of the luminance of blocks: the sum of squares about the mean, after B. Welford (1962).
@@ -103,8 +108,8 @@ pub fn render_until(
         }
         let (done, said) = until.progress(Reached { samples: taken, noise });
         progress.step(done, &said)?;
-        // If nobody asks for a noise, only a picture without any ends early, as of smooth glass under the sky: its blocks agree to
-        // the bit. Darkness may be light that has not been found yet.
+        // If nobody asks for a noise, only a picture without any ends early, as where all that spreads light is out of sight: its
+        // blocks agree to the bit. Darkness may be light that has not been found yet.
         let is_lit = || mean.iter().any(|pixel| luminance(pixel.truncate()) > 0.0);
         let is_enough =
             |noise: f32| until.noise.map_or_else(|| noise == 0.0 && is_lit(), |enough| noise <= enough);
@@ -202,23 +207,35 @@ mod tests {
     #[test]
     fn a_picture_that_does_not_depend_on_chance_ends_as_soon_as_that_is_known() {
         let registry = Registry::builtin();
-        let under = |environment: &'static str, roughness: f32| {
+        let under_sky = |name: &'static str, value: f32| {
             let mut scene = Scene { reflection_model: "glass".to_owned(), ..Scene::default() };
             scene.lights[0].set_type(
                 registry.light("environment").expect("built in"),
                 &registry,
                 scene.scene_size,
             );
-            scene.lights[0].parameters.set("source", Value::Choice(environment.into()));
+            scene.lights[0].parameters.set("source", Value::Choice("sky".into()));
             for object in &mut scene.objects {
-                object.material.set("roughness", Value::Number(roughness));
+                object.material.set(name, Value::Number(value));
             }
-            until(&scene, &registry, 96, None)
+            scene
         };
-        let (picture, reached) = under("sky", 0.0);
-        assert_eq!(reached, Reached { samples: Until::FEWEST_FOR_NOISE, noise: Some(0.0) });
+        let smooth = under_sky("roughness", 0.0);
+        let (picture, reached) = until(&smooth, &registry, 96, None);
+        assert_eq!(reached, Reached { samples: 1, noise: Some(0.0) });
         assert!(picture.pixels.iter().any(|pixel| luminance(pixel.truncate()) > 0.0));
-        assert_eq!(under("sky", 0.5).1.samples, 96, "the wrong twin");
+        let many = render_samples(&smooth, &registry, &SMALL, LightSamples::of(48), &AtomicBool::default());
+        assert_eq!(picture, many, "more samples would change nothing");
+        for chance in [under_sky("roughness", 0.5), under_sky("dispersion", 0.05)] {
+            assert_eq!(until(&chance, &registry, 96, None).1.samples, 96, "the wrong twins");
+        }
+        // What spreads light, but is not in the picture, is noticed only by the samples.
+        let mut unseen = smooth;
+        let mut rough = under_sky("roughness", 0.5).objects.remove(0);
+        rough.position = unseen.observer.position - 50.0 * unseen.observer.direction.normalize();
+        unseen.objects.push(rough);
+        let reached = until(&unseen, &registry, 96, None).1;
+        assert_eq!(reached, Reached { samples: Until::FEWEST_FOR_NOISE, noise: Some(0.0) });
         let mut dark = lit(&registry);
         dark.lights[0].intensity = 0.0;
         assert_eq!(until(&dark, &registry, 96, None).1.samples, 96, "light may be found later");

@@ -122,9 +122,11 @@ impl Extended {
         seed: u32,
     ) -> Vec3 {
         let mut sum = Vec3::ZERO;
-        let at = At::new((surface, lobes), p, v, frame, seed);
-        let mut take = |arriving: &[Arriving]| sum += surface.lit_by(arriving, v, frame, terms);
-        self.arrive(&at, self.samples, &mut take);
+        if surface.spreads() {
+            let at = At::new((surface, lobes), p, v, frame, seed);
+            let mut take = |arriving: &[Arriving]| sum += surface.lit_by(arriving, v, frame, terms);
+            self.arrive(&at, self.samples, &mut take);
+        }
         let sharp = surface.sharp(v, frame);
         let unspread: Vec3 = sharp.iter().map(|sharp| sharp.response(terms) * self.seen(p, sharp.l)).sum();
         sum / self.samples.count.max(1) as f32 + unspread
@@ -186,8 +188,7 @@ impl Extended {
 
     /// The radiance that arrives from a direction, from all its lights.
     pub(super) fn seen(&self, p: Vec3, l: Vec3) -> Vec3 {
-        // So dense that lights are not sampled in this direction.
-        self.weighted(p, l, f32::INFINITY)
+        self.groups.iter().map(|(group, _)| group.seen(p, l)).sum()
     }
 
     /// The radiance that arrives from a direction that was chosen with this density, times its weight beside samples of

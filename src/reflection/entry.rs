@@ -26,6 +26,7 @@ use crate::{
     optics::{
         albedo::{AlbedoCurve, LobeAlbedo, NODES, NamedCurve},
         colour::Encoding,
+        interior::Interior,
     },
     parameter::{Parameter, Value, Values, pack},
     shader::Source,
@@ -215,6 +216,20 @@ impl ModelEntry {
     pub fn leads_by_chance(&self, values: &Values) -> bool {
         let is_rough = |surface: Arc<dyn Surface>| surface.interior().is_some_and(|inside| inside.is_rough());
         self.passage(values).solid && is_rough(self.instantiate(values, Encoding::default()))
+    }
+
+    /// True if the light of surfaces with these parameters is a mean of samples under light with extent: false for smooth
+    /// glass without dispersion, which shows that light as it is.
+    #[must_use]
+    pub fn is_by_chance(&self, values: &Values) -> bool {
+        let samples = |surface: Arc<dyn Surface>| {
+            let disperses = |inside: Interior| inside.is_rough() || inside.cauchy_b != 0.0;
+            surface.spreads() || surface.interior().is_some_and(disperses)
+        };
+        // Most models spread light whatever their parameters are, and some take long to prepare.
+        let Passage { sharp, solid, .. } = self.passage(values);
+        let may_be_exact = sharp || solid;
+        !may_be_exact || samples(self.instantiate(values, Encoding::default()))
     }
 
     /// True if the parameters decide how light passes.

@@ -114,6 +114,10 @@ impl ReflectionModel for Glass {
         Sharps::from_iter([Sharp::reflected(mirror(v, frame.n), share)])
     }
 
+    fn spreads(&self) -> bool {
+        self.alpha().is_some()
+    }
+
     fn behind(&self, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
         let within = |alpha| self.interface(alpha).transmitted(frame.to_local(l), frame.to_local(v));
         Vec3::splat(self.alpha().map_or(0.0, within))

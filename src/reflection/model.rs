@@ -79,6 +79,12 @@ pub trait ReflectionModel: ParameterSet + Copy {
         Sharps::new()
     }
 
+    /// False if all light reaches the viewer [without spreading](Self::sharp), so that [`response`](Self::response) is zero in
+    /// all directions and need not be asked: of a smooth boundary of glass.
+    fn spreads(&self) -> bool {
+        true
+    }
+
     /// The inside of a solid body, for models of such: the light that enters follows the object's own mesh, which must be
     /// closed, and is the transmitted term. [`response`](Self::response) is then that of the outer boundary alone.
     fn interior(&self) -> Option<Interior> {

@@ -55,9 +55,12 @@ impl Declaration {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
     use crate::{
-        optics::{Frame, colour::Encoding},
+        optics::{Frame, TermSelection, colour::Encoding},
+        parameter::Value,
         registry::Registry,
         testing::{direction, random_values},
     };
@@ -101,5 +104,31 @@ mod tests {
             }
         }
         assert!(varied > 6, "{varied}");
+    }
+
+    #[test]
+    fn what_does_not_spread_light_answers_nowhere() {
+        let mut seed = 5;
+        let mut sharp = 0;
+        for model in Registry::builtin().models() {
+            for i in 0..12 {
+                let mut values = random_values(model, &mut seed);
+                if i % 2 == 0 && model.declaration.sharp && model.parameter("roughness").is_some() {
+                    values.set("roughness", Value::Number(0.0));
+                }
+                let surface = model.instantiate(&values, Encoding::Srgb);
+                let answers = (0..40).any(|_| {
+                    let v = direction(&mut seed);
+                    let l =
+                        direction(&mut seed) * Vec3::new(1.0, 1.0, if seed % 2 == 0 { 1.0 } else { -1.0 });
+                    surface.response(l, v, &Frame::LOCAL).select(TermSelection::All) != Vec3::ZERO
+                });
+                assert!(surface.spreads() || !answers, "{}: {values:?}", model.declaration.id);
+                // Quick answers for the others are right too.
+                assert!(model.is_by_chance(&values) || !surface.spreads(), "{}", model.declaration.id);
+                sharp += usize::from(!surface.spreads());
+            }
+        }
+        assert!(sharp > 2, "{sharp}");
     }
 }

@@ -29,6 +29,10 @@ pub trait Surface: Send + Sync {
     fn sharp(&self, _v: Vec3, _frame: &Frame) -> Sharps {
         Sharps::new()
     }
+    /// See [`ReflectionModel::spreads`].
+    fn spreads(&self) -> bool {
+        true
+    }
     /// See [`ReflectionModel::interior`].
     fn interior(&self) -> Option<Interior> {
         None
@@ -148,6 +152,7 @@ impl<M: ReflectionModel> Surface for M {
         |this| this => ReflectionModel:
         fn response(l: Vec3, v: Vec3, frame: &Frame) -> Terms;
         fn sharp(v: Vec3, frame: &Frame) -> Sharps;
+        fn spreads() -> bool;
         fn interior() -> Option<Interior>;
         fn behind(l: Vec3, v: Vec3, frame: &Frame) -> Vec3;
         fn refractive_index() -> Option<f32>;
@@ -197,6 +202,7 @@ impl<M: ReflectionModel> Surface for Instance<M> {
         |this| &this.model => ReflectionModel:
         fn response(l: Vec3, v: Vec3, frame: &Frame) -> Terms;
         fn sharp(v: Vec3, frame: &Frame) -> Sharps;
+        fn spreads() -> bool;
         fn interior() -> Option<Interior>;
         fn behind(l: Vec3, v: Vec3, frame: &Frame) -> Vec3;
         fn refractive_index() -> Option<f32>;

@@ -148,6 +148,10 @@ impl ReflectionModel for ThinGlass {
         ])
     }
 
+    fn spreads(&self) -> bool {
+        self.alpha().is_some()
+    }
+
     fn lobes(&self) -> Lobes {
         let alpha = self.alpha().unwrap_or(MINIMUM_ALPHA);
         let pane = self.pane(lobes::OBLIQUE);

@@ -124,6 +124,17 @@ impl Scene {
         has_extent(self.shining(), registry) || self.shown().any(by_chance)
     }
 
+    /// True if no number of samples changes a picture of the scene: all of its objects show light with extent
+    /// [as it is](ModelEntry::is_by_chance).
+    #[must_use]
+    pub fn is_exact(&self, registry: &Registry) -> bool {
+        let by_chance = |object: &Object| {
+            let model = registry.model(self.model_of(object));
+            model.is_some_and(|model| model.is_by_chance(&object.material))
+        };
+        !self.shown().any(by_chance)
+    }
+
     /// The light types of all lights, including those switched off: the light types in the scene's shader.
     #[must_use]
     pub fn light_types(&self, registry: &Registry) -> LightSet {

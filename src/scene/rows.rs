@@ -395,7 +395,38 @@ impl Row<'_> {
         corners.map(|place| at(self.entry.position, self.repeat, place))
     }
 
-    /// The largest number of columns, or of rows, with which all copies are in the room of a scene, and which it can hold.
+    /// The distances that the copies reach below 0 and above it along each axis.
+    fn reach(&self) -> [Vec3; 2] {
+        let corners = self.corners();
+        let most = |sign: f32| corners.iter().fold(Vec3::MIN, |most, at| most.max(sign * *at));
+        [most(-1.0), most(1.0)]
+    }
+
+    /// The point in the middle of the copies.
+    #[must_use]
+    pub fn middle(&self) -> Vec3 {
+        let [first, .., last] = self.corners();
+        0.5 * (first + last)
+    }
+
+    /// The position of the first copy of a row in its place, with other numbers or steps, whose middle is the same, or as near to
+    /// it as all copies have place in a room.
+    #[must_use]
+    pub fn position_of(&self, repeat: &Repeat, room: SceneSize) -> Vec3 {
+        let beside = Object { position: Vec3::ZERO, ..self.entry.clone() };
+        let other = Row { entry: &beside, repeat, ..*self };
+        // Without the noise of differences.
+        let wanted = ((self.middle() - other.middle()) * 1e4).round() / 1e4;
+        let [below, above] = other.reach();
+        // Whole copies, if that is so now and there is place.
+        let [low, high] = self.reach();
+        let clear = (-low).min(room.corner() - high).min(Vec3::splat(0.5 * self.entry.size));
+        let margin = clear.min(0.5 * (room.corner() - above - below)).max(Vec3::splat(1e-4));
+        wanted.min(room.corner() - above - margin).max(below + margin)
+    }
+
+    /// The largest number of columns, or of rows, with which all copies are in the room of a scene, if their
+    /// [middle](Self::position_of) stays where it can, and which it can hold.
     #[must_use]
     pub fn most(&self, along: Along, scene: &Scene) -> u32 {
         let others = scene.objects.len().saturating_sub(self.count);
@@ -405,7 +436,9 @@ impl Row<'_> {
             let mut repeat = self.repeat.clone();
             let changed = if along == Along::Rows { &mut repeat.rows } else { &mut repeat.columns };
             *changed = u32::try_from(count).unwrap_or(u32::MAX);
-            let row = Row { repeat: &repeat, ..*self };
+            let position = self.position_of(&repeat, scene.scene_size);
+            let entry = Object { position, ..self.entry.clone() };
+            let row = Row { entry: &entry, repeat: &repeat, ..*self };
             row.corners().into_iter().all(|p| scene.scene_size.contains(p))
         };
         // Further copies are further away.

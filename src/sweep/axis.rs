@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::values;
 use crate::{
     caption::{self, Part as Words, header_parts},
-    document::{Document, Selection},
+    document::{Selection, names::name_in},
     parameter::Value,
     registry::Registry,
     scene::{Object, Part, Scene, at::Place, variant::LETTERS},
@@ -212,7 +212,7 @@ pub(super) fn called(part: Part, scene: &Scene, registry: &Registry) -> String {
         Part::Object(i) => Selection::Object(i),
         part => return part.path().to_string(),
     };
-    Document::new(scene.clone()).name_of(selection, registry)
+    name_in(scene, selection, registry)
 }
 
 /// Values with the symbol that they share: the first and the last, or a few words one by one.

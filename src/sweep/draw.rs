@@ -2,7 +2,7 @@
 //! are too few left.
 
 use std::{
-    path::{Path, PathBuf},
+    path::Path,
     sync::{
         atomic::{AtomicBool, Ordering},
         mpsc::{self, RecvTimeoutError},
@@ -21,11 +21,13 @@ use crate::{
     caption::Sampled,
     compare::{Cell, View, with_row_labels},
     failure::Failure,
+    files::Shown as _,
     picture::png::{self, About},
     progress::{Cancelled, Progress},
     reference::{self, Until},
     registry::Registry,
     scene::Scene,
+    text::plural,
 };
 
 /// The time after which it is asked again whether the user has cancelled.
@@ -104,25 +106,32 @@ pub fn pictures(
 }
 
 /// Draws the pictures of a sweep into a folder, each [named](Sweep::file) after its values, with its scene. Files that an
-/// earlier run of the same sweep wrote are kept.
+/// earlier run of the same sweep wrote are kept. Files in their places that are none of them, drawn with another scene, other
+/// settings or by another program, are replaced only if that is asked for.
 ///
 /// # Errors
-/// Returns an error if the user cancels, if a scene cannot be drawn, or if a file cannot be written. Files finished by then
-/// stay.
+/// Returns an error if there are such other files, if the user cancels, if a scene cannot be drawn, or if a file cannot be
+/// written. Files finished by then stay.
 pub fn files(
     sweep: &Sweep,
     settings: &Settings,
-    folder: &Path,
+    (folder, overwrite): (&Path, bool),
     check: Check,
     progress: &Progress,
 ) -> Result<Written, Failure> {
     let [width, height] = settings.size;
+    // Quick beside drawing, so its progress is not told.
+    let silent = Progress { tell: &|_, _| (), cancelled: progress.cancelled };
+    let places = each(sweep.count(), &silent, |i, _| place(sweep, settings, folder, i))?;
+    if !overwrite {
+        spare_others(sweep, folder, &places)?;
+    }
     let all = each(sweep.count(), progress, |i, cancelled| {
-        let one = One::new(sweep, settings, i)?;
-        let file = folder.join(sweep.file(i));
-        if parts::is_done(&file, &one.stamp, settings.size) {
+        if places[i] == Place::Done {
             return Ok(true);
         }
+        let one = One::new(sweep, settings, i)?;
+        let file = folder.join(sweep.file(i));
         let (rgb8, _) = one.draw(check, cancelled)?;
         let rgb8 = labelled(rgb8, settings.size, &one.scene, sweep.registry);
         let about = About::scene(&one.scene.clone().alone(), sweep.registry).with("Renderer", "CPU");
@@ -134,22 +143,41 @@ pub fn files(
     Ok(Written { drawn: all.len() - kept, kept })
 }
 
-/// The files of a folder in the places of a sweep's pictures that are none of them: of another scene, of other settings, or
-/// of another program.
-///
-/// # Errors
-/// Returns an error if there is no such view.
-pub fn others(sweep: &Sweep, settings: &Settings, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let other = |i: usize| {
-        let file = folder.join(sweep.file(i));
-        if !file.is_file() {
-            return Ok(None);
-        }
-        let stamp = One::new(sweep, settings, i)?.stamp;
-        let own = !stamp.is_empty() && png::text(&file, parts::KEYWORD).is_some_and(|own| own == stamp);
-        Ok((!own).then_some(file))
-    };
-    (0..sweep.count()).into_par_iter().filter_map(|i| other(i).transpose()).collect()
+/// The state of the place of a picture in a folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    /// Nothing, or a picture that an earlier run did not finish.
+    Free,
+    /// The finished picture.
+    Done,
+    /// Something else.
+    Other,
+}
+
+fn place(sweep: &Sweep, settings: &Settings, folder: &Path, i: usize) -> Result<Place, Failure> {
+    let file = folder.join(sweep.file(i));
+    if !file.is_file() {
+        return Ok(Place::Free);
+    }
+    let stamp = One::new(sweep, settings, i)?.stamp;
+    if parts::is_done(&file, &stamp, settings.size) {
+        return Ok(Place::Done);
+    }
+    let begun = !stamp.is_empty() && png::text(&file, parts::KEYWORD).is_some_and(|own| own == stamp);
+    Ok(if begun { Place::Free } else { Place::Other })
+}
+
+/// Refuses to replace pictures of something else, which have the same names.
+fn spare_others(sweep: &Sweep, folder: &Path, places: &[Place]) -> Result<(), Failure> {
+    let others = || (0..places.len()).filter(|i| places[*i] == Place::Other);
+    let Some(first) = others().next() else { return Ok(()) };
+    Err(Failure::Write(format!(
+        "{} has {} in the place of this sweep's, such as {}: drawn with another scene, other files, settings or version; \
+         --overwrite replaces them, -o FOLDER writes elsewhere",
+        folder.shown(),
+        plural(others().count(), "picture"),
+        Path::new(&sweep.file(first)).shown()
+    )))
 }
 
 /// A picture with the labels of its rows, as in that of `lcm render`.
@@ -263,7 +291,7 @@ fn each<T: Send>(
 
 #[cfg(test)]
 mod tests {
-    use std::{fs, time::Instant};
+    use std::{fs, path::PathBuf, time::Instant};
 
     use super::*;
     use crate::{
@@ -328,12 +356,17 @@ mod tests {
         let sweep = sweep(&scene, &registry);
         let folder = tempfile::tempdir().expect("a folder");
         let all = |settings: &Settings| {
-            files(&sweep, settings, folder.path(), &|_| Ok(()), &Progress::NONE).expect("written")
+            files(&sweep, settings, (folder.path(), true), &|_| Ok(()), &Progress::NONE).expect("written")
+        };
+        let sparing = |settings: &Settings| {
+            files(&sweep, settings, (folder.path(), false), &|_| Ok(()), &Progress::NONE)
         };
         assert_eq!(all(&SMALL), Written { drawn: 6, kept: 0 });
-        let others = |settings: &Settings| others(&sweep, settings, folder.path()).expect("looked for");
-        let smooth = Settings { samples: 4, ..SMALL };
-        assert_eq!((others(&SMALL).len(), others(&smooth).len()), (0, 6));
+        assert!(matches!(sparing(&SMALL), Ok(Written { drawn: 0, kept: 6 })));
+        let refused = sparing(&Settings { samples: 4, ..SMALL });
+        assert!(
+            matches!(refused, Err(Failure::Write(why)) if why.contains("has 6 pictures in the place of"))
+        );
         let file = folder.path().join(sweep.file(2));
         let before = fs::read(&file).expect("there");
         fs::remove_file(&file).expect("removed");
@@ -343,6 +376,10 @@ mod tests {
         assert_eq!(all(&Settings { samples: 4, ..SMALL }), Written { drawn: 6, kept: 0 });
         fs::write(&file, &before[..before.len() / 2]).expect("written");
         assert_eq!(all(&Settings { samples: 4, ..SMALL }), Written { drawn: 1, kept: 5 });
+        // A picture of its own that is broken is no other.
+        let after = fs::read(&file).expect("there");
+        fs::write(&file, &after[..after.len() - 20]).expect("written");
+        assert!(matches!(sparing(&Settings { samples: 4, ..SMALL }), Ok(Written { drawn: 1, kept: 5 })));
     }
 
     #[test]
@@ -388,7 +425,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let taken = folder.path().join("taken");
         fs::write(&taken, "").expect("written");
-        let failed = files(&sweep, &SMALL, &taken, &|_| Ok(()), &Progress::NONE);
+        let failed = files(&sweep, &SMALL, (&taken, false), &|_| Ok(()), &Progress::NONE);
         assert!(matches!(failed, Err(Failure::Write(what)) if what.contains("could not be written")));
     }
 

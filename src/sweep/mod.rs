@@ -34,7 +34,7 @@ use std::{collections::HashSet, ffi::OsString, path::Path};
 use rayon::prelude::*;
 
 pub use axis::Axis;
-pub use draw::{Check, Drawn, Settings, Written, files, others, pictures};
+pub use draw::{Check, Drawn, Settings, Written, files, pictures};
 pub use film::{GIF, MAX_RATE, gif};
 pub use parts::Parts;
 pub use sheet::{Against, Grid, Page, maps};

@@ -90,6 +90,16 @@ impl Shown<'_> {
         })
     }
 
+    /// An edit of the numbers that lets the row grow on all sides instead of away from its first copy.
+    fn in_place(&self, mut edit: Edit) -> Edit {
+        if let Edit::Row { entry: Some(entry), .. } = &mut edit
+            && let Repetition::Entry(repeat) = &entry.repeat
+        {
+            entry.position = self.row.position_of(repeat, self.document.scene_size);
+        }
+        edit
+    }
+
     /// The edit that changes a varied value.
     fn varying(&self, what: &'static str, j: usize, change: impl FnOnce(&mut Varied)) -> Edit {
         self.with(what, |row| {
@@ -118,10 +128,11 @@ impl Shown<'_> {
         (columns.or(rows)).map(|_| {
             let [columns, rows] = [columns.unwrap_or(repeat.columns), rows.unwrap_or(repeat.rows)];
             let step = self.session.step_for_labels(&self.row, rows).filter(|_| rows > 1);
-            self.counting(ui, "Number", |row| {
+            let edit = self.counting(ui, "Number", |row| {
                 (row.columns, row.rows) = (columns, rows);
                 row.row_spacing = step.unwrap_or(row.row_spacing);
-            })
+            });
+            self.in_place(edit)
         })
     }
 

@@ -4,7 +4,7 @@ use bevy_egui::egui::text::{LayoutJob, TextFormat};
 
 use crate::panel::prelude::*;
 
-/// A tooltip whose symbols have subscripts, as those of equations.
+/// A tooltip whose symbols have subscripts and powers, as those of equations.
 pub(in crate::panel) fn tip(response: Response, text: &str) -> Response {
     response.on_hover_ui(|ui| {
         // As egui's own: a tooltip must not become narrower as its text changes.
@@ -13,7 +13,8 @@ pub(in crate::panel) fn tip(response: Response, text: &str) -> Response {
     })
 }
 
-/// A sentence that sets `k_d` or `F_{90}` with a subscript, `10^−8` with a power, and text between backticks as code.
+/// A sentence that sets `k_d` or `F_{90}` with a subscript, `10^−8`, `r^2` or `e^{−x}` with a power, and text between
+/// backticks as code.
 #[must_use]
 pub fn prose(ui: &Ui, text: &str, style: TextStyle) -> LayoutJob {
     let formats = Formats::new(ui, style);
@@ -55,23 +56,27 @@ impl Formats {
 
     /// Adds words with their symbols.
     fn words(&self, mut text: &str, job: &mut LayoutJob) {
-        while let Some([before, letter, index, after]) = indexed(text) {
-            self.powers(before, job);
-            job.append(letter, 0.0, self.letter.clone());
-            job.append(index, 0.0, self.index.clone());
+        let start = |marked: &Option<[&str; 4]>| marked.map_or(usize::MAX, |[before, ..]| before.len());
+        loop {
+            let (index, power) = (indexed(text), raised(text));
+            let format = if start(&power) < start(&index) { &self.power } else { &self.index };
+            let Some([before, letter, script, after]) =
+                index.into_iter().chain(power).min_by_key(|m| m[0].len())
+            else {
+                break;
+            };
+            self.plainly(before, job);
+            if !letter.is_empty() {
+                job.append(letter, 0.0, self.letter.clone());
+            }
+            // A script within a script stands beside it.
+            job.append(&script.replace(['_', '^', '{', '}'], ""), 0.0, format.clone());
             text = after;
         }
-        self.powers(text, job);
+        self.plainly(text, job);
     }
 
-    /// Adds words with their powers of ten.
-    fn powers(&self, mut text: &str, job: &mut LayoutJob) {
-        while let Some((before, rest)) = text.split_once("10^") {
-            let end = rest.find(|c: char| !c.is_ascii_digit() && c != '−').unwrap_or(rest.len());
-            job.append(&format!("{before}10"), 0.0, self.plain.clone());
-            job.append(&rest[..end], 0.0, self.power.clone());
-            text = &rest[end..];
-        }
+    fn plainly(&self, text: &str, job: &mut LayoutJob) {
         if !text.is_empty() {
             job.append(text, 0.0, self.plain.clone());
         }
@@ -92,6 +97,35 @@ fn indexed(text: &str) -> Option<[&str; 4]> {
     let (index, after) = braced
         .unwrap_or_else(|| rest.split_at(rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len())));
     Some([&text[..start], &text[start..at], index, after])
+}
+
+/// The first power: what is before it, its base if that is a single letter, the exponent, and the rest. Other bases, such as
+/// 10 or a bracket, belong to what is before.
+fn raised(text: &str) -> Option<[&str; 4]> {
+    text.match_indices('^').find_map(|(at, _)| {
+        let mut back = text[..at].char_indices().rev();
+        let base = back.next();
+        // At the start, it is the power of a letter with an index.
+        if base.is_some_and(|(_, c)| !c.is_alphanumeric() && c != ')') {
+            return None;
+        }
+        let is_word = back.next().is_some_and(|(_, c)| c.is_alphanumeric());
+        let start = base.filter(|(_, c)| c.is_alphabetic() && !is_word).map_or(at, |(start, _)| start);
+        let rest = &text[at + 1..];
+        let (exponent, after) = match rest.strip_prefix('{') {
+            Some(braced) => braced.split_once('}')?,
+            None => rest.split_at(exponent(rest)?),
+        };
+        Some([&text[..start], &text[start..at], exponent, after])
+    })
+}
+
+/// The length of an exponent without braces: a number, or one letter.
+fn exponent(text: &str) -> Option<usize> {
+    let sign = text.strip_prefix(['−', '-']).map_or(0, |rest| text.len() - rest.len());
+    let digits = text[sign..].find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len() - sign);
+    let letter = text.chars().next().filter(|c| c.is_alphabetic()).map(char::len_utf8);
+    if digits > 0 { Some(sign + digits) } else { letter }
 }
 
 #[cfg(test)]
@@ -134,5 +168,25 @@ mod tests {
         let power = find("−8").expect("there");
         assert!(power.valign == Align::TOP && !power.italics && power.font_id.size < size);
         assert_eq!(find("lcm models").expect("there").font_id.family, egui::FontFamily::Monospace);
+    }
+
+    #[test]
+    fn powers_stand_above_without_carets() {
+        let ctx = Context::default();
+        let mut seen = Vec::new();
+        let raw = "α = r^2, α_x^2 cos^2 θ_h of (N·H)^n; e^{−σ s_k}, 2·10^−8 and ½^½, but C^ or a ^2 are none";
+        let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+            let job = prose(ui, raw, TextStyle::Body);
+            seen = job
+                .sections
+                .iter()
+                .map(|s| (job.text[s.byte_range.start.0..s.byte_range.end.0].to_owned(), s.format.valign))
+                .collect();
+        });
+        let text: String = seen.iter().map(|(text, _)| text.as_str()).collect();
+        assert_eq!(text, "α = r2, αx2 cos2 θh of (N·H)n; e−σ sk, 2·10−8 and ½^½, but C^ or a ^2 are none");
+        let powers: Vec<_> =
+            seen.iter().filter(|(_, align)| *align == Align::TOP).map(|(text, _)| text.as_str()).collect();
+        assert_eq!(powers, ["2", "2", "2", "n", "−σ sk", "−8"]);
     }
 }

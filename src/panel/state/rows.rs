@@ -12,7 +12,6 @@ use crate::{
         Object, Repeat, Repetition, Varied,
         limits::significant,
         observer::WIDE,
-        repeat::Along,
         rows::{Row, Variable},
     },
 };
@@ -114,13 +113,18 @@ impl Session {
     fn step_below(&self, row: &Row, rows: u32) -> Vec3 {
         let copies = self.document.objects.get(row.range()).unwrap_or_default();
         let largest = copies.iter().map(|copy| copy.size).fold(0.0, f32::max);
-        let seen = self.facts.camera.inverse() * (row.entry.position - self.facts.eye);
+        // At the height of the eye, so that rows above and below make no difference.
+        let seen = self.facts.camera.inverse() * (row.middle() - self.facts.eye).with_y(0.0);
         let height = 2.0 * seen.z.abs() * (0.5 * self.document.observer.field_of_view.to_radians()).tan();
         let label = AROUND + LINE * row.repeat.vary.len() as f32;
         let wanted = significant(f64::from(APART * largest + label * height), 2);
-        let repeat = Repeat { rows, ..row.repeat.clone() };
-        let ends = Row { repeat: &repeat, ..*row }.ends_of_step(Along::Rows, 1, self.document.scene_size);
-        let room = ends.map_or(wanted, |[low, _]| -low);
+        let Some(steps) = rows.checked_sub(1).filter(|steps| *steps > 0) else {
+            return Vec3::NEG_Y * wanted as f32;
+        };
+        let taken = row.repeat.columns.saturating_sub(1) as f32 * row.repeat.spacing.y.abs();
+        let left = f64::from((self.document.scene_size.height - taken).max(0.0));
+        // To four decimals, with a margin, since coordinates are greater than 0.
+        let room = ((left * 1e4 - 2.0) / f64::from(steps)).floor().max(0.0) / 1e4;
         Vec3::NEG_Y * wanted.min(room) as f32
     }
 

@@ -55,36 +55,36 @@ const LEAST_COMPONENT: f32 = 1e-20;
 
 /// A ray, prepared for boxes.
 struct Slabs {
-    origin: [Vec4; 3],
-    inverse: [Vec4; 3],
-    /// The rows of a node with the nearer planes, and with the farther ones.
-    near: [usize; 3],
-    far: [usize; 3],
+    origin: Vec3,
+    inverse: Vec3,
 }
 
 impl Slabs {
     fn new(ray: &Ray) -> Self {
         let inverse = ray.direction.to_array().map(|c| 1.0 / c.abs().max(LEAST_COMPONENT).copysign(c));
-        let backwards = inverse.map(|c| c < 0.0);
-        Self {
-            origin: ray.origin.to_array().map(Vec4::splat),
-            inverse: inverse.map(Vec4::splat),
-            near: [0, 1, 2].map(|axis| if backwards[axis] { 3 + axis } else { axis }),
-            far: [0, 1, 2].map(|axis| if backwards[axis] { axis } else { 3 + axis }),
-        }
+        Self { origin: ray.origin, inverse: inverse.into() }
     }
 
     /// The distances at which the ray enters the boxes of the four children, and true for those that it meets within a
-    /// range.
+    /// range. Written out for each axis: with rows by number, indices were checked.
     #[inline]
     fn enter(&self, node: &[Row; NODE_ROWS], range: &Range<f32>) -> (Vec4, BVec4A) {
-        let along = |row: usize, axis: usize| (floats(node[row]) - self.origin[axis]) * self.inverse[axis];
-        let [near_x, near_y, near_z] = [0, 1, 2].map(|axis| along(self.near[axis], axis));
-        let [far_x, far_y, far_z] = [0, 1, 2].map(|axis| along(self.far[axis], axis));
-        let near = near_x.max(near_y).max(near_z.max(Vec4::splat(range.start)));
-        let far = far_x.min(far_y).min(far_z.min(Vec4::splat(range.end)));
+        let [low_x, low_y, low_z, high_x, high_y, high_z, _] = node;
+        let x = between(*low_x, *high_x, self.origin.x, self.inverse.x);
+        let y = between(*low_y, *high_y, self.origin.y, self.inverse.y);
+        let z = between(*low_z, *high_z, self.origin.z, self.inverse.z);
+        let near = x.0.max(y.0).max(z.0.max(Vec4::splat(range.start)));
+        let far = x.1.min(y.1).min(z.1.min(Vec4::splat(range.end)));
         (near, near.cmple(far))
     }
+}
+
+/// The distances of the nearer and of the farther planes along one axis.
+#[inline]
+fn between(low: Row, high: Row, origin: f32, inverse: f32) -> (Vec4, Vec4) {
+    let (near, far) = if inverse < 0.0 { (high, low) } else { (low, high) };
+    let along = |planes: Row| (floats(planes) - origin) * inverse;
+    (along(near), along(far))
 }
 
 /// A ray, prepared for triangles: the axis along which it runs most is third.
@@ -113,10 +113,9 @@ impl Shear {
     /// The intersection of the ray with a triangle: the distance, the weights, and true from inside.
     #[inline]
     fn meet(&self, triangle: &[Row; 3], sides: Sides) -> Option<(f32, Vec3, bool)> {
-        let [x, y, z] = [0, 1, 2].map(|i| {
-            // The last number belongs to the normal.
-            Vec3A::from_vec4(floats(triangle[self.axes[i]]) - self.origin[i])
-        });
+        // The last number belongs to the normal.
+        let along = |i: usize| Vec3A::from_vec4(floats(triangle[self.axes[i]]) - self.origin[i]);
+        let (x, y, z) = (along(0), along(1), along(2));
         let (x, y) = (x - self.shear[0] * z, y - self.shear[1] * z);
         let edges = x.yzx() * y.zxy() - y.yzx() * x.zxy();
         let inside = edges.cmpge(Vec3A::ZERO).all();

@@ -269,9 +269,9 @@ fn more_rows_leave_room_for_the_labels_between_them() {
     bench.type_into("rows", "3");
     assert_eq!(of(&bench).1, step, "there is room for as much");
     // More rows are nearer to each other, and all in the room.
-    bench.type_into("rows", "5");
+    bench.type_into("rows", "9");
     let (rows, near, ..) = of(&bench);
-    assert!(rows == 5 && near < step, "{rows} rows, {near} m");
+    assert!(rows == 9 && near < step, "{rows} rows, {near} m");
     let found = check::scene(&bench.session.document, &Registry::builtin());
     assert!(found.is_empty(), "{found:?}");
     // A step of the user's own stays.
@@ -279,6 +279,42 @@ fn more_rows_leave_room_for_the_labels_between_them() {
     bench.apply(Action::Edit(changed(&bench.session.document, 0, own)));
     bench.type_into("rows", "4");
     assert_eq!(of(&bench).1, 0.3);
+}
+
+#[test]
+fn a_grid_grows_around_its_middle_as_far_as_the_room_has_place() {
+    let mut bench = Bench::new(Session::new(Scene::default()));
+    bench.apply(Action::MakeRow(Selection::Object(0)));
+    bench.settle();
+    let row = |bench: &Bench| {
+        let row = bench.session.document.row(0).expect("a grid");
+        (row.middle(), row.entry.position, -row.repeat.row_spacing.y, row.count)
+    };
+    let (middle, first, ..) = row(&bench);
+    for (rows, count) in [("2", 10), ("4", 20), ("3", 15)] {
+        bench.type_into("rows", rows);
+        let (now, top, step, total) = row(&bench);
+        assert!((now - middle).length() < 2e-4 && total == count, "{rows}: {now} {middle} {total}");
+        let half = 0.5 * (count / 5 - 1) as f32 * step;
+        assert!((top.y - first.y - half).abs() < 2e-4, "{rows}: {top} above {first}, {step}");
+    }
+    bench.type_into("columns", "3");
+    assert!((row(&bench).0 - middle).length() < 2e-4 && row(&bench).1.x > first.x);
+    bench.type_into("rows", "1");
+    assert!((row(&bench).1.y - first.y).abs() < 2e-4, "back to where it was");
+    // Near a wall the middle moves as far as it must.
+    let mut scene = Scene::default();
+    scene.objects[0].position.y = 0.6;
+    let mut bench = Bench::new(Session::new(scene));
+    bench.apply(Action::MakeRow(Selection::Object(0)));
+    bench.settle();
+    bench.type_into("rows", "4");
+    let (middle, _, step, count) = row(&bench);
+    assert_eq!(count, 20, "{:?}", bench.session.messages);
+    let size = bench.session.document.objects[0].size;
+    let lowest = middle.y - 1.5 * step;
+    assert!((lowest - 0.6f32.min(0.5 * size)).abs() < 1e-3, "{lowest} {step} {size}");
+    assert_eq!(check::scene(&bench.session.document, &Registry::builtin()), []);
 }
 
 #[test]

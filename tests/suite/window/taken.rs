@@ -462,6 +462,39 @@ fn the_window_of_options_fits() {
 }
 
 #[test]
+fn tab_goes_through_the_options_from_above_to_below_and_around() {
+    for (scale, row) in [(100, false), (150, false), (100, true), (150, true)] {
+        let repeat = Repeat { columns: 3, spacing: [1.0, 0.0, 0.0].into(), ..Repeat::default() };
+        let entry = Object { repeat: Repetition::Entry(Box::new(repeat)), ..Object::default() };
+        let scene = Scene { objects: vec![entry], ..Scene::default() };
+        let mut bench = Bench::new(Session::new(scene.expanded(&Registry::builtin()).expect("a row")));
+        bench.size = vec2(1280.0, 720.0);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        let of = if row { Taken::Sheet(SheetOf::Row(0)) } else { Taken::Picture(None) };
+        bench.apply(Action::Take(TakeCommand::Ask(of)));
+        bench.settle();
+        let whole = Rect::from_min_size(pos2(0.0, 0.0), bench.size / (f32::from(scale) / 100.0));
+        let mut stops = Vec::new();
+        for _ in 0..40 {
+            bench.key(Key::Tab, Modifiers::NONE);
+            bench.settle();
+            let focused = bench.ctx.memory(|memory| memory.focused()).expect("something has the keys");
+            if stops.first().is_some_and(|(first, _)| *first == focused) {
+                break;
+            }
+            let rect = bench.ctx.read_response(focused).expect("shown").rect;
+            assert!(whole.contains_rect(rect), "{of:?}, {scale} %: {rect:?}");
+            stops.push((focused, rect));
+        }
+        assert!((6..40).contains(&stops.len()), "{of:?}, {scale} %: {stops:?}");
+        // Only from the buttons below to the first option does it go up.
+        let next = stops.iter().cycle().skip(1);
+        let up = stops.iter().zip(next).filter(|((_, a), (_, b))| b.center().y < a.center().y - 60.0).count();
+        assert_eq!(up, 1, "{of:?}, {scale} %: {stops:?}");
+    }
+}
+
+#[test]
 fn on_a_low_screen_the_options_scroll_and_the_buttons_stay_in_sight() {
     let variants = vec![Variant::default()];
     let mut session = Session::new(Scene { variants, ..Scene::default() });
