@@ -174,6 +174,10 @@ impl LightType for Environment {
         all
     }
 
+    fn unit(&self) -> &'static str {
+        if self.source == UNIFORM { "cd/m²" } else { Self::DECLARATION.unit }
+    }
+
     fn sample(&self, light: &LightRecord, _p: Vec3, u: Vec2) -> Sample {
         let at = |d| {
             let (luminance, pdf) = self.at(d);
