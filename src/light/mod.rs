@@ -196,6 +196,12 @@ pub trait LightType: ParameterSet + Component + Reflectable {
         None
     }
 
+    /// The solid angle that a light with extent fills as seen from `p`, sr, if a formula gives it. By default `None`: it is
+    /// estimated by samples.
+    fn fills(&self, _light: &LightRecord, _p: Vec3) -> Option<f64> {
+        None
+    }
+
     /// The factors of the intensity at `p`, as in the [equation](Declaration::equation), for explanations:
     /// their product is the intensity of [`incident`](Self::incident). By default, the intensity of the
     /// light, and the rest.
@@ -236,6 +242,9 @@ pub trait Emitter: Send + Sync {
     /// See [`LightType::same_between`].
     fn same_between(&self, light: &LightRecord, corners: &[Vec3; 4]) -> Option<Vec3>;
 
+    /// See [`LightType::fills`].
+    fn fills(&self, light: &LightRecord, p: Vec3) -> Option<f64>;
+
     /// See [`LightType::factors`].
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor>;
 }
@@ -248,6 +257,7 @@ impl<L: LightType> Emitter for L {
         fn seen(light: &LightRecord, p: Vec3, l: Vec3) -> Seen;
         fn bounds(light: &LightRecord, p: Vec3) -> Option<Cone>;
         fn same_between(light: &LightRecord, corners: &[Vec3; 4]) -> Option<Vec3>;
+        fn fills(light: &LightRecord, p: Vec3) -> Option<f64>;
         fn factors(light: &LightRecord, p: Vec3) -> Vec<Factor>;
     }
 
