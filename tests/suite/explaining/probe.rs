@@ -52,7 +52,8 @@ fn light_with_extent_has_its_error_and_a_choice_of_samples() {
     };
     scene.lights = vec![lamp(Vec3::new(1.0, 1.5, 2.0)), lamp(Vec3::new(-1.0, 0.5, 2.0))];
     let mut bench = bench(scene);
-    bench.size = vec2(1280.0, 1600.0);
+    bench.size = vec2(1600.0, 2000.0);
+    bench.session.settings.bottom_height = 1100.0;
     bench.settle();
     let pin = Pin::of_pixel(0, [320, 180], [640, 360], bench.session.document.view_angle());
     bench.apply(Action::View(ViewChange::Pin(Some(pin))));
