@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::{
-    Options, Outcome, outputs, print_json, print_text,
+    Options, Outcome,
+    light_samples::{self, Sampling},
+    outputs, print_json, print_text,
     render::{cpu_can_draw, term},
     scenes::Source,
     sides,
@@ -14,7 +16,7 @@ use super::{
 };
 use crate::{
     explain::{
-        self, Explainer, Explanation, Influence,
+        Explainer, Explanation, Influence,
         hemisphere::{Hemisphere, Shining},
     },
     failure::Failure,
@@ -43,6 +45,10 @@ pub(super) struct Arguments {
     /// Show only one term of the reflection model's equation
     #[arg(long, value_parser = term, default_value = "all", value_name = "all|ambient|diffuse|specular|transmitted")]
     term: TermSelection,
+    /// Samples of each light with extent, and as many of the directions in which the object reflects most: 1 to 1048576; by
+    /// default 256
+    #[arg(long, value_name = "N", value_parser = light_samples::count, allow_hyphen_values = true)]
+    light_samples: Option<u32>,
     /// Also print the numbers of the scene that would move this pixel most, by differences
     #[arg(long)]
     derivatives: bool,
@@ -59,6 +65,15 @@ pub(super) struct Arguments {
     /// Print the explanation as Markdown
     #[arg(long)]
     markdown: bool,
+}
+
+impl Arguments {
+    /// An explainer with the samples asked for.
+    fn explainer(&self) -> Explainer {
+        let mut explainer = Explainer::default();
+        explainer.set_light_samples(Sampling::of(self.light_samples).until().samples);
+        explainer
+    }
 }
 
 /// Parser of pixels: column and row.
@@ -139,7 +154,13 @@ fn explained(
         options.tell(format!("explanations follow the CPU renderer, which ignores the edited {passed}"));
     }
     let settings = Settings { width, height, samples: 1, terms: part.terms };
-    let explanation = explain::pixel(&part.scene, registry, &settings, arguments.at)
+    let sampling = Sampling::of(arguments.light_samples);
+    if let Some(remark) = sampling.idle(&part.scene, registry) {
+        options.tell(remark);
+    }
+    let explanation = arguments
+        .explainer()
+        .pixel(&part.scene, registry, &settings, arguments.at)
         .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
     // An endless function is detected only when it runs.
     cpu_can_draw(&part.scene, registry)?;
@@ -152,7 +173,7 @@ fn influences(
     registry: &Registry,
 ) -> Result<Vec<Influence>, Failure> {
     let Explained { scene, settings, .. } = explained;
-    let found = Explainer::default().influences(scene, registry, settings, arguments.at);
+    let found = arguments.explainer().influences(scene, registry, settings, arguments.at);
     found.map_err(|error| Failure::Usage(format!("--at: {error}")))
 }
 

@@ -23,7 +23,7 @@ const MOST_FOR_NOISE: u32 = 1 << 16;
 pub(super) struct Sampling {
     /// Samples of each light with extent, and as many of the directions in which objects reflect most: 1 to 1048576, on the GPU
     /// to 4096; by default 256, with --noise 65536
-    #[arg(long, value_name = "N", value_parser = light_samples, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     light_samples: Option<u32>,
     /// Take samples of lights with extent until the noise is this low, on the CPU: the standard error of pixels over their mean
     /// luminance, in per cent, e.g. 1 or 0.5%
@@ -32,6 +32,11 @@ pub(super) struct Sampling {
 }
 
 impl Sampling {
+    /// This many samples, if given.
+    pub(super) fn of(light_samples: Option<u32>) -> Self {
+        Self { light_samples, noise: None }
+    }
+
     /// The termination conditions of sampling.
     pub(super) fn until(self) -> Until {
         let default = if self.noise.is_some() { MOST_FOR_NOISE } else { Until::default().samples };
@@ -103,7 +108,8 @@ pub(super) fn noted(about: About, light: &str) -> About {
     if light.is_empty() { about } else { about.with("Light", light) }
 }
 
-fn light_samples(text: &str) -> Result<u32, String> {
+/// Parser of a number of samples.
+pub(super) fn count(text: &str) -> Result<u32, String> {
     text.trim()
         .parse()
         .ok()

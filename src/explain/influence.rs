@@ -112,7 +112,9 @@ impl Explainer {
             let Some(entry) = registry.light(&light.light_type) else { continue };
             let (value, unit, limits) = match light.luminous_flux {
                 Some(flux) => (flux, "lm", limits::luminous_flux(entry.declaration)),
-                None => (light.intensity, entry.declaration.unit, limits::intensity(entry.declaration)),
+                None => {
+                    (light.intensity, entry.unit(&light.parameters), limits::intensity(entry.declaration))
+                }
             };
             let name = light.name.clone().unwrap_or_else(|| format!("{} {}", entry.declaration.name, i + 1));
             let label = format!("{name}: intensity");

@@ -1,6 +1,10 @@
 //! Light with extent in explanations: an integral over many directions instead of the equation for one.
 
-use super::{Geometry, Line, Lit, Model, measured, numbers::colour, workings::of_terms};
+use super::{
+    Geometry, Line, Lit, Model,
+    numbers::{DIGITS, colour, measured, rounded},
+    workings::of_terms,
+};
 use crate::{
     optics::{TermSelection, Terms},
     reflection::{EquationPart, Term},
@@ -17,7 +21,7 @@ pub struct Integral {
     pub error: Vec3,
     /// Number of samples of the light, and of the model's lobes.
     pub samples: u32,
-    /// The solid angle of the light, sr, and its standard error.
+    /// The solid angle of the light, sr, and its standard error; 0 where a formula gives it.
     pub solid_angle: [f32; 2],
     /// The sampled direction that contributes most; none if all are dark.
     pub brightest: Option<Brightest>,
@@ -49,7 +53,11 @@ impl Integral {
     #[must_use]
     pub fn filled(&self) -> String {
         let [angle, error] = self.solid_angle;
-        format!("As seen from the point it fills {} sr.", measured(Vec3::splat(angle), Vec3::splat(error)))
+        let angle = match error {
+            0.0 => rounded(angle, DIGITS),
+            _ => measured(Vec3::splat(angle), Vec3::splat(error)),
+        };
+        format!("As seen from the point it fills {angle} sr.")
     }
 
     /// A line for each term that is not 0.

@@ -25,7 +25,7 @@ use crate::{
     optics::{Frame, TermSelection, Terms, colour::luminance},
     parameter::{Parameter, Value},
     reference::{
-        DisplaySteps, Picture, Settings, Shot,
+        DisplaySteps, LightSamples, Picture, Settings, Shot,
         meshes::MeshStore,
         probe::{Probe, probe},
         visible,
@@ -441,9 +441,16 @@ pub fn pixel(
 #[derive(Debug, Default)]
 pub struct Explainer {
     meshes: MeshStore,
+    samples: LightSamples,
 }
 
 impl Explainer {
+    /// Sets the number of samples of each light with extent, and of the lobes; by default [`LightSamples::DEFAULT`], as in
+    /// pictures.
+    pub fn set_light_samples(&mut self, count: u32) {
+        self.samples = LightSamples::of(count.max(1));
+    }
+
     /// See [`pixel`].
     ///
     /// # Errors
@@ -455,7 +462,7 @@ impl Explainer {
         settings: &Settings,
         pixel: [u32; 2],
     ) -> Result<Explanation, ExplainError> {
-        let shot = Shot::new(scene, registry, settings);
+        let shot = Shot { samples: self.samples, ..Shot::new(scene, registry, settings) };
         inside(pixel, [settings.width, settings.height])?;
         let found = probe(&mut self.meshes, shot, pixel);
         let beyond = found.as_ref().map(|found| found.varying.position);

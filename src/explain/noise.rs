@@ -103,8 +103,8 @@ pub(super) fn estimated(v: Vec3, error: Option<Vec3>) -> String {
 mod tests {
     use super::*;
     use crate::{
-        explain::pixel,
-        reference::Settings,
+        explain::Explainer,
+        reference::{LightSamples, Settings},
         registry::Registry,
         scene::{Light, Scene},
     };
@@ -128,6 +128,11 @@ mod tests {
 
     /// The explanation of a pixel of the default scene under another light.
     fn explained(light: &str, shading: &str) -> Explanation {
+        explained_by(LightSamples::DEFAULT, light, shading)
+    }
+
+    /// The same with this number of samples.
+    fn explained_by(samples: u32, light: &str, shading: &str) -> Explanation {
         let mut scene = Scene { shading_model: shading.to_owned(), ..Scene::default() };
         scene.display.exposure = -1.0;
         let at = scene.objects[0].position;
@@ -140,7 +145,9 @@ mod tests {
         };
         scene.lights = vec![lamp(Vec3::new(1.0, 1.5, 2.0)), lamp(Vec3::new(-1.0, 0.5, 2.0))];
         let settings = Settings { width: 64, height: 36, samples: 1, ..Settings::default() };
-        pixel(&scene, &Registry::builtin(), &settings, [34, 16]).expect("inside")
+        let mut explainer = Explainer::default();
+        explainer.set_light_samples(samples);
+        explainer.pixel(&scene, &Registry::builtin(), &settings, [34, 16]).expect("inside")
     }
 
     /// The maximum number of decimals in the last line that begins with `begins`.
@@ -178,6 +185,33 @@ mod tests {
         let error = seen.error().expect("noise");
         assert!((error * error - squares).abs().max_element() < 1e-9);
         assert_eq!(explained("point", "phong").brighter_and_darker(), None);
+    }
+
+    #[test]
+    fn more_samples_have_less_noise_in_all_shading_models() {
+        for shading in ["flat", "gouraud", "phong"] {
+            let [few, usual, many] =
+                [64, LightSamples::DEFAULT, 4096].map(|samples| explained_by(samples, "rectangle", shading));
+            let error = |e: &Explanation| e.seen.as_ref().and_then(Seen::error).expect("noise").max_element();
+            assert!(error(&few) > error(&usual) && error(&usual) > 2.0 * error(&many), "{shading}");
+            let near = (few.steps.light - many.steps.light).abs().max_element();
+            assert!(near < 5.0 * error(&few), "{shading}: {near} and {}", error(&few));
+            assert!(
+                many.to_text().contains("by 4096 samples of the light and 4096 of the lobes"),
+                "{shading}"
+            );
+            assert_eq!(usual.to_text(), explained("rectangle", shading).to_text());
+        }
+    }
+
+    #[test]
+    fn a_known_solid_angle_has_no_error() {
+        let filled = |light: &str| {
+            let text = explained(light, "phong").to_text();
+            text.lines().find(|line| line.contains("it fills")).map(str::to_owned).expect(light)
+        };
+        assert!(filled("environment").ends_with("it fills 12.57 sr."), "{}", filled("environment"));
+        assert!(!filled("rectangle").contains('±') && filled("cylinder").contains('±'));
     }
 
     #[test]

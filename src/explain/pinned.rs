@@ -78,7 +78,7 @@ impl Explainer {
         anchor: &Anchor,
     ) -> Option<(Explanation, Sight)> {
         let wanted = [anchor.position, anchor.normal];
-        let shot = Shot::new(scene, registry, settings);
+        let shot = Shot { samples: self.samples, ..Shot::new(scene, registry, settings) };
         let found = probe_point(&mut self.meshes, shot, object, wanted)?;
         let (point, normal) = (found.varying.position, found.face_normal);
         let (pixel, inside) = pixel_of(&scene.observer, [settings.width, settings.height], point);

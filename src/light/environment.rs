@@ -9,7 +9,12 @@ use super::{
     sky::{self, Sky},
     studio,
 };
-use crate::{optics::sampling, parameter::Parameter, parameters, shader::wgsl};
+use crate::{
+    optics::{radiometry::SPHERE, sampling},
+    parameter::Parameter,
+    parameters,
+    shader::wgsl,
+};
 
 const SOURCE: Parameter = Parameter::choice(
     "source",
@@ -174,6 +179,10 @@ impl LightType for Environment {
         all
     }
 
+    fn unit(&self) -> &'static str {
+        if self.source == UNIFORM { "cd/m²" } else { Self::DECLARATION.unit }
+    }
+
     fn sample(&self, light: &LightRecord, _p: Vec3, u: Vec2) -> Sample {
         let at = |d| {
             let (luminance, pdf) = self.at(d);
@@ -193,6 +202,11 @@ impl LightType for Environment {
         let (luminance, pdf) = self.at(self.turned_back(l));
         Seen { radiance: light.intensity * luminance, pdf, distance: f32::INFINITY }
     }
+
+    fn fills(&self, _light: &LightRecord, _p: Vec3) -> Option<f64> {
+        Some(SPHERE)
+    }
+
     fn same_between(&self, light: &LightRecord, corners: &[Vec3; 4]) -> Option<Vec3> {
         let luminance = match self.source {
             UNIFORM => Some(1.0),

@@ -9,7 +9,12 @@ use glam::{Vec2, Vec3};
 
 use crate::{
     declared::{entry, forwards, take_each},
-    optics::{colour::Encoding, radiometry::Arriving, sampling::power_heuristic},
+    optics::{
+        colour::{Encoding, luminance},
+        radiometry::{Arriving, SPHERE},
+        sampling::power_heuristic,
+        sequence::Sequence,
+    },
     parameter::{Parameter, ParameterSet, Table, TypeComponent, Value, Values, words},
     shader::Source,
     text::capitalised,
@@ -191,6 +196,12 @@ pub trait LightType: ParameterSet + Component + Reflectable {
         None
     }
 
+    /// The solid angle that a light with extent fills as seen from `p`, sr, if a formula gives it. By default `None`: it is
+    /// estimated by samples.
+    fn fills(&self, _light: &LightRecord, _p: Vec3) -> Option<f64> {
+        None
+    }
+
     /// The factors of the intensity at `p`, as in the [equation](Declaration::equation), for explanations:
     /// their product is the intensity of [`incident`](Self::incident). By default, the intensity of the
     /// light, and the rest.
@@ -202,6 +213,11 @@ pub trait LightType: ParameterSet + Component + Reflectable {
     /// (cd), `Φ = I Ω`. `None` for types without flux, such as infinitely distant light.
     fn solid_angle(&self) -> Option<f64> {
         None
+    }
+
+    /// The unit of the intensity with these parameters, by default that of the declaration.
+    fn unit(&self) -> &'static str {
+        Self::DECLARATION.unit
     }
 }
 
@@ -226,6 +242,9 @@ pub trait Emitter: Send + Sync {
     /// See [`LightType::same_between`].
     fn same_between(&self, light: &LightRecord, corners: &[Vec3; 4]) -> Option<Vec3>;
 
+    /// See [`LightType::fills`].
+    fn fills(&self, light: &LightRecord, p: Vec3) -> Option<f64>;
+
     /// See [`LightType::factors`].
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor>;
 }
@@ -238,6 +257,7 @@ impl<L: LightType> Emitter for L {
         fn seen(light: &LightRecord, p: Vec3, l: Vec3) -> Seen;
         fn bounds(light: &LightRecord, p: Vec3) -> Option<Cone>;
         fn same_between(light: &LightRecord, corners: &[Vec3; 4]) -> Option<Vec3>;
+        fn fills(light: &LightRecord, p: Vec3) -> Option<f64>;
         fn factors(light: &LightRecord, p: Vec3) -> Vec<Factor>;
     }
 
@@ -352,6 +372,7 @@ pub struct LightEntry {
     /// Component of the type.
     pub component: TypeComponent,
     solid_angle: fn(&Values) -> Option<f64>,
+    unit: fn(&Values) -> &'static str,
     derived: &'static [Parameter],
     derive: fn(&Values, Encoding) -> Vec<f32>,
 }
@@ -372,6 +393,7 @@ impl LightEntry {
             },
             component: TypeComponent::of::<L>(),
             solid_angle: |values| L::from_values(values, Encoding::default()).solid_angle(),
+            unit: |values| L::from_values(values, Encoding::default()).unit(),
             derived: L::DERIVED,
             derive: |values, encoding| L::from_values(values, encoding).derived(),
         }
@@ -382,6 +404,33 @@ impl LightEntry {
     #[must_use]
     pub fn solid_angle(&self, values: &Values) -> Option<f64> {
         (self.solid_angle)(values)
+    }
+
+    /// Unit of the intensity of a light with these parameters.
+    #[must_use]
+    pub fn unit(&self, values: &Values) -> &'static str {
+        (self.unit)(values)
+    }
+
+    /// The mean luminance over all directions, cd/m², of a light with these parameters and the intensity 1, by its samples:
+    /// `∫ L dω / 4π`. `None` for a light that is somewhere, or without extent: it has none that is the same everywhere.
+    #[must_use]
+    pub fn mean_luminance(&self, values: &Values) -> Option<f64> {
+        /// With Sobol's points, the mean of a sky or a studio is off by less than 0.2 %.
+        const SAMPLES: u32 = 4096;
+        let d = self.declaration;
+        if !d.extent || d.has_position || d.has_direction {
+            return None;
+        }
+        let emitter = (self.instantiate)(values, Encoding::default());
+        let light = LightRecord { colour: Vec3::ONE, intensity: 1.0, ..LightRecord::default() };
+        let sequence = Sequence::new(0, 1);
+        let sum: f64 = (0..SAMPLES)
+            .map(|i| emitter.sample(&light, Vec3::ZERO, sequence.point(i)))
+            .filter(|sample| sample.pdf > 0.0)
+            .map(|sample| f64::from(luminance(sample.radiance) / sample.pdf))
+            .sum();
+        Some(sum / (f64::from(SAMPLES) * SPHERE))
     }
 
     /// True if lights of the type have a luminous flux.

@@ -102,6 +102,21 @@ impl LightType for Rectangle {
         Cone::of_ball(light.position - p, self.half().length())
     }
 
+    /// The sum of `± atan(x y / (h √(x² + y² + h²)))` over the corners, with h the height of the point above the plane.
+    fn fills(&self, light: &LightRecord, p: Vec3) -> Option<f64> {
+        let middle = (light.position - p).as_dvec3();
+        let facing = -middle.dot(light.direction.as_dvec3());
+        if !extent::shines(facing as f32, self.two_sided) {
+            return Some(0.0);
+        }
+        let height = facing.abs();
+        let [x, y] = extent::sides(light.direction, self.turn).map(|side| middle.dot(side.as_dvec3()));
+        let half = self.half().as_dvec2();
+        let part = |x: f64, y: f64| (x * y).atan2(height * (x * x + y * y + height * height).sqrt());
+        let [left, right, low, high] = [x - half.x, x + half.x, y - half.y, y + half.y];
+        Some(part(right, high) - part(left, high) - part(right, low) + part(left, low))
+    }
+
     fn solid_angle(&self) -> Option<f64> {
         Some(extent::flux(f64::from(self.width) * f64::from(self.height), self.two_sided))
     }

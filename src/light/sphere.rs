@@ -7,7 +7,11 @@ use super::{
     disc::RADIUS,
     extent::{self, Cone, Sample, Seen, VISIBLE},
 };
-use crate::{optics::sampling, parameters, shader::wgsl};
+use crate::{
+    optics::{radiometry::SPHERE, sampling},
+    parameters,
+    shader::wgsl,
+};
 
 parameters! {
     /// **Sphere**: a globe lamp; the same luminance L, cd/m², from every point of it. The luminous flux is
@@ -67,6 +71,14 @@ impl LightType for Sphere {
 
     fn bounds(&self, light: &LightRecord, p: Vec3) -> Option<Cone> {
         Cone::of_ball(light.position - p, self.radius)
+    }
+
+    /// `2π (1 − √(1 − (r/d)²))`, from outside.
+    fn fills(&self, light: &LightRecord, p: Vec3) -> Option<f64> {
+        let distance = (light.position - p).as_dvec3().length();
+        let sine = f64::from(self.radius) / distance;
+        let rise = sine * sine / (1.0 + ((1.0 - sine) * (1.0 + sine)).sqrt());
+        Some(if sine < 1.0 { 0.5 * SPHERE * rise } else { 0.0 })
     }
 
     fn solid_angle(&self) -> Option<f64> {

@@ -6,7 +6,12 @@ use super::{
     Declaration, LightRecord, LightType,
     extent::{Cone, Sample, Seen, VISIBLE, number},
 };
-use crate::{optics::sampling, parameter::Parameter, parameters, shader::wgsl};
+use crate::{
+    optics::{radiometry::SPHERE, sampling},
+    parameter::Parameter,
+    parameters,
+    shader::wgsl,
+};
 
 const DIAMETER: Parameter = Parameter::number("diameter", 0.01..=90.0, 0.53)
     .symbol("δ")
@@ -69,5 +74,11 @@ impl LightType for Sun {
 
     fn bounds(&self, light: &LightRecord, _p: Vec3) -> Option<Cone> {
         Some(Cone { axis: -light.direction, half_angle: 1.0001 * self.radius() })
+    }
+
+    /// `4π sin²(δ/4)`, which is `2π (1 − cos(δ/2))`.
+    fn fills(&self, _light: &LightRecord, _p: Vec3) -> Option<f64> {
+        let sine = (0.25 * f64::from(self.diameter).to_radians()).sin();
+        Some(SPHERE * sine * sine)
     }
 }

@@ -73,6 +73,45 @@ impl Lamp {
     }
 }
 
+#[test]
+fn solid_angles_by_formula_are_those_of_the_samples() {
+    let p = Vec3::new(0.3, -0.2, 0.1);
+    for (id, settings, position, direction) in [
+        ("rectangle", "width=2 height=1 roll=25", [0.5, 1.5, 2.0], [-0.2, -0.5, -1.0]),
+        ("rectangle", "width=0.01 height=0.02", [1.0, 2.0, 1.0], [-0.5, -1.0, -0.4]),
+        ("rectangle", "width=3 height=2 two_sided=true", [0.0, 0.0, 1.0], [0.1, 0.2, 1.0]),
+        ("sphere", "radius=0.8", [1.0, 1.0, 1.0], [0.0; 3]),
+        ("sphere", "radius=0.001", [4.0, 1.0, 1.0], [0.0; 3]),
+        ("sun", "diameter=0.53", [0.0; 3], [0.0, -1.0, 0.3]),
+        ("sun", "diameter=60", [0.0; 3], [0.0, -1.0, 0.3]),
+        ("environment", "source=uniform", [0.0; 3], [0.0; 3]),
+        ("environment", "source=studio", [0.0; 3], [0.0; 3]),
+    ] {
+        let lamp = lamp(id, settings, position, direction);
+        let exact = lamp.emitter.fills(&lamp.record, p).expect(id);
+        let sequence = Sequence::new(5, 1);
+        let inverse = |i| {
+            let pdf = lamp.sample(p, sequence.point(i)).pdf;
+            if pdf > 0.0 { 1.0 / f64::from(pdf) } else { 0.0 }
+        };
+        let count = 1 << 15;
+        let mean = (0..count).map(inverse).sum::<f64>() / f64::from(count);
+        assert!((mean / exact - 1.0).abs() < 0.01, "{id} {settings}: {exact}, by samples {mean}");
+    }
+    // The wrong twin: area over squared distance, without the cosine.
+    let flat = lamp("rectangle", "width=0.01 height=0.02", [1.0, 2.0, 1.0], [-0.5, -1.0, -0.4]);
+    let exact = flat.emitter.fills(&flat.record, p).expect("a rectangle");
+    let wrong = 0.01 * 0.02 / f64::from((flat.record.position - p).length_squared());
+    assert!((wrong / exact - 1.0).abs() > 0.01, "{wrong} {exact}");
+    // From behind and from inside nothing is seen.
+    let behind = Vec3::new(2.0, 4.0, 1.8);
+    assert_eq!(flat.emitter.fills(&flat.record, behind), Some(0.0));
+    let sphere = lamp("sphere", "radius=0.8", [1.0, 1.0, 1.0], [0.0; 3]);
+    for inside in [Vec3::ONE, Vec3::new(1.0, 1.5, 1.0)] {
+        assert_eq!(sphere.emitter.fills(&sphere.record, inside), Some(0.0));
+    }
+}
+
 /// The directions in which a light may be, stretched over the whole sphere, so that small lights fill many boxes of the
 /// chi-squared test.
 enum Chart {

@@ -173,13 +173,13 @@ fn requested(what: Pick, session: &Session, registry: &Registry) -> (&'static st
 }
 
 /// The action that a dialog was opened for, with the selected file.
-fn action(what: Pick, path: PathBuf, session: &Session) -> Option<Action> {
+fn action(what: Pick, path: PathBuf, session: &Session, registry: &Registry) -> Option<Action> {
     Some(match what {
         // The user was asked about unsaved changes before the dialog opened.
         Pick::Open => Action::Open(path),
         Pick::Save => Action::SaveAs(path),
         Pick::File(part, parameter) => {
-            return session.file_chosen(part, parameter, &path).map(Action::Edit);
+            return session.file_chosen(part, parameter, &path, registry).map(Action::Edit);
         }
         Pick::Lesson => Action::Lesson(LessonCommand::Open(LessonSource::File(path))),
         Pick::ShaderFolder => Action::Do(Effect::ExportShaders(path)),
@@ -269,7 +269,7 @@ impl Dialogs {
         self.finish(ctx, &palette);
         ctx.set_global_style(plain);
         if let (Some(path), Some(what)) = (self.dialog.take_picked(), self.asked) {
-            actions.extend(action(what, path, session));
+            actions.extend(action(what, path, session, registry));
         } else if *self.dialog.state() == DialogState::Cancelled {
             match self.asked {
                 Some(Pick::Open) => session.questions.not_opened(),

@@ -32,7 +32,7 @@ struct Parts {
 }
 
 impl Sight {
-    pub(super) fn new(Shot { scene, registry, settings }: Shot, setting: Setting) -> Self {
+    pub(super) fn new(Shot { scene, registry, settings, .. }: Shot, setting: Setting) -> Self {
         let encoding = scene.display.encoding;
         let size = [settings.width as f32, settings.height as f32];
         let light = setting.light.and_then(|i| scene.shining().nth(i)).and_then(|light| {

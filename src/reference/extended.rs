@@ -107,6 +107,11 @@ impl Extended {
         self.groups.push((group, first));
     }
 
+    /// No light, with these samples.
+    pub(super) fn with(samples: LightSamples) -> Self {
+        Self { samples, ..Self::default() }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.groups.is_empty()
     }
@@ -215,8 +220,12 @@ impl Extended {
         }
     }
 
-    /// The solid angle of its single light, and the standard error: the mean of the inverse densities.
+    /// The solid angle of its single light, and the standard error: exact where the light knows it, otherwise the mean of
+    /// the inverse densities.
     fn solid_angle(&self, (emitter, record): (&dyn Emitter, &LightRecord), p: Vec3, seed: u32) -> [f32; 2] {
+        if let Some(exact) = emitter.fills(record, p) {
+            return [exact as f32, 0.0];
+        }
         let number = self.groups.first().map_or(0, |(_, number)| *number);
         let sequence = Sequence::new(seed, number + 1);
         let inverse = |i: u32| {

@@ -180,12 +180,12 @@ pub(crate) struct LitBy {
 /// The light loop at a point, light by light: each contribution equals the result of the loop for that light
 /// alone, up to rounding.
 pub(crate) fn light_by_light(
-    Shot { scene, registry, settings }: Shot,
+    Shot { scene, registry, settings, samples }: Shot,
     (surface, body): (&dyn Surface, Option<&Body>),
     point: &Point,
 ) -> Loop {
     let terms = settings.terms;
-    let all = Lights::new(scene, registry, terms);
+    let all = Lights::new(scene, registry, terms).sampled(samples);
     let lobes = surface.lobes();
     let lights = all.on(surface, lobes, body).seeded(point.seed);
     let [eye, v] = lights.view(point.position, point.normal);
@@ -200,7 +200,7 @@ pub(crate) fn light_by_light(
         let group = (entry.group)(&[(&light.parameters, record)], encoding);
         let mut through = Vec3::ZERO;
         let (response, contribution, integral) = if entry.declaration.extent {
-            let mut extended = Extended::default();
+            let mut extended = Extended::with(samples);
             extended.add(group, number as u32);
             let mut integral =
                 extended.integral((&*emitter, &record), surface, point.position, v, &frame, point.seed);
@@ -212,7 +212,8 @@ pub(crate) fn light_by_light(
             }
             (integral.terms, integral.terms.select(terms), Some(integral))
         } else {
-            let alone = Lights { groups: vec![group], observer: all.observer, terms, ..Lights::default() };
+            let alone = Lights { groups: vec![group], observer: all.observer, terms, ..Lights::default() }
+                .sampled(samples);
             let response = match incident {
                 Incident::From { l, .. } => surface.response(l, v, &frame),
                 Incident::Uniform { .. } => {

@@ -161,11 +161,13 @@ pub(crate) struct Shot<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) registry: &'a Registry,
     pub(crate) settings: &'a Settings,
+    /// The samples of lights with extent where single points are looked into; a [`Drawing`] has its own.
+    pub(crate) samples: LightSamples,
 }
 
 impl<'a> Shot<'a> {
     pub(crate) fn new(scene: &'a Scene, registry: &'a Registry, settings: &'a Settings) -> Self {
-        Self { scene, registry, settings }
+        Self { scene, registry, settings, samples: LightSamples::default() }
     }
 
     /// A picture for whose light nobody watches, with the usual samples.
@@ -327,7 +329,7 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
     &Drawing { shot, sight, remaining, samples, end, odd, tiles: at_once }: &Drawing,
     finish: impl Fn(Vec4, usize) -> T + Sync,
 ) -> Vec<T> {
-    let Shot { scene, registry, settings } = shot;
+    let Shot { scene, registry, settings, .. } = shot;
     let late = || end.is_some_and(|end| Instant::now() >= end);
     let (width, height) = (settings.width as usize, settings.height as usize);
     if width * height == 0 {

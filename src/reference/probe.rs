@@ -204,10 +204,10 @@ impl At<'_> {
 }
 
 /// Shades a triangle again, recording the calculation.
-fn shaded(found: &Found, Shot { scene, registry, settings }: Shot, at: &At) -> Probe {
+fn shaded(found: &Found, Shot { scene, registry, settings, samples }: Shot, at: &At) -> Probe {
     let Found { object, draw, posed, face, weights } = found;
     let (object, face) = (*object, *face);
-    let lights = Lights::new(scene, registry, settings.terms);
+    let lights = Lights::new(scene, registry, settings.terms).sampled(samples);
     let lighting = &Asked { lighting: draw.under(&lights), points: RefCell::default() };
     let (polygon, corners) = face;
     let per_polygon = draw.stage == Stage::Polygon;

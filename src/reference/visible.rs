@@ -89,7 +89,7 @@ pub(crate) fn in_front(shot: Shot, pixel: [u32; 2], point: Option<Vec3>) -> Opti
 }
 
 impl VisibleLights {
-    pub(super) fn new(Shot { scene, registry, settings }: Shot) -> Self {
+    pub(super) fn new(Shot { scene, registry, settings, .. }: Shot) -> Self {
         let encoding = scene.display.encoding;
         let eye = scene.observer.position;
         let ahead = scene.observer.direction.normalize_or(Vec3::NEG_Z);

@@ -121,7 +121,7 @@ impl WireDrawer {
 
     /// Passes on lines and dots, some objects at a time and the nearest first, until `take` returns false.
     fn each(&mut self, shot: Shot, channel: DebugChannel, take: &mut dyn FnMut(Wires) -> bool) {
-        let Shot { scene, registry, settings } = shot;
+        let Shot { scene, registry, settings, .. } = shot;
         let (width, height) = (settings.width as usize, settings.height as usize);
         if !channel.has_wires() || width == 0 || height == 0 {
             return;

@@ -6,6 +6,7 @@ use super::{
     Field, SceneSize,
     field::{Ids, Kind},
     part::{Fields as _, Key, part},
+    range::significant,
 };
 use crate::{
     light::{self, Emitter, Incident, LightEntry, LightRecord},
@@ -13,7 +14,7 @@ use crate::{
         colour::{Encoding, srgb_encode},
         temperature::{self, MAX_TEMPERATURE, MIN_TEMPERATURE},
     },
-    parameter::{Value, Values},
+    parameter::{Parameter, Value, Values},
     registry::Registry,
 };
 
@@ -28,6 +29,29 @@ impl Light {
             Some((flux, solid_angle)) => ((f64::from(flux) / solid_angle) as f32).min(f32::MAX),
             None => self.intensity,
         }
+    }
+
+    /// The values that set a parameter of the light's type. Where the parameter says what shines all around, as the source of
+    /// an environment and the picture in its file do, the intensity follows, so that the mean luminance stays: a sky, a studio
+    /// and pictures are of very different luminance.
+    #[must_use]
+    pub fn setting(&self, entry: &LightEntry, p: &Parameter, value: Value) -> Vec<(Key, Option<Value>)> {
+        let rules =
+            |other: &Parameter| other.used_when.is_some_and(|condition| condition.parameter == p.name);
+        let is_source = entry.parameters.iter().any(rules) && !p.kind.is_flag() || p.kind.format().is_some();
+        let mut after = self.parameters.clone();
+        after.set(p.name, value.clone());
+        let mean = |values: &Values| entry.mean_luminance(values).filter(|_| is_source);
+        let mut values = vec![(Key::Own(p.name), Some(value))];
+        if let Some((before, after)) = mean(&self.parameters).zip(mean(&after))
+            && before != after
+        {
+            let intensity = significant(f64::from(self.intensity) * before / after, 3) as f32;
+            if before > 0.0 && after > 0.0 && intensity.is_finite() {
+                values.push((Self::intensity.into(), Some(Value::Number(intensity))));
+            }
+        }
+        values
     }
 
     /// The colour for calculation, whether given as a colour or as a temperature.

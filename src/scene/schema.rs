@@ -312,7 +312,7 @@ fn unit(unit: &str) -> &str {
         "cd" => "candela (cd)",
         "lx" => "lux (lx)",
         "cd/m²" => "candela per square metre (cd/m²)",
-        "×" => "a factor: 1 is the lamp as it is",
+        "×" => "a factor: 1 is the light as it is",
         other => other,
     }
 }

@@ -63,7 +63,7 @@ pub(super) fn lights(ui: &mut Ui, explanation: &Explanation, seen: &Seen, name: 
     }
     if spot.lights.len() > 1 {
         let before = format!("sum over {}", plural(spot.lights.len(), "light"));
-        rows::estimate(ui, &before, spot.sum, spot.error(), true);
+        rows::told(ui, &before, spot.sum, spot.error(), true);
     }
     if spot.is_replaced() {
         rows::light(ui, "what is no number counts as 0, and nothing beyond ±10³⁰:", spot.colour, true);
@@ -147,6 +147,7 @@ fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
         Some(integral) => {
             place_of(ui, lit);
             theme::note(ui, integral.basis());
+            samples(ui);
             theme::note(ui, integral.filled());
         }
         None => arriving(ui, lit),
@@ -158,6 +159,25 @@ fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
         ui.add_space(4.0);
         theme::note(ui, "directions and angles");
         directions(ui, seen, lit.geometry.as_ref());
+    }
+}
+
+/// The choice of the number of samples.
+fn samples(ui: &mut Ui) {
+    let choice = probe::choice(ui.ctx());
+    let names = probe::SAMPLES.map(|count| count.to_string());
+    let tip = |ui: &mut Ui, i: usize| {
+        ui.label(match i {
+            0 => "As many samples as the picture has".to_owned(),
+            _ => {
+                let fewer = (probe::SAMPLES[i] / probe::SAMPLES[0]).isqrt();
+                format!("Further samples, for this explanation alone: about 1/{fewer} of the standard error, or less")
+            }
+        });
+    };
+    let names = names.each_ref().map(String::as_str);
+    if let Some(i) = segmented(ui, "Light samples", &names, Some(choice.samples), tip) {
+        probe::choose(ui.ctx(), Choice { samples: i, ..choice });
     }
 }
 

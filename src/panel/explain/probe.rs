@@ -12,7 +12,7 @@ use crate::{
     library::status::Reloaded,
     optics::TermSelection,
     panel::{is_in_sight, keys, marks::Lens, prelude::*, state::Pin},
-    reference::{Settings, ignored_edits},
+    reference::{LightSamples, Settings, ignored_edits},
     scene::Observer,
 };
 
@@ -74,7 +74,12 @@ pub(super) struct Choice {
     /// Index of the point among [`spots`]; by default the one with the largest weight.
     pub(super) spot: Option<usize>,
     pub(super) light: Unfolded,
+    /// Index of the number of samples of lights with extent among [`SAMPLES`].
+    pub(super) samples: usize,
 }
+
+/// The choice of samples of lights with extent: those of the picture first.
+pub(super) const SAMPLES: [u32; 4] = [LightSamples::DEFAULT, 1024, 4096, 16_384];
 
 /// Inputs of an explanation.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,6 +91,8 @@ struct Question {
     held: Option<Held>,
     /// The view of the pin, and other views in which the point is shown too.
     views: Vec<Shown>,
+    /// Samples of lights with extent.
+    samples: u32,
     /// The camera, or where it was before the ray was looked at from the side.
     observer: Observer,
     /// True if it was.
@@ -457,6 +464,7 @@ impl Probe {
             pin,
             held: self.holding.now(session),
             views,
+            samples: SAMPLES[self.choice.samples.min(SAMPLES.len() - 1)],
             observer,
             aside: moved > SAME,
             reloaded: session.shaders.last.clone(),
@@ -478,6 +486,7 @@ impl Probe {
     ) -> Option<Explained> {
         self.calculations += 1;
         let Self { scenes, explainer, .. } = self;
+        explainer.set_light_samples(question.samples);
         // The scene of the view, from the camera of the window.
         scenes.retain(|(revision, ..)| *revision == question.revision);
         if !scenes.iter().any(|(_, of, _)| *of == view) {

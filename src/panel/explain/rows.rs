@@ -211,6 +211,14 @@ pub(super) fn estimate(ui: &mut Ui, before: &str, v: Vec3, error: Option<Vec3>, 
     line(ui, name, Some(v), shown).on_hover_text(all_within(v, error))
 }
 
+/// A label and a colour, with its standard error if it has one.
+pub(super) fn told(ui: &mut Ui, before: &str, v: Vec3, error: Option<Vec3>, bold: bool) {
+    match error {
+        Some(error) => measured(ui, before, v, error, bold),
+        None => drop(light(ui, before, v, bold)),
+    }
+}
+
 /// A label and a colour with its standard error, rounded to the digits that the error justifies.
 pub(super) fn measured(ui: &mut Ui, before: &str, v: Vec3, error: Vec3, bold: bool) {
     let (name, shown) = (text(ui, before), value_text(ui, raised(&explain::measured(v, error)), bold));

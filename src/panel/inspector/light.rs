@@ -48,7 +48,8 @@ pub(super) fn light(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
                     context.act(Action::Do(Effect::Pick(Pick::File(Selection::Light(i), p))));
                 }
                 if let Some(v) = knob_of(ui, p.name, p, (entry.parameters, &light.parameters), None) {
-                    context.edit(Edit::parameter(part, p.name, v));
+                    let values = light.setting(entry, p, v);
+                    context.edit(Edit::Set { part, values, what: None });
                 }
             }
         })
@@ -92,9 +93,10 @@ fn strength(d: &Declaration) -> (&'static str, &'static str) {
 fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Option<Edit> {
     let d = entry.declaration;
     let intensity = f64::from(light.intensity_as(entry));
-    let help = unit_help(d.unit);
+    let unit = entry.unit(&light.parameters);
+    let help = unit_help(unit);
     let (symbol, meaning) = strength(d);
-    let caption = Caption { symbol, unit: d.unit, help, ..Caption::of(&Light::intensity) };
+    let caption = Caption { symbol, unit, help, ..Caption::of(&Light::intensity) };
     let default = f64::from(d.default_intensity);
     let limits = limits::intensity(d);
     let Some(solid_angle) = entry.solid_angle(&light.parameters) else {
@@ -208,7 +210,7 @@ fn unit_help(unit: &str) -> &'static str {
             "In candela per square metre: the luminance, as bright as it looks from wherever it is seen."
         }
         "lm" => "In lumen: the light sent out in all directions together, as printed on light bulbs.",
-        "×" => "A factor: 1 is the lamp as it is, 0.5 the lamp dimmed to half.",
+        "×" => "A factor: 1 is the light as it is, 0.5 the light dimmed to half.",
         "lx" => "In lux: the light that arrives on a surface that faces it.",
         _ => "How strong the light is.",
     }

@@ -6,10 +6,10 @@ use super::{Action, Effect, LessonCommand, LessonSource, Note, Session, Severity
 use crate::files::Shown as _;
 use crate::{
     custom,
-    document::{Edit, Selection},
+    document::Selection,
     parameter::{Parameter, Value},
     registry::Registry,
-    scene::{Part, formats},
+    scene::formats,
 };
 
 /// True if a file has one of these extensions, ignoring case.
@@ -71,7 +71,7 @@ impl Session {
         let id = lamp.declaration.id;
         match selected.filter(|(_, known)| *known == id) {
             Some((i, _)) => {
-                let edit = Edit::parameter(Part::Light(i), parameter.name, file);
+                let edit = self.setting(Selection::Light(i), parameter, file, registry);
                 self.edit(edit, registry);
             }
             None => self.add_light(id, |light| light.parameters.set(parameter.name, file), registry),

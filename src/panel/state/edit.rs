@@ -126,8 +126,10 @@ impl Session {
     fn change_light_type(&mut self, i: usize, id: &str, registry: &Registry) -> Result<(), String> {
         let position = self.document.lights.get(i).and_then(|light| light.position);
         let stand = self.stand(registry);
-        let position = position.unwrap_or_else(|| stand.light(None));
-        let place = Some((position, stand.towards_middle(position)));
+        let place = registry.light(id).map(|entry| {
+            let position = position.unwrap_or_else(|| stand.new_light(entry));
+            (position, stand.direction(entry, position))
+        });
         self.document.change_light_type(i, id, place, self.selection, registry)
     }
 

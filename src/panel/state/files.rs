@@ -135,8 +135,32 @@ impl Session {
         part: Selection,
         parameter: &'static Parameter,
         path: &Path,
+        registry: &Registry,
     ) -> Option<Edit> {
-        Some(Edit::parameter(Part::from(part), parameter.name, self.chosen(parameter, path)?))
+        let file = self.chosen(parameter, path)?;
+        Some(self.setting(part, parameter, file, registry))
+    }
+
+    /// The edit that sets a parameter of a light or an object, with what has to follow.
+    pub(super) fn setting(
+        &self,
+        part: Selection,
+        parameter: &'static Parameter,
+        value: Value,
+        registry: &Registry,
+    ) -> Edit {
+        let light = match part {
+            Selection::Light(i) => self.document.lights.get(i),
+            _ => None,
+        };
+        let found = light.and_then(|light| Some((light, registry.light(&light.light_type)?)));
+        let part = Part::from(part);
+        match found {
+            Some((light, entry)) => {
+                Edit::Set { part, values: light.setting(entry, parameter, value), what: None }
+            }
+            None => Edit::parameter(part, parameter.name, value),
+        }
     }
 
     /// A selected file, as the value of a parameter.

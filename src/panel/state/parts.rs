@@ -29,14 +29,17 @@ impl Session {
         let Some(entry) = registry.light(id).filter(|_| self.has_room(LIGHTS)) else { return };
         let d = entry.declaration;
         let stand = self.stand(registry);
-        let position = stand.light(None);
+        let position = stand.new_light(entry);
         let mut light = Light {
             light_type: id.to_owned(),
             position: d.has_position.then_some(position),
-            direction: d.has_direction.then(|| stand.towards_middle(position)),
+            direction: d.has_direction.then(|| stand.direction(entry, position)),
             intensity: d.default_intensity,
             ..Light::default()
         };
+        if d.has_position {
+            stand.fit_size(entry, position, &mut light.parameters);
+        }
         with(&mut light);
         let (intensity, clips) = stand.intensity(&light, entry);
         light.intensity = intensity;
@@ -78,7 +81,7 @@ impl Session {
                     return;
                 }
                 let mut copy = self.document.lights[i].clone();
-                copy.position = copy.position.map(|p| self.stand(registry).light(Some(p)));
+                copy.position = copy.position.map(|p| self.stand(registry).copy_of_light(p));
                 copy.name = copy.name.map(|n| free_name(&self.document, &n));
                 self.document.insert_light(i + 1, copy, "Duplicate", self.selection, registry);
                 self.select_new(Selection::Light(i + 1));
@@ -151,6 +154,10 @@ impl Session {
 
     /// The scene in front of the camera, for placing new parts.
     pub(super) fn stand<'a>(&'a self, registry: &'a Registry) -> Stand<'a> {
-        Stand::new(&self.document, registry, self.facts.eye, self.facts.camera)
+        let selected = match self.selection {
+            Selection::Object(i) => self.document.objects.get(i).map(|object| object.position),
+            _ => None,
+        };
+        Stand::new(&self.document, registry, self.facts.eye, self.facts.camera).aiming(selected)
     }
 }

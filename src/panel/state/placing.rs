@@ -19,6 +19,7 @@ use crate::{
 use block::Block;
 
 mod block;
+mod lamp;
 
 /// Free space around a light, and between an object and the camera, in metres.
 const AIR: f32 = 0.3;
@@ -52,12 +53,19 @@ pub(super) struct Stand<'a> {
     turn: Quat,
     /// Bounding spheres of the objects.
     taken: Vec<(Vec3, f32)>,
+    /// The position of the selected object.
+    aim: Option<Vec3>,
 }
 
 impl<'a> Stand<'a> {
     pub(super) fn new(scene: &'a Scene, registry: &'a Registry, eye: Vec3, turn: Quat) -> Self {
         let taken = scene.objects.iter().map(|o| (o.position, radius(o, registry))).collect();
-        Self { scene, registry, eye, turn, taken }
+        Self { scene, registry, eye, turn, taken, aim: None }
+    }
+
+    /// New lamps light this place if it is in view.
+    pub(super) fn aiming(self, aim: Option<Vec3>) -> Self {
+        Self { aim, ..self }
     }
 
     /// Position and size of a new object.
@@ -185,8 +193,25 @@ impl<'a> Stand<'a> {
         self.is_inside(block.centre, reach.max(self.margin())) && self.is_in_air(block.centre, block.radius)
     }
 
-    /// Position of a new light, or of a copy of the light at `near`.
-    pub(super) fn light(&self, near: Option<Vec3>) -> Vec3 {
+    /// Position of a new light of a type.
+    pub(super) fn new_light(&self, entry: &LightEntry) -> Vec3 {
+        let is_lamp = !entry.declaration.sizes.is_empty();
+        self.light(is_lamp.then(|| self.above_target()), is_lamp)
+    }
+
+    /// Position of a copy of the light at a position.
+    pub(super) fn copy_of_light(&self, at: Vec3) -> Vec3 {
+        self.light(Some(at), false)
+    }
+
+    /// The position of these that is farthest from all lights, as seen from the centre of the view.
+    fn darkest(&self, all: impl IntoIterator<Item = Vec3>) -> Option<Vec3> {
+        let dark = |a: &Vec3, b: &Vec3| self.nearest_light(*a).total_cmp(&self.nearest_light(*b));
+        all.into_iter().min_by(dark)
+    }
+
+    /// Position of a light: at `near` if it is a lamp, beside `near` if it is a copy, otherwise where it is noticed most.
+    fn light(&self, near: Option<Vec3>, is_lamp: bool) -> Vec3 {
         let distance = (self.middle() - self.eye).length();
         let [across, up] = self.opening();
         // Over the shoulder or from below, on the side with the least light, where the new light is most noticeable.
@@ -195,9 +220,8 @@ impl<'a> Stand<'a> {
             self.eye + self.turn * (depth * Vec3::new(side * across, rise * up, -1.0))
         };
         let wanted = near.unwrap_or_else(|| {
-            let sides = [[0.4, 0.6], [-0.4, 0.6], [0.4, -0.5], [-0.4, -0.5]].map(beside);
-            let dark = |a: &Vec3, b: &Vec3| self.nearest_light(*a).total_cmp(&self.nearest_light(*b));
-            sides.into_iter().min_by(dark).unwrap_or(self.eye)
+            let sides = [[0.4, 0.6], [-0.4, 0.6], [0.4, -0.5], [-0.4, -0.5]];
+            self.darkest(sides.map(beside)).unwrap_or(self.eye)
         });
         let step = 0.1 * distance.min(self.scene.scene_size.corner().min_element()).max(AIR);
         let apart = |p: Vec3| {
@@ -205,9 +229,11 @@ impl<'a> Stand<'a> {
             self.free(p, 0.0) && lights.into_iter().all(|q| p.distance(q) > step)
         };
         // A copy of a light outside the view is still placed near it.
-        let hidden = near.is_some_and(|near| !self.sees(near, 0.0));
+        let copied = near.filter(|_| !is_lamp);
+        let hidden = copied.is_some_and(|near| !self.sees(near, 0.0));
         let fits = |p: Vec3| apart(p) && (hidden || self.sees(p, 0.08 * p.distance(self.eye)));
-        near.and_then(|near| self.beside(near, [1.1 * step; 2], &APART, fits))
+        copied
+            .and_then(|near| self.beside(near, [1.1 * step; 2], &APART, fits))
             .or_else(|| self.search(wanted, step, fits))
             .or_else(|| self.search(wanted, step, apart))
             .unwrap_or_else(|| self.lattice(wanted))

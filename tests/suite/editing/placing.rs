@@ -229,6 +229,58 @@ fn new_lights_stand_free_and_in_view() {
     }
 }
 
+#[test]
+fn a_new_lamp_lights_what_is_selected_from_above_and_shows_its_bright_side() {
+    let registry = Registry::builtin();
+    let small = Object { size: 0.3, position: Vec3::new(6.0, 4.5, 5.0), ..Object::default() };
+    let mut two = Scene::default();
+    two.objects.push(small);
+    for (what, scene, aim) in [("one", Scene::default(), 0), ("two", two, 1)] {
+        for kind in ["rectangle", "disc", "sphere", "cylinder"] {
+            let mut session = Session::new(scene.clone());
+            session.apply(Action::Select(Selection::Object(aim)), &registry);
+            let target = session.document.objects[aim].position;
+            session.apply(Action::AddLight(kind.to_owned()), &registry);
+            let light = session.document.lights.last().expect("added").clone();
+            let at = light.position.expect("it has a position");
+            assert!(sees(&session, at), "{what}: a {kind} at {at}");
+            let (way, eye) = (target - at, session.facts.eye - at);
+            let above = (session.facts.camera.inverse() * -way).y;
+            assert!(above > 0.1 * way.length(), "{what}: a {kind} {above} m above");
+            if let Some(direction) = light.direction {
+                let facing = direction.dot(way.normalize());
+                if kind == "cylinder" {
+                    assert!(facing.abs() < 0.05, "{what}: a tube's end faces the object: {facing}");
+                } else {
+                    assert!(facing > 0.98, "{what}: {kind}, {facing}");
+                    assert!(direction.dot(eye) > 0.0, "{what}: the camera sees the back of the {kind}");
+                }
+            }
+            let entry = registry.light(kind).expect("built in");
+            let span = entry.span(&light.parameters) / way.length();
+            assert!((0.1..0.6).contains(&span), "{what}: {kind}, {span} of its distance");
+            for object in &session.document.objects {
+                let apart = at.distance(object.position) - radius(object, &registry);
+                assert!(apart > 0.5 * entry.span(&light.parameters), "{what}: a {kind} in an object");
+            }
+            // Alone, it lights a good part of what is seen.
+            let lit = |light: Light| {
+                let mut alone = session.document.scene().clone();
+                alone.lights = vec![light];
+                let all = brightness(&Session::new(alone), &registry);
+                all.iter().filter(|b| **b > 0.02).count() as f32 / all.len() as f32
+            };
+            let part = lit(light.clone());
+            assert!(part > 0.2, "{what}: a {kind} lights {part} of what is seen");
+            if matches!(kind, "rectangle" | "disc") {
+                // The wrong twin: it turns its back.
+                let back = lit(Light { direction: light.direction.map(|d| -d), ..light });
+                assert!(back < 0.05, "{what}: {kind}, {back}");
+            }
+        }
+    }
+}
+
 /// The brightest channel of each pixel that shows an object, relative to the maximum of the display.
 fn brightness(session: &Session, registry: &Registry) -> Vec<f32> {
     let settings = reference::Settings { width: 320, height: 180, samples: 1, ..Default::default() };

@@ -226,6 +226,29 @@ fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
 }
 
 #[test]
+fn the_command_line_takes_samples_of_light_with_extent() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let explained = |scene: &str, more: &[&str]| {
+        let scene = root.join("scenes").join(scene);
+        let scene = scene.to_str().expect("UTF-8");
+        lcm_in(folder.path(), &[&["explain", scene, "--at", "640,360"], more].concat(), b"")
+    };
+    for (more, expected) in [(vec![], 256), (vec!["--light-samples", "1000"], 1000)] {
+        let run = explained("studio.json", &more);
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+        assert!(run.out.contains(&format!("by {expected} samples of the light")), "{}", run.out);
+        assert!(run.out.contains("it fills 12.57 sr."), "{}", run.out);
+    }
+    let run = explained("default.json", &["--light-samples", "1000"]);
+    assert_eq!(run.status, Some(0));
+    assert!(run.err.contains("--light-samples changes nothing"), "{}", run.err);
+    let run = explained("studio.json", &["--light-samples", "0"]);
+    assert_eq!(run.status, Some(2));
+    assert!(run.err.contains("whole number from 1 to 1048576"), "{}", run.err);
+}
+
+#[test]
 fn the_command_line_has_derivatives_and_two_views() {
     let folder = tempfile::tempdir().expect("a folder");
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -39,6 +39,44 @@ fn scene(model: &str, shading: &str) -> Scene {
     Scene { reflection_model: model.to_owned(), shading_model: shading.to_owned(), ..Scene::default() }
 }
 
+#[test]
+fn light_with_extent_has_its_error_and_a_choice_of_samples() {
+    let mut scene = scene("phong", "phong");
+    let at = scene.objects[0].position;
+    let lamp = |side: Vec3| Light {
+        light_type: "rectangle".to_owned(),
+        position: Some(at + side),
+        direction: Some(-side),
+        intensity: 8.0,
+        ..scene.lights[0].clone()
+    };
+    scene.lights = vec![lamp(Vec3::new(1.0, 1.5, 2.0)), lamp(Vec3::new(-1.0, 0.5, 2.0))];
+    let mut bench = bench(scene);
+    bench.size = vec2(1600.0, 2000.0);
+    bench.session.settings.bottom_height = 1100.0;
+    bench.settle();
+    let pin = Pin::of_pixel(0, [320, 180], [640, 360], bench.session.document.view_angle());
+    bench.apply(Action::View(ViewChange::Pin(Some(pin))));
+    bench.settle();
+    let error = |bench: &Bench| shown(bench).seen.and_then(|seen| seen.error()).expect("noise").max_element();
+    let usual = error(&bench);
+    let texts = bench.texts();
+    let after = |label: &str| {
+        let i = texts
+            .iter()
+            .position(|text| text.starts_with(label))
+            .unwrap_or_else(|| panic!("{label}: {texts:?}"));
+        texts[i + 1..].iter().take(2).any(|text| text.contains('±'))
+    };
+    for label in ["sum over 2 lights", "light of the pixel"] {
+        assert!(after(label), "{label} has no error: {texts:?}");
+    }
+    bench.click("4096");
+    bench.settle();
+    assert!(bench.texts().iter().any(|text| text.contains("by 4096 samples")), "{:?}", bench.texts());
+    assert!(2.0 * error(&bench) < usual, "{} of {usual}", error(&bench));
+}
+
 /// Moves the pointer to a place.
 fn point(bench: &mut Bench, at: Pos2) {
     bench.frame(vec![Event::PointerMoved(at)]);

@@ -4,12 +4,12 @@ use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, a
 use lights_camera_models::{
     document::{Edit, Selection},
     panel::{
-        state::{Action, CompareCommand, ThemeChoice, ViewChange},
+        state::{Action, CompareCommand, Session, ThemeChoice, ViewChange},
         theme,
     },
-    parameter::Value,
+    parameter::{Value, Values},
     registry::Registry,
-    scene::{Background, Display, Part, Scene},
+    scene::{Background, Display, Light, Part, Scene},
 };
 
 use crate::window::panels::{Bench, Seen};
@@ -229,6 +229,71 @@ fn the_background_has_a_choice_and_its_colours_and_is_undone() {
     let document = &bench.session.document;
     assert_eq!((document.display.exposure, document.variants[0].exposure), (0.0, Some(1.0)));
     assert_eq!(document.display.background, Background::Colour);
+}
+
+#[test]
+fn another_source_of_an_environment_keeps_its_mean_luminance_and_has_its_unit() {
+    let registry = Registry::builtin();
+    let entry = registry.light("environment").expect("built in");
+    let mut scene = Scene::default();
+    scene.lights = vec![Light { light_type: "environment".to_owned(), intensity: 1.0, ..Light::default() }];
+    let mut bench = Bench::new(Session::new(scene));
+    bench.size = vec2(1280.0, 900.0);
+    bench.apply(Action::Select(Selection::Light(0)));
+    let mean = |light: &Light| {
+        f64::from(light.intensity) * entry.mean_luminance(&light.parameters).expect("it is all around")
+    };
+    let light = |bench: &Bench| bench.session.document.lights[0].clone();
+    let first = mean(&light(&bench));
+    for (from, to, unit) in [
+        ("studio", "uniform", "cd/m²"),
+        ("uniform", "sky", "×"),
+        ("sky", "file", "×"),
+        ("file", "studio", "×"),
+    ] {
+        let before = light(&bench);
+        bench.click(&format!("source: {from}"));
+        bench.click(to);
+        bench.settle();
+        let after = light(&bench);
+        assert_eq!(
+            after.parameters.get(entry.parameter("source").expect("declared")),
+            Value::Choice(to.into())
+        );
+        assert!((mean(&after) / first - 1.0).abs() < 0.02, "{to}: {} instead of {first}", mean(&after));
+        // The wrong twin: the same factor of another source.
+        let wrong = mean(&Light { intensity: before.intensity, ..after.clone() });
+        assert!((wrong / first - 1.0).abs() > 0.05, "{from} to {to}: {wrong} and {first}");
+        assert_eq!(entry.unit(&after.parameters), unit);
+        let line = bench.field("intensity").rect.center().y;
+        let units = |texts: &[(String, Pos2, bool)]| -> Vec<String> {
+            let near = |at: Pos2| (at.y - line).abs() < 14.0;
+            let is_unit = |text: &str| ["cd/m²", "×"].contains(&text);
+            texts
+                .iter()
+                .filter(|(text, at, _)| near(*at) && is_unit(text))
+                .map(|(text, ..)| text.clone())
+                .collect()
+        };
+        assert_eq!(units(&painted(&mut bench)), [unit], "{to}");
+    }
+    // One step for each.
+    bench.apply(Action::Undo);
+    assert_eq!(
+        light(&bench).parameters.get(entry.parameter("source").expect("declared")),
+        Value::Choice("file".into())
+    );
+    assert!((mean(&light(&bench)) / first - 1.0).abs() < 0.02);
+    // Other parameters leave the intensity alone.
+    let sky = entry.parameter("ground_reflectance").expect("declared");
+    assert_eq!(light(&bench).setting(entry, sky, Value::Number(0.5)).len(), 1);
+    let path = entry.parameter("path").expect("declared");
+    let known = light(&bench).parameters.get(path);
+    assert_eq!(light(&bench).setting(entry, path, known).len(), 1, "the same picture");
+    // A lamp has no luminance that is the same everywhere.
+    for id in ["point", "sphere", "sun"] {
+        assert_eq!(registry.light(id).expect(id).mean_luminance(&Values::default()), None, "{id}");
+    }
 }
 
 #[test]
