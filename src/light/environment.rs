@@ -32,7 +32,7 @@ const SKY: u32 = 2;
 const FILE: u32 = 3;
 
 const PATH: Parameter = Parameter::file("path", &panorama::FORMAT, "room.hdr")
-    .label("picture")
+    .label("picture file")
     .help(
         "A picture of surroundings, twice as wide as it is high, in Radiance's .hdr or OpenEXR's .exr, by its name from the folder of \
          the scene. Its values are cd/m². −z is in its middle.",
@@ -61,7 +61,9 @@ const SUN_AZIMUTH: Parameter = Parameter::number("sun_azimuth", -360.0..=360.0, 
     .symbol("α_s")
     .label("sun's azimuth")
     .unit("°")
-    .help("The direction of the sun from −z, clockwise as seen from above.")
+    .help(
+        "The direction of the sun from −z, clockwise as seen from above, as on a compass with north at −z: 90° is +x, 180° is +z.",
+    )
     .used_when("source", &["sky"]);
 
 const ZENITH_LUMINANCE: Parameter = Parameter::number("zenith_luminance", 0.0..=20_000.0, 0.1)

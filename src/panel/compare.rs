@@ -55,6 +55,8 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
         true => 2.0 + arranging.rows[1] as f32,
         false => 1.0 + arranging.rows[0] as f32,
     };
+    // The rest of the bar goes where it would leave nothing to the picture.
+    let rows = rows.min((0.5 * whole.height() / ROW).floor().max(0.0));
     let bar = Rect::from_min_max(pos2(whole.left(), whole.bottom() - rows * ROW), whole.max);
     let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top() - footer));
     // Readable from the back row.

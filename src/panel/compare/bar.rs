@@ -45,12 +45,15 @@ pub(super) fn bar(
             ui.with_layout(right, |ui| numbers(ui, session, room, first));
         }
     });
-    if !wide {
-        let last = row((rect.height() / ROW).round() - 1.0);
+    // In a low window there are fewer rows: the numbers go first, then the choices.
+    let count = (rect.height() / ROW).round() as usize;
+    let choices = arranging.rows[usize::from(!wide)];
+    if !wide && count > choices + 1 {
+        let last = row((count - 1) as f32);
         let place = UiBuilder::new().max_rect(last).layout(right);
         ui.scope_builder(place, |ui| numbers(ui, session, last.width(), |_| true));
     }
-    for i in 0..arranging.rows[usize::from(!wide)] {
+    for i in 0..choices.min(count.saturating_sub(1)) {
         let mut now = comparison;
         ui.scope_builder(left(row(1.0 + i as f32)), |ui| {
             if i == 0 {

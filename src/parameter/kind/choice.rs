@@ -97,6 +97,12 @@ impl Kind for Choice {
     }
 
     fn read(&self, reader: &mut dyn Reader, value: Cursor, rule: &str, _: Place) -> Option<Value> {
+        if let Ast::NumberLit(number) = value.value
+            && self.options.iter().any(|(id, _)| *id == number.value)
+        {
+            reader.wrong(value, &format!("{rule}, in quotes"));
+            return None;
+        }
         if !self.is_flag() {
             return reader.string(value, rule).map(|id| self.named(id));
         }

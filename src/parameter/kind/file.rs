@@ -85,6 +85,9 @@ impl Kind for File {
 
     fn hint(&self, value: &Value) -> String {
         let Value::File(file) = value else { return String::new() };
+        if file.name().is_empty() {
+            return ": the name is empty".to_owned();
+        }
         file.problem().map_or_else(String::new, |problem| format!(": {problem}"))
     }
 

@@ -45,8 +45,10 @@ const ROW: usize = 1 << 16;
 /// Maximum time for drawing it again: a picture in the window has a thousand times its pixels, and the
 /// shipped models take a hundredth of this.
 const SLOWEST: Duration = Duration::from_millis(150);
-/// Maximum number of further pictures drawn to find one that is fast enough.
+/// Minimum number of further pictures drawn to find one that is fast enough, and the time during which more are: a machine
+/// that compiles something else, too, is slow for some seconds.
 const PATIENCE: usize = 5;
+const LONGEST: Duration = Duration::from_secs(4);
 
 /// Answers requests until there are no more, or until the renderer fails: then a new process is better.
 ///
@@ -216,8 +218,9 @@ impl Stage {
         if chosen != std::mem::replace(&mut self.shown, chosen) {
             time = self.picture();
         }
-        for _ in 0..PATIENCE {
-            if time <= SLOWEST {
+        let start = Instant::now();
+        for i in 0.. {
+            if is_settled(time, i, start.elapsed()) {
                 break;
             }
             time = time.min(self.picture());
@@ -230,6 +233,13 @@ impl Stage {
             None => Ok(time),
         }
     }
+}
+
+/// True if the least of some times decides: it is fast enough, or there were enough further pictures for long enough. Far
+/// slower ones are not a matter of the machine.
+fn is_settled(least: Duration, further: usize, elapsed: Duration) -> bool {
+    let hopeless = least > 10 * SLOWEST;
+    least <= SLOWEST || further >= PATIENCE && (hopeless || elapsed >= LONGEST)
 }
 
 /// Every light type without extent is active, so that the whole light loop is used. Light with extent calls
@@ -293,5 +303,21 @@ impl Actor {
         if let Some(mut buffer) = world.resource_mut::<Assets<ShaderBuffer>>().get_mut(&self.parameters) {
             buffer.data = Some(row);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_busy_machine_gets_more_tries_than_a_slow_shader() {
+        let ms = Duration::from_millis;
+        assert!(is_settled(ms(150), 0, ms(0)) && is_settled(ms(20), 40, ms(3000)));
+        // Just too slow: tried for seconds, and refused in the end.
+        assert!(!is_settled(ms(152), PATIENCE, ms(900)) && !is_settled(ms(152), 20, ms(3900)));
+        assert!(is_settled(ms(152), 26, ms(4000)));
+        // Far too slow: no longer than before.
+        assert!(!is_settled(ms(2000), PATIENCE - 1, ms(8000)) && is_settled(ms(2000), PATIENCE, ms(500)));
     }
 }

@@ -151,5 +151,13 @@ fn the_page_says_truly_why_there_is_no_picture() {
     browser.visit(folder.path().to_str().expect("Unicode"));
     browser.visit(&format!("{}#renderer=webgl", file.display()));
     let none = said();
+    assert!(
+        none.starts_with("This browser has WebGL 2, but refuses it") && !none.contains("newer"),
+        "{none}"
+    );
+    browser.run_first("delete window.WebGL2RenderingContext;");
+    browser.visit(folder.path().to_str().expect("Unicode"));
+    browser.visit(&format!("{}#renderer=webgl", file.display()));
+    let none = said();
     assert!(none.starts_with("This browser has neither WebGPU nor WebGL 2"), "{none}");
 }

@@ -112,6 +112,26 @@ fn registry_file() -> Option<&'static FileFormat> {
 }
 
 #[test]
+fn an_empty_name_and_a_number_for_a_numbered_choice_are_told() {
+    let registry = Registry::builtin();
+    for (source, field, value, expected) in [
+        ("file", "path", serde_json::json!(""), "picture: the name is empty"),
+        ("sky", "sky_type", serde_json::json!(5), "must be one of \"1\" to \"15\", in quotes"),
+        ("sky", "sky_type", serde_json::json!(16), "must be one of \"1\" to \"15\""),
+    ] {
+        let mut scene: serde_json::Value =
+            serde_json::from_str(include_str!("../../../scenes/default.json")).expect("JSON");
+        scene["lights"] = serde_json::json!([{ "type": "environment", "source": source, field: value }]);
+        let error = load::from_text(&scene.to_string(), "a.json", &registry, Defaults::Refuse)
+            .map(|_| ())
+            .expect_err("it cannot be used");
+        let error = error.to_string();
+        assert!(error.contains(expected), "{error}");
+        assert_eq!(error.contains("in quotes"), expected.contains("in quotes"), "{error}");
+    }
+}
+
+#[test]
 fn files_that_cannot_be_used_are_told_with_line_and_mistake() {
     let folder = tempfile::tempdir().expect("a folder");
     let lamp = folder.path().join("lamp.ies").display().to_string();

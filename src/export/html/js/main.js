@@ -9,9 +9,15 @@ const caption = document.getElementById('renderer');
 const bare = asked.get('picture')?.match(/^(\d+)x(\d+)$/)?.slice(1).map(Number) ?? null;
 // Starts in succession without a whole picture.
 const MOST_STARTS = 6;
+// The starts after which edges are no longer smoothed, which takes a quarter of the work; and those of a browser that
+// refuses graphics from the beginning.
+const SMOOTH_STARTS = 3;
 // Milliseconds before another start where browsers refuse it; longer each time.
 const PAUSE = 300;
 const NO_GRAPHICS = 'This browser has neither WebGPU nor WebGL 2, and so cannot draw the scene. A newer one can.';
+const REFUSED =
+  'This browser has WebGL 2, but refuses it to this page: the graphics driver gave up before, or graphics are switched off. ' +
+  'Close the page, or start the browser anew, and load it again; switch on hardware acceleration in its settings if it is off.';
 const GAVE_UP =
   'The graphics driver gave up: this scene is too much work for it, even in small steps. Switch on hardware acceleration ' +
   'in the settings of the browser if it is off, or make the window smaller, and load the page again. Jagged edges ' +
@@ -65,18 +71,21 @@ class Page {
   // smaller steps.
   async start() {
     this.starts += 1;
-    if (this.starts > MOST_STARTS) {
-      fail(GAVE_UP);
+    if (this.starts > (this.gaveUp ? MOST_STARTS : SMOOTH_STARTS)) {
+      fail(this.gaveUp ? GAVE_UP : REFUSED);
       return false;
     }
+    const count = this.starts > SMOOTH_STARTS && this.gaveUp ? 1 : samples;
     const kinds = { webgpu: [WebGpu], webgl: [WebGl] }[asked.get('renderer')] ?? [WebGpu, WebGl];
-    let reason = NO_GRAPHICS;
+    // A browser that knows WebGL 2 and does not give it refuses it, often for a while after a driver gave up.
+    const refused = kinds.includes(WebGl) && 'WebGL2RenderingContext' in window;
+    let reason = refused ? REFUSED : NO_GRAPHICS;
     for (const kind of kinds) {
       try {
         this.hasPicture = false;
         await say('Compiling the shader…');
         this.canvas = freshCanvas();
-        const renderer = await kind.create(this.canvas, samples);
+        const renderer = await kind.create(this.canvas, count);
         this.renderer = renderer;
         if (!renderer) continue;
         renderer.lost.then(() => (this.gaveUp = true));
@@ -87,18 +96,22 @@ class Page {
         this.label = kind.label;
         caption.textContent = 'Drawing…';
         const ofLight = this.scene.lightSamples;
-        const noise = ofLight ? `; lights with extent: ${ofLight} samples per pixel, some noise remains` : '';
-        caption.title = `Drawn with ${kind.label}, ${samples} samples per pixel${noise}`;
+        const noise = ofLight ? `; lights with extent: ${ofLight} samples per pixel, some noise remains; the lights themselves are not drawn` : '';
+        caption.title = `Drawn with ${kind.label}, ${count} samples per pixel${noise}`;
         renderer.lost.then(() => this.renderer === renderer && this.startAgain());
         this.draw();
         return true;
       } catch (error) {
         console.warn(error);
+        if (this.renderer?.isLost) {
+          this.gaveUp = true;
+          this.work = new Work(0.5 * this.work.goal);
+        }
         reason = `This browser cannot draw the scene: ${error.message}`;
       }
     }
     this.renderer = null;
-    if (this.gaveUp) {
+    if (this.gaveUp || reason === REFUSED) {
       // Browsers refuse graphics for a while after a driver gave up.
       await new Promise((done) => setTimeout(done, PAUSE * this.starts));
       return this.start();
