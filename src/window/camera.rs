@@ -10,6 +10,7 @@ use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraS
 
 use super::{
     WindowView,
+    pick::CTRL,
     pointer::{OverPicture, PointerPlugin, follow_cursor},
 };
 use crate::{
@@ -91,7 +92,9 @@ fn gate(
 ) {
     let pressed = [MouseButton::Left, MouseButton::Right];
     let begins = over.pressed.is_some() && buttons.any_just_pressed(pressed);
-    *dragging = buttons.any_pressed(pressed) && (*dragging || begins);
+    // With Ctrl the left button draws a frame around what shall be selected.
+    let frames = keys.any_pressed(CTRL) && buttons.just_pressed(MouseButton::Left);
+    *dragging = buttons.any_pressed(pressed) && (*dragging || begins && !frames);
     let moved = motion.read().count() > 0;
     let wheeled = wheel.read().count() > 0 && over.now;
     // A drag that started in the picture continues outside; one that started outside is ignored.

@@ -39,7 +39,7 @@ const CLICK_SLACK: f32 = 4.0;
 
 /// Selects the light whose marker was clicked, otherwise the object or lamp whose surface was clicked.
 fn pick(
-    buttons: Res<ButtonInput<MouseButton>>,
+    (buttons, keys): (Res<ButtonInput<MouseButton>>, Res<ButtonInput<KeyCode>>),
     over: Res<OverPicture>,
     window: Single<&Window, With<PrimaryWindow>>,
     cameras: Query<(&Camera, &GlobalTransform), With<WindowView>>,
@@ -84,12 +84,20 @@ fn pick(
         let nearest = object.into_iter().chain(lamp).min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.map(|(selection, _)| selection)
     });
-    if let Some(selection) = selection
-        && selection != session.selection
-    {
+    let Some(selection) = selection else { return };
+    if keys.any_pressed(CTRL) {
+        session.apply(Action::SelectAlso(selection), &registry);
+    } else if selection != session.selection || session.has_group() {
         session.apply(Action::Select(selection), &registry);
     }
 }
+
+/// The keys with which a click adds to what is selected, and a drag draws a frame; of a Mac, ⌘.
+pub(super) const CTRL: [KeyCode; 2] = if cfg!(target_os = "macos") {
+    [KeyCode::SuperLeft, KeyCode::SuperRight]
+} else {
+    [KeyCode::ControlLeft, KeyCode::ControlRight]
+};
 
 /// The object that a ray meets first, and its distance, as the CPU renderer sees it: the meshes of the window are on the
 /// GPU alone.
@@ -175,6 +183,7 @@ mod tests {
         world.insert_resource(CurrentScene(scene.clone()));
         world.insert_resource(Registry::builtin());
         world.init_resource::<ButtonInput<MouseButton>>();
+        world.init_resource::<ButtonInput<KeyCode>>();
         world.spawn((window, PrimaryWindow));
         for _ in 0..others {
             // These look elsewhere.
