@@ -95,6 +95,7 @@ pub mod state;
 pub mod status;
 mod taking;
 pub mod theme;
+mod together;
 pub mod top;
 pub mod tree;
 pub mod typeset;
