@@ -38,6 +38,7 @@ use state::{EXPLAIN_TAB, Effect, MESSAGES_TAB, PLOTS_TAB, PictureArea, SHADER_TA
 pub use state::{Over, PanelInfo, Place, follow};
 
 pub mod author;
+mod band;
 pub mod caption;
 pub mod channels;
 pub mod chooser;
