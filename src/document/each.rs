@@ -42,12 +42,10 @@ impl Document {
                 }
             }
         }
-        let problems = check::each(&self.scene, &changed.lights, &changed.objects, registry);
-        if problems.is_empty() {
-            return Ok(changed);
-        }
         // Other values of a part follow when a type or a model is chosen.
         let keys: HashSet<Key> = edits.iter().flat_map(|edit| edit.values().1).map(|(key, _)| *key).collect();
+        let materials = keys.iter().any(|key| matches!(key, Key::Material(_)));
+        let problems = check::each(&self.scene, &changed.lights, &changed.objects, materials, registry);
         for problem in &problems {
             let object = problem.path.index_in("objects").map(Part::Object);
             let Some(part) = object.or(problem.path.index_in("lights").map(Part::Light)) else { continue };

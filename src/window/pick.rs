@@ -163,6 +163,12 @@ mod tests {
     fn clicked(scene: &Scene, point: Vec3, others: usize) -> Selection {
         let mut session = Session::new(scene.clone());
         session.selection = Selection::Observer;
+        session_after(session, point, others, false).selection
+    }
+
+    /// A session after a click, with Ctrl held or not.
+    fn session_after(session: Session, point: Vec3, others: usize, ctrl: bool) -> Session {
+        let scene = session.document.scene().clone();
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
         let area = PictureArea { rect, frame: rect, has_pointer: true, ..PictureArea::default() };
         let mut camera = Camera::default();
@@ -180,7 +186,7 @@ mod tests {
         world.insert_resource(session);
         world.insert_resource(area);
         world.insert_resource(OverPicture { now: true, pressed: Some(at) });
-        world.insert_resource(CurrentScene(scene.clone()));
+        world.insert_resource(CurrentScene(scene));
         world.insert_resource(Registry::builtin());
         world.init_resource::<ButtonInput<MouseButton>>();
         world.init_resource::<ButtonInput<KeyCode>>();
@@ -192,13 +198,31 @@ mod tests {
         world.spawn((picture_camera(1), WindowView)).insert((camera, place));
         let mut schedule = Schedule::default();
         schedule.add_systems(pick);
+        if ctrl {
+            world.resource_mut::<ButtonInput<KeyCode>>().press(CTRL[0]);
+        }
         world.resource_mut::<ButtonInput<MouseButton>>().press(MouseButton::Left);
         schedule.run(&mut world);
         let mut buttons = world.resource_mut::<ButtonInput<MouseButton>>();
         buttons.clear();
         buttons.release(MouseButton::Left);
         schedule.run(&mut world);
-        world.resource::<Session>().selection
+        world.resource::<Session>().clone()
+    }
+
+    #[test]
+    fn with_ctrl_a_click_adds_what_is_clicked_or_takes_it_out() {
+        let mut scene = Scene::default();
+        let middle = scene.objects[0].position;
+        let beside =
+            crate::scene::Object { position: middle + 2.0 * Vec3::X, size: 0.5, ..scene.objects[0].clone() };
+        scene.objects.push(beside);
+        let both = session_after(Session::new(scene.clone()), middle + 2.0 * Vec3::X, 0, true);
+        assert_eq!(both.group(), [Selection::Object(0), Selection::Object(1)]);
+        let one = session_after(both.clone(), middle, 0, true);
+        assert_eq!(one.group(), [Selection::Object(1)]);
+        let alone = session_after(both, middle, 0, false);
+        assert_eq!(alone.group(), [Selection::Object(0)], "a click without it selects one");
     }
 
     #[test]

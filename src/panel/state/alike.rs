@@ -69,6 +69,7 @@ impl Session {
         let others = self.document.others().iter().filter_map(|id| self.document.part_of(*id));
         let mut all: Vec<_> = others.chain([self.selection]).filter(|part| place(*part).is_some()).collect();
         all.sort_unstable_by_key(|part| place(*part));
+        all.dedup();
         all
     }
 

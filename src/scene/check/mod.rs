@@ -132,19 +132,20 @@ pub fn change(scene: &Scene, part: Part, change: &Change, registry: &Registry) -
 }
 
 /// The problems of these lights and objects, by their indices, once all of them are as given: they meet each other as they
-/// would be.
+/// would be. Of materials only if they are among what changes: checking them takes the most time.
 #[must_use]
 pub fn each(
     scene: &Scene,
     lights: &BTreeMap<usize, Light>,
     objects: &BTreeMap<usize, Object>,
+    materials: bool,
     registry: &Registry,
 ) -> Vec<Problem> {
     let all_lights = with_changed(&scene.lights, lights);
     // Only lights look for objects.
     let no_objects = BTreeMap::new();
     let all_objects = with_changed(&scene.objects, if lights.is_empty() { &no_objects } else { objects });
-    let mut check = Check::with(scene, &all_lights, &all_objects, registry);
+    let mut check = Check { materials, ..Check::with(scene, &all_lights, &all_objects, registry) };
     lights.iter().for_each(|(i, light)| check.light_alone(*i, light));
     objects.iter().for_each(|(i, object)| check.object(*i, object));
     check.problems
@@ -224,6 +225,8 @@ struct Check<'a> {
     room: SceneSize,
     /// The first light at each position: with many objects, lookups replace pairwise comparison.
     light_at: HashMap<[u32; 3], usize>,
+    /// True if the values of materials are checked.
+    materials: bool,
     problems: Vec<Problem>,
 }
 
@@ -247,6 +250,7 @@ impl<'a> Check<'a> {
             registry,
             room: plausible(scene.scene_size),
             light_at,
+            materials: true,
             problems: Vec::new(),
         }
     }
@@ -376,7 +380,8 @@ impl Check<'_> {
             }
         }
         let models = [self.scene.model_of(object), self.scene.shading_model_of(object)];
-        for (name, value) in &object.material.0 {
+        let materials = self.materials;
+        for (name, value) in object.material.0.iter().filter(|_| materials) {
             self.rule(material_parameter(registry, models, name, value), || {
                 (part.path().key("material").key(name.clone()), value.written())
             });
