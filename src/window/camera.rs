@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     document::{Edit, Selection},
-    panel::state::{Action, CameraChange, Session, Steer},
+    panel::state::{Action, CameraChange, Session, Steer, Together},
     registry::Registry,
     render::{camera::PictureCamera, entities::CurrentScene},
     scene::{Observer, Scene, observer::rotation},
@@ -242,7 +242,9 @@ impl CameraControl<'_, '_> {
     pub(super) fn focus(&mut self, session: &Session, registry: &Registry) {
         let scene = &self.scene.0;
         let corner = scene.scene_size.corner();
+        let together = Together::of(session, registry).map(|all| (all.middle(), all.span().max(0.5)));
         let found = match session.selection {
+            _ if together.is_some() => together,
             Selection::Object(i) => scene.objects.get(i).map(|object| (object.position, object.size)),
             Selection::Light(i) => scene.lights.get(i).and_then(|light| {
                 let span = registry.light(&light.light_type).map_or(0.0, |of| of.span(&light.parameters));

@@ -4,7 +4,7 @@
 use super::part::{section, type_knob};
 use crate::{
     panel::{
-        chooser,
+        chooser, keys,
         knob::{self, Amount, Caption},
         prelude::*,
         state::Effect,
@@ -133,7 +133,7 @@ impl All {
         Self { parts, name: session.name_of_group(), sections }
     }
 
-    /// What is selected, and buttons that focus, duplicate and delete it.
+    /// What is selected, and buttons that look at it, duplicate and delete it.
     fn header(&self, ui: &mut Ui, session: &Session, context: &mut PanelContext<'_>) {
         let name = &self.name;
         ui.horizontal(|ui| {
@@ -145,7 +145,8 @@ impl All {
             let (rect, label) = ui.allocate_exact_size(vec2(room, galley.size().y), Sense::hover());
             ui.painter().galley(rect.min, galley, colour);
             theme::says(&label, WidgetType::Label, name);
-            let look = icon::button(ui, Icon::Target, "Look at the first of them");
+            let look = keys::hint(ui.ctx(), &format!("Look at {name} "), "focus");
+            let look = icon::button(ui, Icon::Target, &look);
             context.on_click(&look, || Action::Do(Effect::FocusSelection));
             let copy = icon::button(ui, Icon::Duplicate, &format!("Duplicate {name}"));
             context.on_click(&copy, || Action::Duplicate(session.selection));

@@ -108,6 +108,12 @@ impl Together {
         self.middle
     }
 
+    /// The diameter of the sphere about their middle that holds all of them.
+    #[must_use]
+    pub fn span(&self) -> f32 {
+        2.0 * self.places().map(|(_, p, half)| p.distance(self.middle) + half.length()).fold(0.0, f32::max)
+    }
+
     /// What they are, in words.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -329,6 +335,12 @@ mod tests {
             }
         }
         assert_eq!(positions(&all.moved(Vec3::ZERO, ROOM)), before);
+    }
+
+    #[test]
+    fn the_span_holds_all_of_them() {
+        let two = together(&[(Vec3::new(2.0, 5.0, 5.0), 0.5), (Vec3::new(6.0, 5.0, 5.0), 0.25)]);
+        assert!((two.span() - 2.0 * (2.0 + 0.5 * 3f32.sqrt())).abs() < 1e-5, "{}", two.span());
     }
 
     #[test]
