@@ -10,7 +10,7 @@ use lights_camera_models::{
     document::{Document, Edit, Selection},
     panel::{
         follow::follow_registry,
-        state::{Action, CompareCommand, Session},
+        state::{Action, CompareCommand, Session, Together},
     },
     parameter::Value,
     registry::Registry,
@@ -174,6 +174,7 @@ fn main() {
         registry.put_custom_model(model);
         registry
     });
+    let start = scene.clone();
     let mut scene = Scene { reflection_model: "mine".to_owned(), ..scene };
     scene.objects.iter_mut().for_each(|object| object.material.set("gloss", Value::Number(0.75)));
     let mut seen = Session::new(Scene { reflection_model: "phong".to_owned(), ..scene.clone() });
@@ -185,6 +186,28 @@ fn main() {
     report("an object in view B", |i| {
         let edit = Edit::set(Part::Object(17), Object::size, 0.05 + i as f32 * 1e-4);
         seen.apply(Action::Edit(edit), &registry);
+    });
+    let mut all = Session::new(start);
+    report("all objects selected", |i| {
+        let parts = (0..OBJECTS - i % 2).map(Selection::Object).collect();
+        all.apply(Action::SelectEach(parts, false), &registry);
+    });
+    report("all objects looked up", |_| {
+        assert!(
+            (0..OBJECTS)
+                .all(|i| std::hint::black_box(all.is_selected(Selection::Object(i)) || i + 1 == OBJECTS))
+        );
+    });
+    let room = all.document.scene_size;
+    report("all objects grasped", |_| drop(std::hint::black_box(Together::of(&all, &registry))));
+    let together = Together::of(&all, &registry).expect("they are many");
+    report("all objects moved", |i| {
+        let edit = together.moved(Vec3::Z * (i + 1) as f32 * 1e-3, room);
+        all.apply(Action::Edit(edit), &registry);
+    });
+    report("all objects moved, shown", |i| {
+        let step = together.moved(Vec3::Y * (i + 1) as f32 * 1e-3, room);
+        change(world, &|document| edit(document, step.clone()));
     });
     let mut session = Session::new(scene);
     report("a parameter of a model", |i| follow_registry(&mut session, &registries[(i + 1) % 2]));

@@ -53,6 +53,13 @@ pub enum Edit {
         /// The name of the step.
         step: &'static str,
     },
+    /// Changes of several lights and objects, as one step: all are made, or none.
+    Each {
+        /// The changes, each of another part.
+        edits: Vec<Edit>,
+        /// The name of the step.
+        step: String,
+    },
 }
 
 impl Edit {
@@ -100,6 +107,7 @@ impl Edit {
             Self::Set { part, values, .. } => (*part, values),
             Self::Row { object, .. } => (Part::Object(*object), &[]),
             Self::Views { .. } => (Part::Comparison, &[]),
+            Self::Each { .. } => (Part::Scene, &[]),
         }
     }
 
@@ -169,6 +177,9 @@ impl Document {
     /// # Errors
     /// Returns the reason for a refusal; the scene then stays unchanged.
     pub fn edit(&mut self, edit: Edit, selection: Selection, registry: &Registry) -> Result<(), String> {
+        if let Edit::Each { edits, step } = edit {
+            return self.edit_each(&edits, step, selection, registry);
+        }
         if let Some((Part::Light(i), key, Some(Value::Choice(id)))) = edit.one()
             && key == Light::light_type.into()
         {
@@ -204,8 +215,10 @@ impl Document {
 
     /// The change that an edit makes.
     pub(super) fn changed(&self, edit: &Edit, registry: &Registry) -> Result<Change, String> {
-        if let Edit::Row { object, entry, .. } = edit {
-            return self.row_from(*object, entry.as_deref(), registry);
+        match edit {
+            Edit::Row { object, entry, .. } => return self.row_from(*object, entry.as_deref(), registry),
+            Edit::Each { .. } => return Err("Changes of several parts cannot be one of several.".to_owned()),
+            Edit::Set { .. } | Edit::Views { .. } => {}
         }
         let (part, values) = edit.values();
         if let Part::Object(i) = part
@@ -266,6 +279,7 @@ impl Document {
         let (what, (part, values)) = match edit {
             Edit::Set { what, .. } => (*what, edit.values()),
             Edit::Views { step, .. } => return (*step).to_owned(),
+            Edit::Each { step, .. } => return step.clone(),
             Edit::Row { object, what, .. } => {
                 return format!("{what} of {}", self.name_to_edit(*object, registry));
             }

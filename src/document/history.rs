@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use super::{Extent, PartId, Selection};
+use super::{Extent, Others, PartId, Selection};
 use crate::scene::{Light, Object, Scene};
 
 /// Maximum number of steps; the oldest are dropped.
@@ -208,9 +208,24 @@ impl Patch {
             + self.objects.iter().map(Splice::parts).sum::<usize>()
     }
 
-    /// Changes of single objects, each of another one, in the order of the scene.
+    /// Changes of single lights and objects, each of another one, in the order of the scene.
     pub(super) fn of_each(patches: impl Iterator<Item = Self>) -> Self {
-        Self { objects: patches.flat_map(|patch| patch.objects).collect(), ..Self::default() }
+        let mut all = Self::default();
+        for patch in patches {
+            all.lights.extend(patch.lights);
+            all.objects.extend(patch.objects);
+        }
+        all
+    }
+
+    /// The lights and objects that change, each alone and not its type; `None` if anything else does.
+    pub(super) fn ones(&self) -> Option<Vec<Extent>> {
+        let lights =
+            self.lights.iter().map(|one| (one.is_of_one_by(|l| &l.light_type), Extent::Light(one.at)));
+        let objects =
+            self.objects.iter().map(|one| (one.is_of_one_by(|o| &o.object_type), Extent::Object(one.at)));
+        let ones = lights.chain(objects).map(|(alone, extent)| alone.then_some(extent));
+        ones.collect::<Option<_>>().filter(|_| self.rest.is_none())
     }
 
     /// Merges this change and a later one into a single change, which may be empty.
@@ -345,15 +360,20 @@ struct Step {
     /// Steps with the same name within one gesture are merged.
     gesture: u64,
     patch: Patch,
-    before: Selection,
-    after: Selection,
+    before: Selected,
+    after: Selected,
 }
+
+/// The selection, and what is selected besides it.
+type Selected = (Selection, Others);
 
 /// The steps, and the number of those that have not been undone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct History {
     steps: Vec<Step>,
     done: usize,
+    /// What is selected besides the selection now.
+    others: Others,
 }
 
 impl History {
@@ -366,12 +386,15 @@ impl History {
         match self.steps.last_mut() {
             Some(last) if last.name == name && last.gesture == gesture => {
                 last.patch.join(patch);
-                last.after = selection;
+                last.after = (selection, self.others.clone());
                 if last.patch.is_empty() {
                     self.steps.pop();
                 }
             }
-            _ => self.steps.push(Step { name, gesture, patch, before: selection, after: selection }),
+            _ => {
+                let selected = (selection, self.others.clone());
+                self.steps.push(Step { name, gesture, patch, before: selected.clone(), after: selected });
+            }
         }
         let mut parts: usize = self.steps.iter().map(|step| step.patch.parts()).sum();
         while self.steps.len() > 1 && (self.steps.len() > MOST_STEPS || parts > MOST_PARTS) {
@@ -382,14 +405,24 @@ impl History {
 
     /// Adds a change to the last step that has not been undone.
     pub(super) fn go_on(&mut self, patch: Patch) {
-        if let Some(Step { name, gesture, after, .. }) = self.steps[..self.done].last() {
-            self.record(name.clone(), *gesture, patch, *after);
+        if let Some(Step { name, gesture, after: (selection, _), .. }) = self.steps[..self.done].last() {
+            self.record(name.clone(), *gesture, patch, *selection);
         }
     }
 
     /// Sets the selection after the last step: some steps select what they added.
     pub(super) fn selected(&mut self, selection: Selection) {
-        self.steps[..self.done].last_mut().into_iter().for_each(|step| step.after = selection);
+        let selected = (selection, self.others.clone());
+        self.steps[..self.done].last_mut().into_iter().for_each(|step| step.after = selected.clone());
+    }
+
+    /// What is selected besides the selection.
+    pub(super) fn others(&self) -> &Others {
+        &self.others
+    }
+
+    pub(super) fn set_others(&mut self, others: Others) {
+        self.others = others;
     }
 
     /// Undoes the last step, or redoes the one that was undone last. Returns its name, the selection then, and the part
@@ -403,7 +436,9 @@ impl History {
         let step = self.steps.get(if back { self.done.checked_sub(1)? } else { self.done })?;
         step.patch.put(scene, labels, back);
         self.done = if back { self.done - 1 } else { self.done + 1 };
-        Some((step.name.clone(), if back { step.before } else { step.after }, step.patch.extent()))
+        let (selection, others) = if back { &step.before } else { &step.after };
+        self.others = others.clone();
+        Some((step.name.clone(), *selection, step.patch.extent()))
     }
 
     pub(super) fn names(&self) -> impl ExactSizeIterator<Item = &str> {

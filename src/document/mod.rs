@@ -15,11 +15,13 @@ use crate::{
     scene::{Part, Scene},
 };
 
+mod each;
 mod edit;
 mod history;
 mod index;
 mod matching;
 pub mod names;
+mod others;
 mod rows;
 mod rules;
 mod submit;
@@ -28,6 +30,7 @@ pub use edit::Edit;
 pub(crate) use history::difference;
 use history::{History, Label, Labels, Patch, rest_of};
 use index::{Index, Visits};
+pub use others::Others;
 
 /// Maximum number of changes covered by [`Document::changes_since`].
 const RECENT: usize = 64;
@@ -217,6 +220,7 @@ impl Document {
     fn touch(&mut self, part: Extent, moved: bool) {
         if moved {
             self.index.take();
+            self.prune_others();
         }
         if self.recent.len() == RECENT {
             self.recent.pop_front();

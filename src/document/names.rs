@@ -72,10 +72,34 @@ pub(super) fn object_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
 
 /// "lamp" → "lamp 2", "lamp 2" → "lamp 3": the next free number.
 pub fn free_name(scene: &Scene, name: &str) -> String {
-    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
-    let stem = if stem.is_empty() { name } else { stem };
-    let names = given_names(scene);
-    (2..).map(|n| format!("{stem} {n}")).find(|name| !names.contains(name.as_str())).unwrap_or_default()
+    FreeNames::of(scene).next(name)
+}
+
+/// Free names for several copies.
+#[derive(Debug)]
+pub struct FreeNames<'a> {
+    given: HashSet<&'a str>,
+    /// The number after that of the last name from each stem, so that many copies need no long search.
+    next: HashMap<String, usize>,
+}
+
+impl<'a> FreeNames<'a> {
+    /// Those beside the names in a scene.
+    #[must_use]
+    pub fn of(scene: &'a Scene) -> Self {
+        Self { given: given_names(scene), next: HashMap::new() }
+    }
+
+    /// The name of a copy: with the next number that is free.
+    pub fn next(&mut self, name: &str) -> String {
+        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+        let stem = if stem.is_empty() { name } else { stem };
+        let first = self.next.get(stem).copied().unwrap_or(2);
+        let with = |n: usize| format!("{stem} {n}");
+        let n = (first..).find(|n| !self.given.contains(with(*n).as_str())).unwrap_or(first);
+        self.next.insert(stem.to_owned(), n + 1);
+        with(n)
+    }
 }
 
 /// Gives every part without a number the first that is free above all of its type. `type_of` is the type of the part

@@ -24,7 +24,10 @@ impl Document {
     /// True if the rules of scenes allow an edit.
     #[must_use]
     pub fn allows(&self, edit: &Edit, registry: &Registry) -> bool {
-        self.check(edit, registry).is_ok()
+        match edit {
+            Edit::Each { edits, .. } => self.check_each(edits, registry).is_ok(),
+            edit => self.check(edit, registry).is_ok(),
+        }
     }
 
     /// The change that an edit makes, or the reason why the rules of scenes refuse it.
@@ -57,7 +60,7 @@ impl Document {
     }
 
     /// The reason for the refusal of a change; `None` if the problem says it.
-    fn refusal(
+    pub(super) fn refusal(
         &self,
         part: Part,
         key: Option<Key>,

@@ -38,6 +38,7 @@ use state::{EXPLAIN_TAB, Effect, MESSAGES_TAB, PLOTS_TAB, PictureArea, SHADER_TA
 pub use state::{Over, PanelInfo, Place, follow};
 
 pub mod author;
+mod band;
 pub mod caption;
 pub mod channels;
 pub mod chooser;
@@ -95,6 +96,7 @@ pub mod state;
 pub mod status;
 mod taking;
 pub mod theme;
+mod together;
 pub mod top;
 pub mod tree;
 pub mod typeset;

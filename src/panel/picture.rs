@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use bevy_egui::egui::FontFamily;
 
 use super::{
+    band,
     caption::{self, Lines, caption_text},
     channels, clipping,
     compare::{self, Arrangement},
@@ -64,6 +65,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if !arrangement.is_single() {
         (area.cells, area.map) = (arrangement.cells, arrangement.map);
     }
+    context.actions.extend(band::band(ui, &area, session, registry));
     context.picture = (area, places);
 }
 

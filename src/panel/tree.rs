@@ -34,12 +34,12 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         i if i == 3 + lights => Row::Objects,
         i => Row::Part(Selection::Object(i - 4 - lights)),
     };
-    context.actions.extend(step(ui, &session.document).map(Action::Select));
+    let memory = ui.id().with("shown selection");
+    context.actions.extend(step(ui, memory, &session.document));
     focus::first(ui.ctx(), row_id(session.selection));
     ui.spacing_mut().item_spacing.y = 0.0;
     let total = 4 + lights + objects;
     let mut area = ScrollArea::vertical().auto_shrink(false);
-    let memory = ui.id().with("shown selection");
     if let Some(offset) = offset_of_selection(ui, memory, session) {
         area = area.vertical_scroll_offset(offset);
     }
@@ -64,14 +64,21 @@ fn row_id(part: Selection) -> Id {
     Id::new(("row", part))
 }
 
-/// The offset that scrolls to a selection made elsewhere, if it is out of sight.
+/// The id of the other end of a range that is being selected.
+fn range_end(memory: Id) -> Id {
+    memory.with("end of a range")
+}
+
+/// The offset that scrolls to a selection made elsewhere, or to the end of a range, if it is out of sight.
 fn offset_of_selection(ui: &Ui, memory: Id, session: &Session) -> Option<f32> {
-    let shown: Option<Selection> = ui.data(|d| d.get_temp(memory));
-    if shown == Some(session.selection) {
+    let (shown, end): (Option<Selection>, Option<Selection>) =
+        ui.data(|d| (d.get_temp(memory), d.get_temp(range_end(memory))));
+    let now = end.unwrap_or(session.selection);
+    if shown == Some(now) {
         return None;
     }
-    ui.data_mut(|d| d.insert_temp(memory, session.selection));
-    let index = match session.selection {
+    ui.data_mut(|d| d.insert_temp(memory, now));
+    let index = match now {
         Selection::Room => 0,
         Selection::Observer => 1,
         Selection::Light(i) => 3 + i,
@@ -95,12 +102,14 @@ fn add_objects(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// The part that an arrow key moves to from the focused row; it gets the focus.
-fn step(ui: &Ui, scene: &Scene) -> Option<Selection> {
+/// Selects the part that an arrow key moves to from the focused row, with Shift all from the selection to it; it gets the
+/// focus.
+fn step(ui: &Ui, memory: Id, scene: &Scene) -> Option<Action> {
     let focus = ui.memory(egui::Memory::focused)?;
     let keys = [Key::ArrowUp, Key::ArrowDown];
     let way = keys.map(|key| ui.input(|i| i.num_presses(key)));
-    if way == [0, 0] || ui.input(|i| i.modifiers.any()) || Popup::is_any_open(ui.ctx()) {
+    let modifiers = ui.input(|i| i.modifiers);
+    if way == [0, 0] || modifiers.command || modifiers.alt || Popup::is_any_open(ui.ctx()) {
         return None;
     }
     let lights = (0..scene.lights.len()).map(Selection::Light);
@@ -114,7 +123,11 @@ fn step(ui: &Ui, scene: &Scene) -> Option<Selection> {
         m.move_focus(egui::FocusDirection::None);
         m.request_focus(row_id(next));
     });
-    Some(next)
+    ui.data_mut(|d| match modifiers.shift {
+        true => _ = d.insert_temp(range_end(memory), next),
+        false => d.remove::<Selection>(range_end(memory)),
+    });
+    Some(if modifiers.shift { Action::SelectRange(next) } else { Action::Select(next) })
 }
 
 fn add_item(ui: &mut Ui, [glyph, name, summary]: [&str; 3], action: Action, context: &mut PanelContext<'_>) {
@@ -169,7 +182,7 @@ impl<'a> PartRow<'a> {
     fn show(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let Self { part, ref name, nested, session, .. } = *self;
         let palette = Palette::here(ui);
-        let selected = session.selection == part;
+        let selected = session.is_selected(part);
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
         let response = ui.interact(rect, row_id(part), Sense::click());
         theme::says_chosen(&response, WidgetType::SelectableLabel, selected, name);
@@ -179,7 +192,9 @@ impl<'a> PartRow<'a> {
         let ground = rect.shrink2(vec2(4.0, 0.0));
         if selected {
             painter.rect_filled(ground, 4.0, palette.chosen);
-            let bar = Rect::from_min_size(ground.min, vec2(3.0, ground.height()));
+            // Of several, the first has the longest bar: ranges begin there.
+            let inset = if session.selection == part { 0.0 } else { 0.3 * ground.height() };
+            let bar = Rect::from_min_size(ground.min, vec2(3.0, ground.height())).shrink2(vec2(0.0, inset));
             painter.rect_filled(bar, 1.5, palette.accent);
         } else if hovered || self.is_in_chosen_row {
             painter.rect_filled(ground, 4.0, palette.hovered);
@@ -315,14 +330,22 @@ impl<'a> PartRow<'a> {
 
 /// Clicks on a row, and keys while it has the focus.
 fn acted(ui: &Ui, response: &Response, part: Selection, nested: bool, context: &mut PanelContext<'_>) {
+    let modifiers = ui.input(|i| i.modifiers);
+    if response.clicked() {
+        context.act(match modifiers {
+            held if nested && held.shift => Action::SelectRange(part),
+            held if nested && held.command => Action::SelectAlso(part),
+            _ => Action::Select(part),
+        });
+    }
     // The menu of a row applies to the selection.
-    if response.clicked() || response.secondary_clicked() {
+    if response.secondary_clicked() && !context.session().is_selected(part) {
         context.act(Action::Select(part));
     }
     if nested && response.has_focus() && ui.input(|i| i.key_pressed(Key::Delete)) {
         context.act(Action::Remove(part));
     }
-    if nested && response.double_clicked() {
+    if nested && response.double_clicked() && !modifiers.any() {
         context.act(Action::BeginRename(part));
     }
 }
@@ -337,9 +360,13 @@ fn menu(ui: &mut Ui, part: Selection, nested: bool, context: &mut PanelContext<'
         }
     };
     if nested {
+        // Of several that are selected, all but the name.
         item(ui, "Rename", Action::BeginRename(part));
         item(ui, "Duplicate", Action::Duplicate(part));
         item(ui, toggle_words(part, is_there(&session.document, part)), Action::Toggle(part));
+        if matches!(part, Selection::Object(_)) {
+            item(ui, "Hide the others", Action::HideOthers);
+        }
         ui.separator();
         item(ui, "Delete", Action::Remove(part));
     } else {

@@ -10,11 +10,12 @@ use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraS
 
 use super::{
     WindowView,
+    pick::CTRL,
     pointer::{OverPicture, PointerPlugin, follow_cursor},
 };
 use crate::{
     document::{Edit, Selection},
-    panel::state::{Action, CameraChange, Session, Steer},
+    panel::state::{Action, CameraChange, Session, Steer, Together},
     registry::Registry,
     render::{camera::PictureCamera, entities::CurrentScene},
     scene::{Observer, Scene, observer::rotation},
@@ -91,7 +92,9 @@ fn gate(
 ) {
     let pressed = [MouseButton::Left, MouseButton::Right];
     let begins = over.pressed.is_some() && buttons.any_just_pressed(pressed);
-    *dragging = buttons.any_pressed(pressed) && (*dragging || begins);
+    // With Ctrl the left button draws a frame around what shall be selected.
+    let frames = keys.any_pressed(CTRL) && buttons.just_pressed(MouseButton::Left);
+    *dragging = buttons.any_pressed(pressed) && (*dragging || begins && !frames);
     let moved = motion.read().count() > 0;
     let wheeled = wheel.read().count() > 0 && over.now;
     // A drag that started in the picture continues outside; one that started outside is ignored.
@@ -239,7 +242,9 @@ impl CameraControl<'_, '_> {
     pub(super) fn focus(&mut self, session: &Session, registry: &Registry) {
         let scene = &self.scene.0;
         let corner = scene.scene_size.corner();
+        let together = Together::of(session, registry).map(|all| (all.middle(), all.span().max(0.5)));
         let found = match session.selection {
+            _ if together.is_some() => together,
             Selection::Object(i) => scene.objects.get(i).map(|object| (object.position, object.size)),
             Selection::Light(i) => scene.lights.get(i).and_then(|light| {
                 let span = registry.light(&light.light_type).map_or(0.0, |of| of.span(&light.parameters));

@@ -39,7 +39,7 @@ const CLICK_SLACK: f32 = 4.0;
 
 /// Selects the light whose marker was clicked, otherwise the object or lamp whose surface was clicked.
 fn pick(
-    buttons: Res<ButtonInput<MouseButton>>,
+    (buttons, keys): (Res<ButtonInput<MouseButton>>, Res<ButtonInput<KeyCode>>),
     over: Res<OverPicture>,
     window: Single<&Window, With<PrimaryWindow>>,
     cameras: Query<(&Camera, &GlobalTransform), With<WindowView>>,
@@ -84,12 +84,20 @@ fn pick(
         let nearest = object.into_iter().chain(lamp).min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.map(|(selection, _)| selection)
     });
-    if let Some(selection) = selection
-        && selection != session.selection
-    {
+    let Some(selection) = selection else { return };
+    if keys.any_pressed(CTRL) {
+        session.apply(Action::SelectAlso(selection), &registry);
+    } else if selection != session.selection || session.has_group() {
         session.apply(Action::Select(selection), &registry);
     }
 }
+
+/// The keys with which a click adds to what is selected, and a drag draws a frame; of a Mac, ⌘.
+pub(super) const CTRL: [KeyCode; 2] = if cfg!(target_os = "macos") {
+    [KeyCode::SuperLeft, KeyCode::SuperRight]
+} else {
+    [KeyCode::ControlLeft, KeyCode::ControlRight]
+};
 
 /// The object that a ray meets first, and its distance, as the CPU renderer sees it: the meshes of the window are on the
 /// GPU alone.
@@ -155,6 +163,12 @@ mod tests {
     fn clicked(scene: &Scene, point: Vec3, others: usize) -> Selection {
         let mut session = Session::new(scene.clone());
         session.selection = Selection::Observer;
+        session_after(session, point, others, false).selection
+    }
+
+    /// A session after a click, with Ctrl held or not.
+    fn session_after(session: Session, point: Vec3, others: usize, ctrl: bool) -> Session {
+        let scene = session.document.scene().clone();
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32));
         let area = PictureArea { rect, frame: rect, has_pointer: true, ..PictureArea::default() };
         let mut camera = Camera::default();
@@ -172,9 +186,10 @@ mod tests {
         world.insert_resource(session);
         world.insert_resource(area);
         world.insert_resource(OverPicture { now: true, pressed: Some(at) });
-        world.insert_resource(CurrentScene(scene.clone()));
+        world.insert_resource(CurrentScene(scene));
         world.insert_resource(Registry::builtin());
         world.init_resource::<ButtonInput<MouseButton>>();
+        world.init_resource::<ButtonInput<KeyCode>>();
         world.spawn((window, PrimaryWindow));
         for _ in 0..others {
             // These look elsewhere.
@@ -183,13 +198,31 @@ mod tests {
         world.spawn((picture_camera(1), WindowView)).insert((camera, place));
         let mut schedule = Schedule::default();
         schedule.add_systems(pick);
+        if ctrl {
+            world.resource_mut::<ButtonInput<KeyCode>>().press(CTRL[0]);
+        }
         world.resource_mut::<ButtonInput<MouseButton>>().press(MouseButton::Left);
         schedule.run(&mut world);
         let mut buttons = world.resource_mut::<ButtonInput<MouseButton>>();
         buttons.clear();
         buttons.release(MouseButton::Left);
         schedule.run(&mut world);
-        world.resource::<Session>().selection
+        world.resource::<Session>().clone()
+    }
+
+    #[test]
+    fn with_ctrl_a_click_adds_what_is_clicked_or_takes_it_out() {
+        let mut scene = Scene::default();
+        let middle = scene.objects[0].position;
+        let beside =
+            crate::scene::Object { position: middle + 2.0 * Vec3::X, size: 0.5, ..scene.objects[0].clone() };
+        scene.objects.push(beside);
+        let both = session_after(Session::new(scene.clone()), middle + 2.0 * Vec3::X, 0, true);
+        assert_eq!(both.group(), [Selection::Object(0), Selection::Object(1)]);
+        let one = session_after(both.clone(), middle, 0, true);
+        assert_eq!(one.group(), [Selection::Object(1)]);
+        let alone = session_after(both, middle, 0, false);
+        assert_eq!(alone.group(), [Selection::Object(0)], "a click without it selects one");
     }
 
     #[test]

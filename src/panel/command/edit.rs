@@ -5,7 +5,7 @@ use crate::{
     document::{Edit, Selection},
     panel::{
         history::HISTORY_TAB,
-        state::{Action, Effect, ModelCommand, Pick, ViewChange},
+        state::{Action, Alike, Arrangement, Effect, ModelCommand, Pick, ViewChange},
     },
 };
 
@@ -16,6 +16,7 @@ pub(super) fn edit(to: &mut List) {
         additions(to);
         to.line();
         parts(to);
+        several(to);
         to.line();
         models(to);
     });
@@ -76,6 +77,49 @@ fn parts(to: &mut List) {
     }
     to.line();
     rows(to);
+}
+
+/// Several lights and objects at once.
+fn several(to: &mut List) {
+    let session = to.session;
+    to.menu(Menu::new("Select"), |to| {
+        for by in Alike::ALL {
+            let all = command(format!("select.{}", by.id()), by.name(), Action::SelectAlike(by));
+            let all = if by == Alike::Kind {
+                all.says("Select all objects, or all lights").keys("Ctrl+A")
+            } else {
+                all
+            };
+            let is_light = matches!(session.selection, Selection::Light(_)) && by == Alike::Model;
+            to.add(all.unless(is_light, "A light is selected, which has no reflection model"));
+        }
+        let one = command("select.one", "The first alone", Action::Select(session.selection));
+        to.add(one.unless(!session.has_group(), "Only one part is selected"));
+    });
+    to.menu(Menu::new("Align and distribute"), |to| {
+        let names = [
+            ["Left sides", "Middles from left to right", "Right sides", "Equal distances along x"],
+            ["Undersides", "Middles from below to above", "Tops", "Equal distances along y"],
+            ["Backs", "Middles from back to front", "Fronts", "Equal distances along z"],
+        ];
+        let ways = [Arrangement::Low, Arrangement::Middle, Arrangement::High, Arrangement::Apart];
+        for (axis, (names, letter)) in names.into_iter().zip(["x", "y", "z"]).enumerate() {
+            for (how, name) in ways.into_iter().zip(names) {
+                let id = format!("arrange.{letter}_{}", how.id());
+                let arrange = command(id, name, Action::Arrange(how, axis));
+                to.add(arrange.unless(!session.has_group(), "Only one part is selected"));
+            }
+            if letter != "z" {
+                to.line();
+            }
+        }
+    });
+    let objects = matches!(session.selection, Selection::Object(_)) || session.has_group();
+    let alone = command("hide_others", "Hide the other objects", Action::HideOthers).keys("Shift+V").rank(3);
+    to.add(alone.unless(!objects, "No object is selected"));
+    let hidden = session.document.objects.iter().any(|object| !object.visible);
+    let all = command("show_all", "Show all objects", Action::ShowAll).keys("Ctrl+Shift+V").rank(3);
+    to.add(all.unless(!hidden, "No object is hidden"));
 }
 
 fn rows(to: &mut List) {

@@ -30,6 +30,7 @@ pub(super) static SORT: Sort = Sort {
             (Body::Light(light, _), HandleMode::Move) if light.position.is_some() => {
                 arrows(target.at, [*middle; 2], part * ARM, None, lens)
             }
+            (Body::Group(_), HandleMode::Move) => arrows(target.at, [*middle; 2], part * ARM, None, lens),
             _ => Vec::new(),
         }
     },

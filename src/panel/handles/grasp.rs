@@ -11,7 +11,10 @@ use super::{
 };
 use crate::{
     document::{Edit, Selection},
-    panel::marks::{Lens, Ray},
+    panel::{
+        marks::{Lens, Ray},
+        state::Together,
+    },
     parameter::{Parameter, Value},
     scene::{Light, Object, Part, SceneSize, rotation::rotation},
 };
@@ -97,6 +100,8 @@ pub(super) struct Grasp {
     pub(super) parameter: Option<(&'static Parameter, f32)>,
     /// Vector to the end of a size of a light, and the fraction of the size that it covers.
     pub(super) end: Option<(Vec3, f32)>,
+    /// Several parts, as they were.
+    pub(super) together: Option<Together>,
     /// True if the handle is on the side of its sphere that faces the camera.
     near: bool,
     /// True if the handle was pulled off its sphere; when it returns, it changes sides.
@@ -167,9 +172,11 @@ impl Grasp {
             parameter: None,
             end: None,
             near: is_near(placed.point - target.at, lens.eye - target.at),
+            together: None,
             off: false,
         };
-        match target.body {
+        match &target.body {
+            Body::Group(all) => grasp.together = Some(all.clone()),
             Body::Object(object, _) => {
                 (grasp.rotation, grasp.size) = (rotation(object.rotation), object.size);
             }
@@ -266,8 +273,17 @@ impl Grasp {
     }
 
     /// The edit that gives the part a value.
-    pub(super) fn edit(&self, dragged: Dragged) -> Option<Edit> {
+    pub(super) fn edit(&self, dragged: Dragged, room: SceneSize) -> Option<Edit> {
         let part = Part::from(self.part);
+        if let Some(all) = &self.together {
+            return match dragged {
+                Dragged::Position(p) => Some(all.moved(p - self.at, room)),
+                Dragged::Rotation(_, degrees) => {
+                    all.turned(Vec3::AXES[self.handle.which], degrees.to_radians(), room)
+                }
+                _ => None,
+            };
+        }
         Some(match (part, dragged) {
             (Part::Object(_), Dragged::Rotation(r, _)) => Edit::set(part, Object::rotation, r),
             (Part::Object(_), Dragged::Size(size)) => Edit::set(part, Object::size, size),
@@ -339,7 +355,7 @@ mod tests {
 
     fn grasp(session: &Session, mode: HandleMode, handle: Handle) -> (Grasp, Placed) {
         let registry = Registry::builtin();
-        let target = Target::of(session, &registry, Vec::new).expect("selected");
+        let target = Target::of(session, &registry, None, Vec::new).expect("selected");
         let all = placed(&target, mode, session, &lens(session));
         let handle = all.iter().find(|p| p.handle == handle).expect("it is there").clone();
         let start = handle.lines.first().map_or(handle.end, |line| line[line.len() / 2]);

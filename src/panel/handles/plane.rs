@@ -16,9 +16,10 @@ const ASIDE: f32 = 34.0;
 pub(super) static SORT: Sort = Sort {
     id: "plane",
     name: |_, _, part| format!("move {part} in the plane of the picture"),
-    value: |target, _| match target.body {
+    value: |target, _| match &target.body {
         Body::Object(object, _) => Some(Dragged::Position(object.position)),
         Body::Light(light, _) => light.position.map(Dragged::Position),
+        Body::Group(_) => Some(Dragged::Position(target.at)),
     },
     drag: |grasp, pull| {
         let to = grasp.at + pull.flat(pull.now)? - pull.flat(pull.start)?;

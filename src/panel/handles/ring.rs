@@ -1,4 +1,4 @@
-//! The rings about the axes of the room, which turn an object.
+//! The rings about the axes of the room, which turn an object, or several parts about their common middle.
 
 use std::f32::consts::TAU;
 
@@ -26,7 +26,8 @@ pub(super) static SORT: Sort = Sort {
     name: |_, axis, part| format!("turn {part} about {}", LETTERS[axis]),
     placed: |around| {
         let Around { target, lens, middle, part, extent, .. } = around;
-        if !matches!((&target.body, around.mode), (Body::Object(..), HandleMode::Turn)) {
+        let turns = matches!(target.body, Body::Object(..) | Body::Group(_));
+        if !turns || around.mode != HandleMode::Turn {
             return Vec::new();
         }
         let most = 0.5 * lens.rect.size().max_elem() - LETTER;
@@ -34,7 +35,13 @@ pub(super) static SORT: Sort = Sort {
         let radius = extent.map_or(part * RING, around);
         (0..3).map(|axis| ring(target.at, axis, radius, lens).beyond(*middle, *extent)).collect()
     },
-    value: |target, _| Some(Dragged::Rotation(target.object()?.rotation, 0.0)),
+    value: |target, _| {
+        let rotation = match target.body {
+            Body::Group(_) => Vec3::ZERO,
+            _ => target.object()?.rotation,
+        };
+        Some(Dragged::Rotation(rotation, 0.0))
+    },
     drag: |grasp, pull| {
         let axis = Vec3::AXES[grasp.handle.which];
         let by = grasp.turned_about(pull.lens, pull.pointer, axis)?;

@@ -11,7 +11,7 @@ use crate::{
     light::LightEntry,
     panel::{
         marks::Lens,
-        state::{HandleMode, Session},
+        state::{HandleMode, Session, Together},
     },
     parameter::Parameter,
     registry::Registry,
@@ -44,6 +44,8 @@ pub(super) enum Body<'a> {
     Object(&'a Object, Vec3),
     /// A light.
     Light(&'a Light, &'a LightEntry),
+    /// Several lights and objects.
+    Group(Together),
 }
 
 /// The part that the handles belong to.
@@ -55,13 +57,17 @@ pub(super) struct Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// The selection, if it has handles; `places` returns the positions of the light markers.
+    /// The selection, if it has handles; `places` returns the positions of the light markers. `together` are several parts.
     pub(super) fn of(
         session: &'a Session,
         registry: &'a Registry,
+        together: Option<Together>,
         places: impl FnOnce() -> Vec<Option<Vec3>>,
     ) -> Option<Self> {
         let part = session.selection;
+        if session.has_group() {
+            return together.map(|all| Self { part, at: all.middle(), body: Body::Group(all) });
+        }
         match part {
             Selection::Object(i) => {
                 let object = session.document.objects.get(i)?;
@@ -86,6 +92,19 @@ impl<'a> Target<'a> {
     /// The light, if it is one.
     pub(super) fn light(&self) -> Option<&'a Light> {
         if let Body::Light(light, _) = self.body { Some(light) } else { None }
+    }
+
+    /// The parts, if they are several.
+    pub(super) fn group(&self) -> Option<&Together> {
+        if let Body::Group(all) = &self.body { Some(all) } else { None }
+    }
+
+    /// The name in texts.
+    pub(super) fn words(&self, session: &Session, registry: &Registry) -> String {
+        match &self.body {
+            Body::Group(all) => all.name().to_owned(),
+            _ => session.name_of(self.part, registry),
+        }
     }
 
     /// The parameter that a handle changes.

@@ -17,9 +17,10 @@ use crate::{
         marks::{self, Asked, Lens, Sight},
         notice,
         state::{Action, HandleMode, Session},
+        together::together,
     },
     parameter::Value,
-    scene::{Field, Light, Object, rotation::rotation},
+    scene::{Field, Light, Object, SceneSize, rotation::rotation},
 };
 
 /// Minimum picture size for handles, in points.
@@ -38,7 +39,9 @@ struct Hold {
     view: Id,
     grasp: Grasp,
     /// The original value, which Escape restores.
-    before: Edit,
+    before: Dragged,
+    /// The value that was asked for last, of several parts.
+    asked: Option<Dragged>,
     /// True once the pointer has moved.
     moved: bool,
 }
@@ -51,7 +54,7 @@ pub(in crate::panel) fn handles(ui: &Ui, sight: Sight<'_>) -> Asked {
     let hold: Option<Hold> = kept::get(ui.ctx());
     let lens = Lens::of(session, rect);
     let seen = || marks::places_shown(ui.ctx(), sight, &lens);
-    let target = Target::of(session, registry, seen)
+    let target = Target::of(session, registry, together(ui.ctx(), session, registry), seen)
         .filter(|_| session.view.show_handles && rect.size().min_elem() >= SMALLEST);
     let Some(target) = target else {
         release(ui);
@@ -76,7 +79,7 @@ pub(in crate::panel) fn handles(ui: &Ui, sight: Sight<'_>) -> Asked {
     if opacity > 0.0 {
         paint::handles(ui, lens, &all, opacity, state);
     }
-    nodes(ui, view, rect, &all, &target, &session.name_of(target.part, registry));
+    nodes(ui, view, rect, &all, &target, &target.words(session, registry));
     places.extend(all.iter().flat_map(|placed| {
         let side = Vec2::splat(2.0 * placed.half());
         placed.points().filter(|p| rect.contains(*p)).map(move |p| Rect::from_center_size(p, side))
@@ -91,18 +94,26 @@ pub(in crate::panel) fn handles(ui: &Ui, sight: Sight<'_>) -> Asked {
         && ui.input(|i| i.pointer.primary_pressed())
         && let Some(pointer) = ui.input(|i| i.pointer.press_origin())
     {
-        actions.extend(take(ui, view, placed, &target, Grasp::of(placed, &target, &lens, pointer)));
+        let room = session.document.scene_size;
+        actions.extend(take(ui, view, placed, &target, Grasp::of(placed, &target, &lens, pointer), room));
     }
     (actions, places)
 }
 
 /// Takes hold of a handle, if its value can be edited.
-fn take(ui: &Ui, view: Id, placed: &Placed, target: &Target, grasp: Grasp) -> Option<Action> {
-    let before = value(&grasp, target).and_then(|value| grasp.edit(value))?;
-    if let Selection::Light(i) = target.part {
+fn take(
+    ui: &Ui,
+    view: Id,
+    placed: &Placed,
+    target: &Target,
+    grasp: Grasp,
+    room: SceneSize,
+) -> Option<Action> {
+    let before = value(&grasp, target).filter(|value| grasp.edit(*value, room).is_some())?;
+    if let (Selection::Light(i), None) = (target.part, target.group()) {
         marks::hold(ui.ctx(), Some((i, target.at)));
     }
-    kept::set(ui.ctx(), Some(Hold { view, grasp, before, moved: false }));
+    kept::set(ui.ctx(), Some(Hold { view, grasp, before, asked: None, moved: false }));
     ui.ctx().set_dragged_id(view.with(placed.handle));
     Some(Action::BeginDrag)
 }
@@ -211,10 +222,12 @@ fn is_same(edit: &Edit, now: Option<Edit>) -> bool {
 fn drag(ui: &Ui, sight: Sight<'_>, lens: &Lens, mut hold: Hold, target: &Target) -> Option<Action> {
     let Sight { session, registry, .. } = sight;
     let (pointer, snap) = ui.input(|i| (i.pointer.latest_pos(), i.modifiers.command));
-    let now = value(&hold.grasp, target);
+    // The start, of several parts: their value is how far they have come since.
+    let now = hold.asked.or_else(|| value(&hold.grasp, target));
+    let room = session.document.scene_size;
     if ui.input(|i| i.key_pressed(Key::Escape)) {
-        let undone = (now.and_then(|now| hold.grasp.edit(now)).as_ref() != Some(&hold.before))
-            .then(|| Action::Edit(hold.before.clone()));
+        let changed = now.is_some_and(|now| now != hold.before);
+        let undone = hold.grasp.edit(hold.before, room).filter(|_| changed).map(Action::Edit);
         kept::set(ui.ctx(), None::<Hold>);
         marks::hold(ui.ctx(), None);
         return undone;
@@ -223,11 +236,11 @@ fn drag(ui: &Ui, sight: Sight<'_>, lens: &Lens, mut hold: Hold, target: &Target)
     hold.moved |= pointer.distance(hold.grasp.pointer) >= SLACK;
     hold.grasp.follow(lens, pointer);
     let grasp = &hold.grasp;
-    let room = session.document.scene_size;
     let wanted = grasp.drag(lens, pointer, snap, room).filter(|_| hold.moved);
-    let edit = wanted.and_then(|wanted| grasp.edit(wanted));
-    // Where another part is in the way, keep the last valid value.
-    let legal = edit.filter(|edit| session.document.allows(edit, registry));
+    let edit = wanted.and_then(|wanted| grasp.edit(wanted, room));
+    // Where another part is in the way, keep the last valid value. Several parts are checked once, when they are changed.
+    let several = target.group().is_some();
+    let legal = edit.filter(|edit| several || session.document.allows(edit, registry));
     if hold.moved {
         let shown = wanted.filter(|_| legal.is_some()).or(now);
         let Handle { sort, which } = grasp.handle;
@@ -236,7 +249,11 @@ fn drag(ui: &Ui, sight: Sight<'_>, lens: &Lens, mut hold: Hold, target: &Target)
             paint::plate(ui, lens.rect, pointer, grasp.words(shown, lens.metres(grasp.at, 1.0)));
         }
     }
-    let changed = legal.filter(|edit| !is_same(edit, now.and_then(|now| hold.grasp.edit(now))));
+    let changed = legal.filter(|edit| match wanted {
+        wanted if several => wanted != now,
+        _ => !is_same(edit, now.and_then(|now| hold.grasp.edit(now, room))),
+    });
+    hold.asked = wanted.filter(|_| several && changed.is_some()).or(hold.asked);
     kept::set(ui.ctx(), Some(hold));
     release(ui);
     changed.map(Action::Edit)

@@ -1,9 +1,10 @@
-//! The properties of the selected part of the scene, at the right.
+//! The properties of what is selected, at the right.
 
 use super::{lesson::point, prelude::*};
-use {light::light, object::object, observer::observer, room::room};
+use {light::light, many::many, object::object, observer::observer, room::room};
 
 mod light;
+mod many;
 mod material;
 mod measured;
 pub(super) mod model;
@@ -17,8 +18,8 @@ mod variant;
 /// See the module.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let part = context.session().selection;
-    // Each part has fields of its own: what is typed about one must not turn up in another.
-    ui.push_id(part, |ui| {
+    // Each selection has fields of its own: what is typed about one must not turn up in another.
+    ui.push_id((part, context.document().others().len()), |ui| {
         // The scroll bar floats over a margin, so that nothing moves when it comes.
         ui.spacing_mut().scroll.floating_allocated_width = 0.0;
         let scroll = ScrollArea::vertical().auto_shrink(false).animated(!point::jumps(ui));
@@ -26,6 +27,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
             ui.set_max_width(ui.available_width() - 8.0);
             variant::variant(ui, context);
             match part {
+                _ if context.session().has_group() => many(ui, context),
                 Selection::Room => room(ui, context),
                 Selection::Observer => observer(ui, context),
                 Selection::Light(i) => light(ui, i, context),

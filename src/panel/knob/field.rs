@@ -51,20 +51,28 @@ pub(super) fn read(text: &str, limits: &Limits) -> Result<f64, String> {
     }
 }
 
+/// A number as fields show it; a dash stands for one that is not a number: for several that differ.
+pub(super) fn shown(value: f64) -> String {
+    if value.is_nan() { "–".to_owned() } else { number(value) }
+}
+
 /// A field for one number. `name` is for screen readers.
 pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width: f32) -> Field {
     let draft_id = id.with("draft");
     // A value changed elsewhere makes the edited text obsolete.
-    let mut draft = ui.data(|d| d.get_temp::<Draft>(draft_id)).filter(|d| d.last == value);
+    let mut draft = ui
+        .data(|d| d.get_temp::<Draft>(draft_id))
+        .filter(|d| d.last == value || d.last.is_nan() && value.is_nan());
     let begun = |text: String| Draft { text, before: value, last: value };
-    let whole = number(value);
+    let whole = shown(value);
     let mut text = match &draft {
         Some(draft) => draft.text.clone(),
         None if ui.memory(|m| m.has_focus(id)) => whole.clone(),
         None => fitted(ui, value, width - PADDING),
     };
     let cut = draft.is_none() && text != whole;
-    let problem = |draft: &Draft| read(&draft.text, limits).err();
+    let is_dash = |draft: &Draft| value.is_nan() && draft.text == whole;
+    let problem = |draft: &Draft| read(&draft.text, limits).err().filter(|_| !is_dash(draft));
     let wrong = draft.as_ref().and_then(problem).is_some();
     let steps = steps(ui, id);
     let entry = Entry { id, name, shown: &whole, hint: "", width };
@@ -75,7 +83,7 @@ pub fn field(ui: &mut Ui, id: Id, name: &str, value: f64, limits: &Limits, width
 
     let mut out = None;
     if response.gained_focus() {
-        draft = Some(begun(if response.changed() { text.clone() } else { whole }));
+        draft = Some(begun(if response.changed() { text.clone() } else { whole.clone() }));
     }
     if response.changed() {
         let d = draft.get_or_insert_with(|| begun(String::new()));
@@ -142,8 +150,8 @@ fn fitted(ui: &Ui, value: f64, room: f32) -> String {
     let fits = |text: &String| {
         ui.painter().layout_no_wrap(text.clone(), font.clone(), egui::Color32::WHITE).size().x <= room
     };
-    let whole = number(value);
-    if fits(&whole) {
+    let whole = shown(value);
+    if fits(&whole) || value.is_nan() {
         return whole;
     }
     let rounded = (0..4).rev().map(|decimals| round_to(value, 0.1_f64.powi(decimals)));

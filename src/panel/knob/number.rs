@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, CursorIcon, Sense, Stroke, TextStyle, Ui, WidgetInfo
 
 use super::{
     Declared, Knob,
-    field::{complaint, field},
+    field::{complaint, field, shown},
     line::{Caption, NUMBER, Words, explain, head, knob, range, tooltip, unit},
     slider::{Amount, slider},
 };
@@ -98,7 +98,7 @@ pub fn number_knob_beside(
             explain(slider, tip);
         }
         match &field.error {
-            Some(error) => complaint(ui, &field.response, &capitalised(error), &number(value)),
+            Some(error) => complaint(ui, &field.response, &capitalised(error), &shown(value)),
             // During typing, a tooltip would hide what is below.
             None if field.response.has_focus() => {}
             None => explain(field.response, tip),

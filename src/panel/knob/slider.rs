@@ -1,6 +1,8 @@
 //! The slider of a number.
 
-use bevy_egui::egui::{CursorIcon, Key, Rect, Response, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use bevy_egui::egui::{
+    CursorIcon, Key, Rect, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2,
+};
 
 use crate::{
     panel::{focus, theme::Palette},
@@ -72,7 +74,10 @@ const RADIUS: f32 = 6.0;
 pub(super) fn slider(ui: &mut Ui, name: &str, amount: Amount, width: f32) -> (Response, Option<f64>) {
     let (rect, response) = ui.allocate_exact_size(vec2(width, 16.0), Sense::click_and_drag());
     let Amount { value, limits, .. } = amount;
-    response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), value, name));
+    response.widget_info(|| match value.is_nan() {
+        true => WidgetInfo::labeled(WidgetType::Slider, ui.is_enabled(), name),
+        false => WidgetInfo::slider(ui.is_enabled(), value, name),
+    });
     let rail = rect.shrink2(vec2(RADIUS, 6.5));
     let out = asked(ui, &response, rail, amount);
     if ui.is_rect_visible(rect) {
@@ -118,6 +123,10 @@ fn paint(ui: &Ui, response: &Response, rail: Rect, now: f64, Amount { value, def
     let (palette, painter) = (Palette::here(ui), ui.painter());
     let x = |v: f64| rail.left() + to_slider(limits, v) as f32 * rail.width();
     painter.rect_filled(rail, 1.5, palette.line);
+    // Several values that differ have no handle.
+    if now.is_nan() {
+        return;
+    }
     let handle = pos2(x(now), rail.center().y);
     painter.rect_filled(rail.with_max_x(handle.x), 1.5, palette.accent);
     if let Some(default) = default {

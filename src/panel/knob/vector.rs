@@ -6,13 +6,13 @@ use bevy_egui::egui::{
 use glam::Vec3;
 
 use super::{
-    field::{complaint, field},
+    field::{complaint, field, shown},
     line::{Caption, explain, knob, tooltip, unit},
     slider::round_to,
 };
 use crate::{
     panel::theme::{self, Palette},
-    scene::limits::{Limits, number},
+    scene::limits::Limits,
 };
 
 /// The letter in front of a field; dragging it sideways changes the value.
@@ -123,7 +123,7 @@ pub fn vector_knob(ui: &mut Ui, caption: &Caption, value: Vec3, limits: &[Limits
             word.into_iter().for_each(|word| word(ui));
             let (new, wrong) = three_fields(ui, id, caption, LETTERS, value, limits);
             if let Some((error, kept, field)) = wrong {
-                complaint(ui, &field, &error, &number(kept));
+                complaint(ui, &field, &error, &shown(kept));
             }
             new
         });

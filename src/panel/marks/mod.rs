@@ -12,12 +12,13 @@ use glam::{Quat, Vec3};
 use super::{
     kept,
     state::{Action, Session},
+    together::together,
 };
 use crate::{
     document::Selection,
     light::LightEntry,
     registry::Registry,
-    scene::{Light, Object, Observer, Scene, observer::rotation as look_along, rotation::rotation},
+    scene::{Light, Object, Observer, Part, Scene, observer::rotation as look_along, rotation::rotation},
 };
 use edge::Outside;
 use place::{CROWD, SHORT};
@@ -58,6 +59,9 @@ const SMALL: f32 = 12.0;
 /// Distance of the frame around the selected object from what it frames, points.
 const FRAME: f32 = 7.0;
 
+/// Maximum number of objects that have frames of their own beside the first one.
+const MOST_FRAMES: usize = 64;
+
 /// A picture on the screen.
 #[derive(Clone, Copy)]
 pub struct Sight<'a> {
@@ -87,7 +91,7 @@ pub fn marks(ui: &Ui, sight: Sight<'_>) -> Asked {
     let crowd = scene.lights.len() > CROWD;
     let chosen = |i: usize| session.selection == Selection::Light(i);
     let colour_of = |i: usize| match scene.lights[i].enabled {
-        _ if chosen(i) => SELECTED,
+        _ if session.is_selected(Selection::Light(i)) => SELECTED,
         true => LIGHT,
         false => OFF,
     };
@@ -127,6 +131,7 @@ pub fn marks(ui: &Ui, sight: Sight<'_>) -> Asked {
     {
         frame(ui, &mut ink, object, registry);
     }
+    frames(ui, &mut ink, session, registry);
     ink.paint(&ui.painter_at(rect));
     edge::arrows(ui, sight, &outside, colour_of)
 }
@@ -299,6 +304,40 @@ fn frame(ui: &Ui, ink: &mut Ink, object: &Object, registry: &Registry) {
         Some(points) => Rect::from_points(&points).expand(FRAME),
         None => view,
     };
+    corners(ink, around);
+}
+
+/// Frames around the objects that are selected besides the first: one around each, or, if they are many, one around all.
+fn frames(ui: &Ui, ink: &mut Ink, session: &Session, registry: &Registry) {
+    let Some(all) = together(ui.ctx(), session, registry) else { return };
+    let lens = ink.lens;
+    let others = || {
+        let first = Part::from(session.selection);
+        let is_other = move |part: Part| matches!(part, Part::Object(_)) && part != first;
+        all.places().filter(move |(part, ..)| is_other(*part)).map(|(_, at, half)| (at, half))
+    };
+    if others().nth(MOST_FRAMES).is_none() {
+        for (at, half) in others() {
+            let ends = (0..8).map(|k| Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32));
+            let seen = ends.map(|end| lens.project(at + half * (2.0 * end - Vec3::ONE)));
+            if let Some(points) = seen.collect::<Option<Vec<_>>>() {
+                corners(ink, Rect::from_points(&points).expand(FRAME));
+            }
+        }
+        return;
+    }
+    let seen = others().filter_map(|(at, half)| {
+        let points = half.max_element() / lens.metres(at, 1.0);
+        Some(Rect::from_center_size(lens.project(at)?, Vec2::splat(2.0 * points)))
+    });
+    if let Some(around) = seen.reduce(Rect::union) {
+        corners(ink, around.expand(FRAME));
+    }
+}
+
+/// The corners of a frame, as far as it is seen.
+fn corners(ink: &mut Ink, around: Rect) {
+    let view = ink.lens.rect.shrink(FRAME);
     if !around.intersects(view) {
         return;
     }

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use glam::Vec3;
 
 use super::{
-    CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity, TakeCommand,
-    ViewChange,
+    Alike, Arrangement, CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity,
+    TakeCommand, ViewChange,
 };
 use crate::{
     document::{Edit, Selection},
@@ -38,6 +38,14 @@ pub enum Action {
     Answer(Answer),
     /// Select a part of the scene.
     Select(Selection),
+    /// Select a light or an object besides what is selected; or no longer, if it is selected.
+    SelectAlso(Selection),
+    /// Select the lights and objects from the selection to this one, in the order of the list.
+    SelectRange(Selection),
+    /// Select these lights and objects, or add them to what is selected.
+    SelectEach(Vec<Selection>, bool),
+    /// Select all lights and objects that are like the selection.
+    SelectAlike(Alike),
     /// Select the next object.
     SelectNext,
     /// Select the previous object.
@@ -54,6 +62,12 @@ pub enum Action {
     Remove(Selection),
     /// Hide or show an object; switch a light on or off.
     Toggle(Selection),
+    /// Hide all objects that are not selected, and show those that are.
+    HideOthers,
+    /// Show all objects.
+    ShowAll,
+    /// Align or distribute what is selected along an axis: 0 for x, 1 for y, 2 for z.
+    Arrange(Arrangement, usize),
     /// Open files dropped on the window, or add them to the scene.
     Drop(Vec<PathBuf>),
     /// Start to rename a part in the scene list.
@@ -220,6 +234,10 @@ impl Session {
             Action::ClearRecent => self.clear_recent(),
             Action::Answer(answer) => self.answered(answer, registry),
             Action::Select(selection) => self.select(selection),
+            Action::SelectAlso(part) => self.select_also(part),
+            Action::SelectRange(to) => self.select_range(to),
+            Action::SelectEach(parts, add) => self.select_each(parts, add),
+            Action::SelectAlike(by) => self.select_alike(by),
             Action::SelectNext => self.step_selection(1),
             Action::SelectPrevious => self.step_selection(-1),
             Action::AddLight(id) => self.add_light(&id, |_| (), registry),
@@ -228,6 +246,9 @@ impl Session {
             Action::MakeRow(part) => self.make_row(part, registry),
             Action::Remove(part) => self.remove(part, registry),
             Action::Toggle(part) => self.toggle(part, registry),
+            Action::HideOthers => self.hide_others(registry),
+            Action::ShowAll => self.show_all(registry),
+            Action::Arrange(how, axis) => self.arrange(how, axis, registry),
             Action::Drop(paths) => self.dropped(paths, registry),
             Action::BeginRename(part) => self.begin_rename(part),
             Action::CancelRename => self.renaming = None,

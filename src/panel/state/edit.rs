@@ -1,5 +1,7 @@
 //! Edits of the scene, undo and redo.
 
+use std::collections::HashSet;
+
 use super::{
     Session, Severity,
     follow::{follow_model, follow_registry},
@@ -15,6 +17,9 @@ use crate::{
 impl Session {
     /// Applies an edit in the active view.
     pub(super) fn edit(&mut self, edit: Edit, registry: &Registry) {
+        if let Edit::Each { edits, step } = edit {
+            return self.edit_each(edits, step, registry);
+        }
         let edit = self.redirected(edit, registry);
         self.edit_here(edit, registry);
     }
@@ -108,6 +113,9 @@ impl Session {
             let light = self.document.light(id).map(Selection::Light);
             self.selection =
                 light.or(self.document.object(id).map(Selection::Object)).unwrap_or(Selection::Room);
+            if self.selection == Selection::Room {
+                self.document.select_others(HashSet::new());
+            }
         }
         if self.selection != before.1 && self.document.revision() != before.0 {
             self.document.selected(self.selection);
@@ -173,7 +181,7 @@ impl Session {
             self.selection = selection;
         }
         if !self.exists(self.selection) {
-            self.selection = Selection::Room;
+            self.select(Selection::Room);
         }
         self.renaming = None;
         if self.document.reflection_model != model {

@@ -9,7 +9,9 @@ use std::path::PathBuf;
 use bevy::prelude::{Deref, DerefMut, Resource};
 
 pub use action::{Action, Answer, ExportCommand, FocusMove, ModelCommand};
+pub use alike::Alike;
 pub use area::{Cell, PictureArea};
+pub use arrange::{Arrangement, Together};
 pub use aside::Aside;
 pub(super) use author::BUILT_IN;
 pub use author::{Authoring, LawCheck, ModelDraft, NameProblem, check_name};
@@ -52,7 +54,9 @@ use crate::{
 };
 
 mod action;
+mod alike;
 mod area;
+mod arrange;
 mod aside;
 mod author;
 mod compare;
@@ -65,6 +69,7 @@ mod export;
 mod facts;
 mod files;
 pub mod follow;
+mod group;
 mod learning;
 mod lesson;
 mod lobe;

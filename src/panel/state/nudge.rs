@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 
 use glam::{Quat, Vec3};
 
-use super::{HandleMode, Session, Severity};
+use super::{HandleMode, Session, Together, arrange::tidy};
 use crate::{
     document::{Edit, Selection},
     light::LightEntry,
@@ -20,11 +20,6 @@ use crate::{
 const METRES: f32 = 0.1;
 /// Step of an angle, in degrees.
 const DEGREES: f32 = 5.0;
-
-/// Rounds off the noise digits of a sum.
-fn tidy(v: Vec3) -> Vec3 {
-    (v * 10_000.0).round() / 10_000.0 + Vec3::ZERO
-}
 
 /// The roll of a light after one step about an axis, if the light's direction is closer to parallel than to
 /// perpendicular to that axis.
@@ -58,25 +53,45 @@ fn resized(part: Part, light: &Light, entry: &LightEntry, way: Vec3, sign: f32) 
 impl Session {
     /// Moves, turns or resizes the selection by one step in a world direction, as a step of the history.
     pub(super) fn nudge(&mut self, way: Vec3, registry: &Registry) {
-        self.document.end_gesture();
-        match self.nudged(way, registry) {
-            Ok(edit) => self.edit(edit, registry),
-            Err(why) => self.say(Severity::Info, why),
-        }
-        self.document.end_gesture();
+        let edit = match Together::of(self, registry) {
+            Some(all) => self.nudged_together(&all, way, registry),
+            None => self.nudged(self.selection, way, registry),
+        };
+        self.alone(edit, registry);
     }
 
-    /// The edit for one step, or why it is impossible.
-    fn nudged(&self, way: Vec3, registry: &Registry) -> Result<Edit, String> {
-        let name = || self.name_of(self.selection, registry);
+    /// The edit for one step of several parts, or why it is impossible.
+    fn nudged_together(&self, all: &Together, way: Vec3, registry: &Registry) -> Result<Edit, String> {
+        let room = self.document.scene_size;
+        match self.view.handles {
+            HandleMode::Move => Ok(all.moved(METRES * way, room)),
+            HandleMode::Turn => all
+                .turned(way, DEGREES.to_radians(), room)
+                .ok_or_else(|| format!("The room has no place to turn {}.", all.name())),
+            HandleMode::Size => {
+                let resized = self.entries().into_iter().map(|part| self.nudged(part, way, registry));
+                // Some lights have no size.
+                let edits: Vec<_> = resized.filter_map(Result::ok).collect();
+                let none = || format!("None of {} has a size.", all.name());
+                if edits.is_empty() {
+                    return Err(none());
+                }
+                Ok(Edit::Each { edits, step: format!("Size of {}", all.name()) })
+            }
+        }
+    }
+
+    /// The edit for one step of a part, or why it is impossible.
+    fn nudged(&self, selection: Selection, way: Vec3, registry: &Registry) -> Result<Edit, String> {
+        let name = || self.name_of(selection, registry);
         let has_no = |what: &str| Err(format!("{} has no {what}.", name()));
         let turn = Quat::from_axis_angle(way, DEGREES.to_radians());
         // Right, up and backwards enlarge.
         let sign = (way.x + way.y - way.z).signum();
         let room = self.document.scene_size;
-        let part = Part::from(self.selection);
-        match self.selection {
-            Selection::Object(i) if self.exists(self.selection) => {
+        let part = Part::from(selection);
+        match selection {
+            Selection::Object(i) if self.exists(selection) => {
                 let object = &self.document.objects[i];
                 Ok(match self.view.handles {
                     HandleMode::Move => {
@@ -96,7 +111,7 @@ impl Session {
                     }
                 })
             }
-            Selection::Light(i) if self.exists(self.selection) => {
+            Selection::Light(i) if self.exists(selection) => {
                 let light = &self.document.lights[i];
                 let entry = registry.light(&light.light_type);
                 Ok(match (self.view.handles, light.position, light.direction) {

@@ -11,17 +11,23 @@ use crate::{
 };
 
 /// Parts of which a scene has at most so many.
-const LIGHTS: (&str, usize) = ("lights", MAX_LIGHTS);
-const OBJECTS: (&str, usize) = ("objects", MAX_OBJECTS);
+pub(super) const LIGHTS: (&str, usize) = ("lights", MAX_LIGHTS);
+pub(super) const OBJECTS: (&str, usize) = ("objects", MAX_OBJECTS);
 
 impl Session {
     /// True if another part has room; says so otherwise.
-    fn has_room(&mut self, (parts, most): (&str, usize)) -> bool {
+    fn has_room(&mut self, parts: (&str, usize)) -> bool {
+        self.has_room_for(1, parts)
+    }
+
+    /// True if so many other parts have room; says so otherwise.
+    pub(super) fn has_room_for(&mut self, others: usize, (parts, most): (&str, usize)) -> bool {
         let count = if parts == LIGHTS.0 { self.document.lights.len() } else { self.document.objects.len() };
-        if count >= most {
+        let has_room = count + others <= most;
+        if !has_room {
             self.say(Severity::Info, format!("A scene has at most {most} {parts}."));
         }
-        count < most
+        has_room
     }
 
     /// Adds a light of a type; `with` sets further properties.
@@ -76,6 +82,7 @@ impl Session {
 
     pub(super) fn duplicate(&mut self, part: Selection, registry: &Registry) {
         match part {
+            part if self.is_in_group(part) => self.duplicate_group(registry),
             Selection::Light(i) if i < self.document.lights.len() => {
                 if !self.has_room(LIGHTS) {
                     return;
@@ -113,6 +120,7 @@ impl Session {
             _ => 0..0,
         };
         match part {
+            part if self.is_in_group(part) => self.remove_group(registry),
             Selection::Light(_) if self.document.lights.len() <= 1 => {
                 self.say(Severity::Info, "Can’t delete the last light: a scene needs at least one.");
             }

@@ -1,5 +1,7 @@
 //! The selected part.
 
+use std::collections::HashSet;
+
 use super::{Session, Severity};
 use crate::{
     document::{Edit, PartId, Selection},
@@ -15,11 +17,7 @@ impl Session {
 
     /// The id of the selected light or object.
     pub(in crate::panel) fn selected_id(&self) -> Option<PartId> {
-        match self.selection {
-            Selection::Light(i) => self.document.light_id(i),
-            Selection::Object(i) => self.document.object_id(i),
-            Selection::Room | Selection::Observer => None,
-        }
+        self.document.id_of(self.selection)
     }
 
     pub(super) fn exists(&self, part: Selection) -> bool {
@@ -36,6 +34,7 @@ impl Session {
                 self.renaming = None;
             }
             self.selection = selection;
+            self.document.select_others(HashSet::new());
         }
     }
 
@@ -53,6 +52,7 @@ impl Session {
     /// Hides or shows an object; switches a light on or off.
     pub(super) fn toggle(&mut self, part: Selection, registry: &Registry) {
         match part {
+            part if self.is_in_group(part) => self.toggle_group(registry),
             Selection::Light(i) if self.exists(part) => {
                 let on = !self.document.lights[i].enabled;
                 self.edit(Edit::set(Part::Light(i), Light::enabled, on), registry);

@@ -4,7 +4,12 @@
 //! and 1**". The rule for a value by itself follows from its [declaration](super::Field::check). [`scene`] applies all
 //! rules to a whole scene; [`Parts`] and [`change`] to one part and what it can meet.
 
-use std::{collections::HashMap, fmt, mem, ops::Range};
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, HashMap},
+    fmt, mem,
+    ops::Range,
+};
 
 use glam::Vec3;
 
@@ -126,6 +131,37 @@ pub fn change(scene: &Scene, part: Part, change: &Change, registry: &Registry) -
     problems
 }
 
+/// The problems of these lights and objects, by their indices, once all of them are as given: they meet each other as they
+/// would be. Of materials only if they are among what changes: checking them takes the most time.
+#[must_use]
+pub fn each(
+    scene: &Scene,
+    lights: &BTreeMap<usize, Light>,
+    objects: &BTreeMap<usize, Object>,
+    materials: bool,
+    registry: &Registry,
+) -> Vec<Problem> {
+    let all_lights = with_changed(&scene.lights, lights);
+    // Only lights look for objects.
+    let no_objects = BTreeMap::new();
+    let all_objects = with_changed(&scene.objects, if lights.is_empty() { &no_objects } else { objects });
+    let mut check = Check { materials, ..Check::with(scene, &all_lights, &all_objects, registry) };
+    lights.iter().for_each(|(i, light)| check.light_alone(*i, light));
+    objects.iter().for_each(|(i, object)| check.object(*i, object));
+    check.problems
+}
+
+/// A list in which these parts are replaced.
+fn with_changed<'a, T: Clone>(all: &'a [T], changed: &BTreeMap<usize, T>) -> Cow<'a, [T]> {
+    let mut all = Cow::Borrowed(all);
+    for (i, part) in changed {
+        if let Some(place) = all.to_mut().get_mut(*i) {
+            place.clone_from(part);
+        }
+    }
+    all
+}
+
 /// The room for checking positions: an invalid extent counts as the largest legal one, so that one error is not
 /// repeated for everything in the room.
 pub(super) fn plausible(mut room: SceneSize) -> SceneSize {
@@ -189,25 +225,32 @@ struct Check<'a> {
     room: SceneSize,
     /// The first light at each position: with many objects, lookups replace pairwise comparison.
     light_at: HashMap<[u32; 3], usize>,
+    /// True if the values of materials are checked.
+    materials: bool,
     problems: Vec<Problem>,
 }
 
 impl<'a> Check<'a> {
     fn of(scene: &'a Scene, registry: &'a Registry) -> Self {
+        Self::with(scene, &scene.lights, &scene.objects, registry)
+    }
+
+    /// A check of a scene with these lights and objects in place of its own.
+    fn with(scene: &'a Scene, lights: &'a [Light], objects: &'a [Object], registry: &'a Registry) -> Self {
         let mut light_at = HashMap::new();
-        for (i, light) in scene.lights.iter().enumerate() {
+        for (i, light) in lights.iter().enumerate() {
             if let Some(key) = light.position.and_then(place) {
                 light_at.entry(key).or_insert(i);
             }
         }
-        let Scene { lights, objects, scene_size, .. } = scene;
         Self {
             scene,
             lights,
             objects,
             registry,
-            room: plausible(*scene_size),
+            room: plausible(scene.scene_size),
             light_at,
+            materials: true,
             problems: Vec::new(),
         }
     }
@@ -337,7 +380,8 @@ impl Check<'_> {
             }
         }
         let models = [self.scene.model_of(object), self.scene.shading_model_of(object)];
-        for (name, value) in &object.material.0 {
+        let materials = self.materials;
+        for (name, value) in object.material.0.iter().filter(|_| materials) {
             self.rule(material_parameter(registry, models, name, value), || {
                 (part.path().key("material").key(name.clone()), value.written())
             });

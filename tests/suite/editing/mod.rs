@@ -5,3 +5,4 @@ mod history;
 mod placing;
 mod random;
 mod rows;
+mod several;

@@ -237,7 +237,20 @@ fn the_list_of_keys_has_the_groups_and_rows_in_their_order() {
     };
     assert_eq!(
         rows("Edit"),
-        ["Ctrl+Z", "Ctrl+Shift+Z", "Ctrl+Y", "Ctrl+D", "Delete", "V", "F2", "Ctrl+R"].map(str::to_owned)
+        [
+            "Ctrl+Z",
+            "Ctrl+Shift+Z",
+            "Ctrl+Y",
+            "Ctrl+A",
+            "Ctrl+D",
+            "Delete",
+            "V",
+            "Shift+V",
+            "Ctrl+Shift+V",
+            "F2",
+            "Ctrl+R"
+        ]
+        .map(str::to_owned)
     );
     assert_eq!(
         rows("Picture"),

@@ -20,5 +20,6 @@ mod program;
 mod redraw;
 mod reload;
 mod scene_list;
+mod several;
 mod shader_panel;
 mod taken;
