@@ -22,7 +22,7 @@ use crate::{
         Source,
         compose::{
             ABSORPTION, ALBEDO, BODY, CHANNELS, Composed, Composer, DISPERSION, DISPLAY, EVALUATE, EXTENDED,
-            HIERARCHY, INSIDE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING,
+            FILE, HIERARCHY, INSIDE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING,
             SHADING_ALONE, Sources, THROUGH, TRANSMISSION, WRAPPER, parameter_struct,
         },
         definitions::definition,
@@ -85,9 +85,12 @@ pub(crate) fn passes(model: &ModelEntry, passage: Passage, text: &str) -> String
     }
 }
 
-/// Adds the row of a model, and the model.
-fn push_model(c: &mut Composer, model: &ModelEntry, passage: Passage, more: &str) {
+/// Adds the row of a model, and the model; `file` is the part that reads the numbers of its file, if it has one.
+fn push_model(c: &mut Composer, model: &ModelEntry, passage: Passage, more: &str, file: &str) {
     c.push("(row)", &row_struct(model, more));
+    if model.file().is_some() {
+        c.push(FILE, &part(file, &[]));
+    }
     if model.has_curve() {
         c.source(&ALBEDO);
     }
@@ -310,7 +313,7 @@ pub fn compose(
     if solid {
         words.push_str("    interior: array<vec4<f32>, 2>,\n");
     }
-    push_model(&mut c, model, passage, &words);
+    push_model(&mut c, model, passage, &words, "file_drawn");
     if extent || solid {
         c.push("(lobes)", &part("lobes", &[]));
     }
@@ -448,9 +451,24 @@ pub fn files(
 /// model needs.
 #[must_use]
 pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
+    evaluation(sources, model, "", "file_evaluated")
+}
+
+/// Like [`compose_evaluation`], with the numbers of the file of the model, if it has one, at the end of the row: for the
+/// interpreter, which knows one table. There is room for those of the default.
+#[must_use]
+pub fn compose_interpreted(sources: &Sources, model: &ModelEntry) -> Composed {
+    let Some(table) = model.table(&Values::default()) else { return compose_evaluation(sources, model) };
+    // What follows the last number of the curve in its quadruple.
+    let padding = if model.has_curve() { part("file_padding", &[("padding", &3)]) } else { String::new() };
+    let more = padding + &part("file_row", &[("words", &table.numbers.len())]);
+    evaluation(sources, model, &more, "file_alone")
+}
+
+fn evaluation(sources: &Sources, model: &ModelEntry, more: &str, file: &str) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().for_each(|s| c.source(s));
-    push_model(&mut c, model, model.declaration.passage(), "");
+    push_model(&mut c, model, model.declaration.passage(), more, file);
     c.source(&EVALUATE);
     c.composed
 }

@@ -66,6 +66,9 @@ pub const EVALUATE: Source = wgsl!("evaluate.wgsl");
 /// The generated part of solid models, with the buffer of the mesh.
 pub const BODY: &str = "(the body)";
 
+/// The generated part of models that read a file, with the buffer of its numbers.
+pub const FILE: &str = "(the file)";
+
 /// The generated part of the source of a single light type, with the numbers of its files.
 pub const LIGHT_ALONE: &str = "(light type)";
 

@@ -24,6 +24,7 @@ use lights_camera_models::{
     },
     parameter::Outside,
     recovery::Store,
+    reflection::merl,
     registry::Registry,
     scene::{
         Scene,
@@ -355,6 +356,24 @@ fn readers() -> Vec<Reader> {
             pairs: &[],
             phrases: &["a\0string\0\u{1}\0\0\0a", "channels\0chlist\0\u{1}\0\0\0\0", "a\0"],
             read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "measured material",
+            around: [String::new(), String::new()],
+            pairs: &[],
+            phrases: &["Z\0\0\0", "Z\0\0\0Z\0\0\0", "\u{7f}"],
+            read: |bytes| (merl::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "entries of a measured material",
+            around: [String::new(), String::new()],
+            pairs: &[],
+            phrases: &["\u{1}\u{2}", "aaaaaaaa"],
+            read: |bytes| {
+                let counts = merl::COUNTS.iter().flat_map(|count| (*count as i32).to_le_bytes());
+                let whole: Vec<u8> = counts.chain(bytes.iter().copied()).collect();
+                (merl::FORMAT.read)(&whole).map(drop).map_err(|p| p.message)
+            },
         },
         Reader {
             name: "OBJ file",

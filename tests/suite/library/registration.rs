@@ -333,7 +333,7 @@ fn parameters_of_light_types_fit_and_their_cone_is_a_number() {
 }
 
 #[test]
-fn files_are_for_light_types_and_object_types_and_their_defaults_are_shipped() {
+fn files_are_not_for_shading_models_and_their_defaults_are_shipped() {
     const WEB: Parameter = Parameter::file("web", &ies::FORMAT, "wall_washer.ies");
     light!(Lost, LAMP, { web: file = Parameter::file("web", &ies::FORMAT, "lost.ies") });
     light_refused::<Lost>(&[
@@ -351,9 +351,7 @@ fn files_are_for_light_types_and_object_types_and_their_defaults_are_shipped() {
     let mut registry = Registry::builtin();
     registry.try_add_object_type::<OfShape>().expect("an object type may have files");
     shading!(OfShading, SHADING, { web: file = WEB });
-    shading_refused::<OfShading>(&[
-        "parameter `web`: is a file, which only light types and object types may have",
-    ]);
+    shading_refused::<OfShading>(&["parameter `web`: is a file, which shading models may not have"]);
     const READING: Source = Source::new(
         "lamp.wgsl",
         "fn incident_lamp(light: Light, m: LampParameters, p: vec3<f32>) -> Incident {
