@@ -357,7 +357,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        parameter::Table,
+        parameter::{Shipped, Table},
         registry::Registry,
         shape::{
             Cube, MeshFile, ObjectType as _, Sphere, Superellipsoid, Teapot, Torus, mesh::Polygon, mesh_file,

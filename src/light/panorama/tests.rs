@@ -14,7 +14,7 @@ use image::{Rgb, codecs::hdr::HdrEncoder};
 use super::{FORMAT, MAX_COLUMNS, Panorama, average::Average};
 use crate::{
     optics::colour::luminance,
-    parameter::NamedFile,
+    parameter::{NamedFile, Shipped},
     registry::compose::FILE_TABLE,
     shader::{
         Source,
