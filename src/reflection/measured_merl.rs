@@ -4,20 +4,18 @@ use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{
         Frame, Terms,
-        lobes::{Lobe, Lobes},
+        half_difference::{Grid, angles},
+        lobes::Lobes,
     },
     parameter::Parameter,
     parameters,
 };
 
 mod example;
-mod grid;
-mod half;
 mod read;
 #[cfg(test)]
 mod tests;
 
-pub use grid::{Grid, angles};
 pub use read::{COUNTS, FORMAT, SCALES};
 
 const FILE: Parameter = Parameter::file("merl_file", &FORMAT, example::NAME)
@@ -76,24 +74,10 @@ impl ReflectionModel for MeasuredMerl {
     }
 
     fn lobes(&self) -> Lobes {
-        let Some([alpha, diffuse, specular]) = self.grid().map(|grid| grid.lobe()) else {
-            return Lobes::default();
-        };
-        Lobes::diffuse_and(Lobe::ggx(alpha), Vec3::splat(diffuse), Vec3::splat(specular))
+        self.grid().map_or_else(Lobes::default, |grid| grid.lobes())
     }
 
     fn quantity(&self, symbol: &str, arguments: &[f32]) -> Option<Vec3> {
-        let grid = self.grid()?;
-        let counts = grid.counts();
-        let entry = || Some(grid.entry([*arguments.first()?, *arguments.get(1)?, *arguments.get(2)?]));
-        Some(match symbol {
-            "n_h" => Vec3::splat(counts[0] as f32),
-            "n_d" => Vec3::splat(counts[1] as f32),
-            "n_φ" => Vec3::splat(counts[2] as f32),
-            "t" => entry()?.truncate() * entry()?.w,
-            "e" => entry()?.truncate() * (1.0 - entry()?.w),
-            "m" => Vec3::splat(entry()?.w),
-            _ => return None,
-        })
+        self.grid()?.quantity(symbol, arguments)
     }
 }

@@ -22,8 +22,8 @@ use crate::{
         Source,
         compose::{
             ABSORPTION, ALBEDO, BODY, CHANNELS, Composed, Composer, DISPERSION, DISPLAY, EVALUATE, EXTENDED,
-            FILE, HIERARCHY, INSIDE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING,
-            SHADING_ALONE, Sources, THROUGH, TRANSMISSION, WRAPPER, parameter_struct,
+            FILE, HALF_DIFFERENCE, HIERARCHY, INSIDE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING,
+            SEEN, SHADING, SHADING_ALONE, Sources, THROUGH, TRANSMISSION, WRAPPER, parameter_struct,
         },
         definitions::definition,
     },
@@ -209,9 +209,25 @@ pub fn light_dispatch(lights: &[LightEntry]) -> String {
 }
 
 /// The files that every source for drawing needs besides the vocabulary, and those for other uses.
-pub(crate) const SHARED: [Source; 17] = [
-    ALBEDO, PANORAMA, DISPERSION, ABSORPTION, LIGHTS, SAMPLING, SHADING, HIERARCHY, INSIDE, THROUGH, LOOP,
-    EXTENDED, CHANNELS, DISPLAY, WRAPPER, SEEN, EVALUATE,
+pub(crate) const SHARED: [Source; 18] = [
+    ALBEDO,
+    PANORAMA,
+    HALF_DIFFERENCE,
+    DISPERSION,
+    ABSORPTION,
+    LIGHTS,
+    SAMPLING,
+    SHADING,
+    HIERARCHY,
+    INSIDE,
+    THROUGH,
+    LOOP,
+    EXTENDED,
+    CHANNELS,
+    DISPLAY,
+    WRAPPER,
+    SEEN,
+    EVALUATE,
 ];
 
 /// The table from which a single light type reads the numbers of its files: one row, see [`compose_light`].
@@ -415,7 +431,7 @@ pub fn files(
     let known = OPTICS
         .iter()
         .chain(TRANSMISSION)
-        .chain([&ALBEDO, &PANORAMA, &DISPERSION, &ABSORPTION])
+        .chain([&ALBEDO, &PANORAMA, &HALF_DIFFERENCE, &DISPERSION, &ABSORPTION])
         .map(|s| (Part::Vocabulary, s))
         .chain(lights.iter().map(|l| (Part::LightType, &l.declaration.wgsl)))
         .chain([

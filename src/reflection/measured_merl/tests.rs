@@ -4,12 +4,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec3, Vec3};
 
-use super::{
-    COUNTS, FORMAT, Grid, MeasuredMerl, SCALES, angles,
-    example::{directions, middles, table},
-};
+use super::{COUNTS, FORMAT, MeasuredMerl, SCALES, example::table};
 use crate::{
-    optics::{Frame, geometry::direction},
+    optics::{
+        Frame,
+        geometry::direction,
+        half_difference::{Grid, angles, directions, middles},
+    },
     parameter::{ParameterSet as _, Values},
     reflection::{ReflectionModel as _, brdf},
     testing::{direction as any_direction, random},

@@ -24,7 +24,7 @@ use lights_camera_models::{
     },
     parameter::Outside,
     recovery::Store,
-    reflection::merl,
+    reflection::{merl, samples},
     registry::Registry,
     scene::{
         Scene,
@@ -356,6 +356,20 @@ fn readers() -> Vec<Reader> {
             pairs: &[],
             phrases: &["a\0string\0\u{1}\0\0\0a", "channels\0chlist\0\u{1}\0\0\0\0", "a\0"],
             read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "table of measurements",
+            around: ["theta_i,phi_i,theta_o,phi_o,value\n1,2,3,4,1\n".into(), String::new()],
+            pairs: &[],
+            phrases: &["1,2,3,4,1\n", "1,", "-1,1,1,1,1\n", "#\n", "1,2,3,4,-1\n"],
+            read: |bytes| (samples::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "head of a table of measurements",
+            around: [String::new(), ",value\n1,2,3,4,1\n".into()],
+            pairs: &[],
+            phrases: &["theta_i,", "sigma;", "value\t", "\""],
+            read: |bytes| (samples::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
         },
         Reader {
             name: "measured material",
