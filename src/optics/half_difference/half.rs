@@ -1,6 +1,6 @@
 //! Two numbers in one: the roots of values as 16-bit floats. The root of a value has twice its range and half its relative
-//! error, 2.4e-4, so a value keeps 4.9e-4 between 3.8e-9 and 4.3e9; what is smaller is 0. No number is subnormal, which
-//! graphics cards may flush to 0.
+//! error, which is up to 4.9e-4, so a value keeps 9.8e-4 between 3.8e-9 and 4.3e9; what is smaller is 0. No number is
+//! subnormal, which graphics cards may flush to 0.
 
 /// The least and the largest root.
 const LEAST: f32 = 6.103_515_6e-5;
@@ -40,14 +40,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_keep_their_size_within_half_a_thousandth() {
+    fn values_keep_their_size_within_a_thousandth() {
         let mut value = 4e-9f32;
         while value < 4e9 {
             for pair in [[value, 0.0], [0.25, value]] {
                 let word = packed(pair[0], pair[1]);
                 assert!(!word.is_nan());
                 for (a, b) in unpacked(word).into_iter().zip(pair) {
-                    assert!((a - b).abs() <= 4.9e-4 * b, "{a} {b}");
+                    assert!((a - b).abs() <= 9.8e-4 * b, "{a} {b}");
                 }
             }
             value *= 1.37;

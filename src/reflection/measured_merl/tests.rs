@@ -78,7 +78,7 @@ fn files_of_known_models_are_read_back_within_the_resolution_of_the_table() {
     assert_eq!(grid.counts(), COUNTS);
     // Constant: what remains is the error of 16 bits.
     let at = |grid: Grid<'_>, l: Vec3, v: Vec3| grid.value(angles(l, v, Vec3::Z));
-    assert!(difference(|l, v| at(grid, l, v), paper) < 5e-4);
+    assert!(difference(|l, v| at(grid, l, v), paper) < 1e-3);
     // Bins of 1° and, along the half angle, of less than 2 % of the width of the lobe.
     let numbers = (FORMAT.read)(&of_brdf(metal)).expect("legal");
     let grid = Grid::new(&numbers).expect("a table");
@@ -175,7 +175,7 @@ fn where_entries_are_missing_the_table_goes_on_and_says_so() {
     assert_eq!(grid.missing(), 33 * 90 * 180);
     for theta_d in [1.1, 1.3, 1.57] {
         let found = grid.value([0.3, theta_d, 1.0]);
-        assert!((found - Vec3::splat(last)).abs().max_element() < 1e-3 * last, "{theta_d}: {found}");
+        assert!((found - Vec3::splat(last)).abs().max_element() < 2e-3 * last, "{theta_d}: {found}");
     }
     assert_eq!((grid.entry([10.0, 56.0, 7.0]).w, grid.entry([10.0, 57.0, 7.0]).w), (1.0, 0.0));
     // A table whose first rows are missing begins with the first that is there.

@@ -45,7 +45,7 @@ fn samples_of_known_models_are_interpolated() {
         let near = Vec3::new(-l.x, -l.y, l.z) + 0.4 * random(&mut seed) * any_direction(&mut seed);
         let v = near.normalize();
         // Constant samples are constant between and beyond them.
-        assert!((at(&paper, l, v) - Vec3::new(0.3, 0.2, 0.1)).abs().max_element() < 3e-4, "{l} {v}");
+        assert!((at(&paper, l, v) - Vec3::new(0.3, 0.2, 0.1)).abs().max_element() < 4e-4, "{l} {v}");
         if l.z.min(v.z) > 0.5 {
             let expected = plastic(l, v);
             sum += ((at(&shiny, l, v) - expected) / expected).abs().max_element();

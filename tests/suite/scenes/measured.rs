@@ -190,10 +190,10 @@ fn files_that_cannot_be_used_are_told_with_the_reason() {
 fn exports_that_cannot_hold_a_table_refuse_it_by_name() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(place(&folder, "room.json"), text("calculated.binary")).expect("written");
-    for form in ["html", "bevy", "wgsl", "mitsuba"] {
-        let run = lcm_in(folder.path(), &["export", "room.json", "--as", form, "-o", "out"], b"");
+    for (form, out) in [("html", "out.html"), ("bevy", "out"), ("wgsl", "out"), ("mitsuba", "out")] {
+        let run = lcm_in(folder.path(), &["export", "room.json", "--as", form, "-o", out], b"");
         assert!(run.status == Some(1) && run.err.contains("measured_merl"), "{form}: {}", run.err);
-        assert!(!place(&folder, "out").exists());
+        assert!(!place(&folder, out).exists());
     }
 }
 
