@@ -7,7 +7,7 @@ use std::{
 
 use glam::Vec3;
 use lights_camera_models::{
-    matching::{Request, What, match_view},
+    matching::{Request, What, each::match_each, match_view},
     optics::{
         Frame, TermSelection,
         colour::{BACKGROUND, Encoding},
@@ -167,6 +167,27 @@ fn a_model_matched_with_a_file_written_from_it_finds_its_parameters_again() {
         assert!((value.numbers()[0] / 0.25 - 1.0).abs() < 0.01, "{name}: {found:?}");
     }
     assert!(found.after < 0.1 * found.before, "{found:?}");
+}
+
+#[test]
+fn of_several_models_the_one_that_wrote_the_file_comes_nearest() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(&place(&folder, "metal.binary"), "ward", &Values([("k_s".into(), Value::Number(0.4))].into()));
+    let scene = read(folder.path(), "metal.binary").expect("legal");
+    let registry = Registry::builtin();
+    let models = ["lambert", "ward", "phong"].map(|id| registry.model(id).expect("built in"));
+    let ranking = match_each(&scene, models, What::Lobe, &registry, &Progress::NONE).expect("not cancelled");
+    let order: Vec<_> = ranking.matched.iter().map(|matched| matched.model).collect();
+    assert_eq!(order, ["ward", "phong", "lambert"], "{ranking:?}");
+    let after = |i: usize| ranking.matched[i].found.after;
+    assert!(after(0) < 0.01 && after(0) < 0.5 * after(1) && after(1) < after(2), "{ranking:?}");
+    assert!(ranking.left_out.is_empty());
+    let shown = |matched: &[&str]| {
+        let arguments = [&["match", "room.json"], matched].concat();
+        lcm_in(folder.path(), &arguments, b"")
+    };
+    let refused = shown(&["--each", "--free", "alpha"]);
+    assert_eq!(refused.status, Some(2), "{}", refused.err);
 }
 
 #[test]
