@@ -22,8 +22,8 @@ pub use scattered::{COUNTS, NEAR};
 const FILE: Parameter = Parameter::file("table_file", &FORMAT, read::NAME)
     .label("measurements")
     .help(
-        "A CSV file with the columns theta_i, phi_i, theta_o, phi_o in degrees and value, or r, g and b, in sr⁻¹, perhaps sigma; by its \
-         name from the folder of the scene. Until you choose one, a surface is shown whose values were calculated.",
+        "A CSV file with the angles of light and viewer in degrees and the BRDF in sr⁻¹, perhaps with its uncertainty, by its name from \
+         the folder of the scene. Until you choose one, a surface is shown whose values were calculated.",
     );
 
 parameters! {

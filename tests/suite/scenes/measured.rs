@@ -229,5 +229,14 @@ fn tables_of_a_file_are_calculated_on_the_command_line() {
     // White paper reflects everything, but for 16 bits and the quadrature.
     let numbers = run.out.lines().filter_map(|line| line.rsplit(',').next()?.parse::<f64>().ok());
     let albedos: Vec<_> = numbers.collect();
+    // A file may be anywhere if it is typed, and must be legal.
+    let inner = place(&folder, "inner");
+    fs::create_dir(&inner).expect("created");
+    let typed = |path: &str| {
+        lcm_in(&inner, &["albedo", "measured_merl", "--set", &format!("merl_file={path}")], b"mu\n1\n")
+    };
+    assert_eq!(typed("../paper.binary").status, Some(0));
+    let refused = typed("../lost.binary");
+    assert!(refused.status == Some(2) && refused.err.contains("lost.binary: "), "{}", refused.err);
     assert!(albedos.len() == 3 && albedos.iter().all(|albedo| (albedo - 1.0).abs() < 2e-3), "{}", run.out);
 }
