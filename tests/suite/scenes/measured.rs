@@ -15,7 +15,7 @@ use lights_camera_models::{
     parameter::{NamedFile, Value, Values},
     progress::Progress,
     reference,
-    reflection::{brdf, merl},
+    reflection::{brdf, merl, samples},
     registry::Registry,
     render::capture::gpu::{GpuRenderer, Output},
     scene::{
@@ -216,6 +216,41 @@ fn exports_that_cannot_hold_a_table_refuse_it_by_name() {
         assert!(run.status == Some(1) && run.err.contains("measured_merl"), "{form}: {}", run.err);
         assert!(!place(&folder, out).exists());
     }
+    let run = lcm_in(folder.path(), &["models", "duplicate", "measured_table", "--models", "models"], b"");
+    assert!(run.status == Some(2) && run.err.contains("measured_table reads a file"), "{}", run.err);
+}
+
+#[test]
+fn samples_in_a_table_are_shown_by_both_renderers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut rows = "theta_i,phi_i,theta_o,phi_o,r,g,b,sigma\n".to_owned();
+    for i in 0..8 {
+        for j in 0..8 {
+            for k in 0..7 {
+                rows += &format!("{},0,{},{},0.25,0.1,0.02,0.01\n", 10 * i, 10 * j, 30 * k);
+            }
+        }
+    }
+    fs::write(place(&folder, "paint.csv"), &rows).expect("written");
+    let mut scene = close_up("sphere", "directional");
+    scene.reflection_model = "measured_table".to_owned();
+    scene.shading_model = "phong".to_owned();
+    let file = NamedFile::named("paint.csv", folder.path(), &samples::FORMAT);
+    assert_eq!(file.problem(), None);
+    scene.objects[0].material.set("table_file", Value::File(file));
+    let mut renderer = GpuRenderer::new(96, 96, 1, Output::Linear).expect("software Vulkan is installed");
+    let shown = on_gpu(&mut renderer, &scene);
+    let d = compare(&shown, &cpu(&scene), Encoding::Srgb.decode(BACKGROUND), 1e-3);
+    assert!(d.covered > 500 && d.wrong * 1000 <= d.covered, "{d:?}");
+    // Constant, it is matte: π times the value.
+    let registry = Registry::builtin();
+    let surface = registry.model("measured_table").expect("built in");
+    let surface = surface.instantiate(&scene.objects[0].material, Encoding::Srgb);
+    let f = brdf(&*surface, Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.28, 0.96), &Frame::LOCAL);
+    assert!((f / Vec3::new(0.25, 0.1, 0.02) - 1.0).abs().max_element() < 1.1e-3, "{f}");
+    assert_eq!(surface.readouts().len(), 1, "the uncertainty");
+    let plain = registry.model("measured_table").expect("built in");
+    assert!(plain.instantiate(&Values::default(), Encoding::Srgb).readouts().is_empty());
 }
 
 #[test]
