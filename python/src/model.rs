@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 use lights_camera_models::{
     curves::{Detail, Form, Kind, Setup, Subject, curve},
     optics::{Frame, colour::Encoding},
-    parameter::{Values, json},
+    parameter::{Value, Values, json},
     progress::Cancelled,
     reflection::{
         ModelEntry, Surface,
@@ -134,7 +134,11 @@ impl Model {
     /// The laws, examined: the report as JSON.
     fn laws(&self, py: Python<'_>) -> PyResult<String> {
         let examined = work::long(py, |progress| {
-            let findings = examine_on_cpu(&self.entry, Effort::default(), progress);
+            // Of all values, but of the file that it has.
+            let is_file = |value: &Value| matches!(value, Value::File(_));
+            let own = self.values.0.iter().filter(|(_, value)| is_file(value));
+            let given = Values(own.map(|(name, value)| (name.clone(), value.clone())).collect());
+            let findings = examine_on_cpu(&self.entry, &given, Effort::default(), progress);
             findings.map(|findings| LawReport::new(&self.entry, &findings))
         })?;
         self.runs()?;

@@ -5,7 +5,7 @@ use std::{io, path::PathBuf};
 use super::{
     Options, Outcome, complain,
     engine::ENGINE,
-    evaluate::{Machine, find},
+    evaluate::{Machine, Settings, find},
     print_json, print_paths, print_text,
     workshop::{Places, Workshop, valid},
 };
@@ -81,8 +81,14 @@ fn write(id: &str, text: &str, options: Options, places: &Places, known: &Regist
     Ok(())
 }
 
-/// `lcm models check ID`.
-pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Workshop) -> Outcome {
+/// `lcm models check ID`: for all values of parameters, except for those that are set.
+pub(super) fn check(
+    id: &str,
+    set: &Settings,
+    as_json: bool,
+    options: Options,
+    workshop: &mut Workshop,
+) -> Outcome {
     workshop.need(id);
     let registry = &workshop.registry;
     if registry.broken_model(id).is_some() {
@@ -91,13 +97,14 @@ pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Wo
     }
     let model = find(registry, id)?;
     valid(registry, model)?;
+    let given = set.values(model)?;
     let effort = Effort::default();
     let bar = super::progress(effort.sets as u64, options);
     let findings = match ENGINE {
         Some(engine) => {
             let mut evaluator = (engine.evaluator)(registry.sources(), model)?;
             let mut last = None;
-            laws::examine(model, effort, |values, pairs| {
+            laws::examine(model, &given, effort, |values, pairs| {
                 if last.as_ref() != Some(values) {
                     evaluator.set(values, Encoding::Srgb);
                     last = Some(values.clone());
@@ -110,7 +117,7 @@ pub(super) fn check(id: &str, as_json: bool, options: Options, workshop: &mut Wo
             Machine::Cpu.can_run(model)?;
             let tell = |done: f32, _: &str| bar.set_position((done * effort.sets as f32) as u64);
             let progress = Progress { tell: &tell, cancelled: &|| false };
-            let findings = laws::examine_on_cpu(model, effort, &progress).unwrap_or_default();
+            let findings = laws::examine_on_cpu(model, &given, effort, &progress).unwrap_or_default();
             Machine::Cpu.can_run(model)?;
             findings
         }

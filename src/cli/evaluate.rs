@@ -1,6 +1,9 @@
 //! `lcm evaluate`: the BRDF of a model at given angles, for plots and comparisons.
 
-use std::io::{self, BufWriter, Write as _};
+use std::{
+    io::{self, BufWriter, Write as _},
+    path::Path,
+};
 
 use clap::{Args, ValueEnum};
 use glam::Vec3;
@@ -14,7 +17,7 @@ use super::{
 use crate::{
     failure::Failure,
     optics::{Frame, Terms, colour::Encoding, geometry::direction},
-    parameter::{Value, Values},
+    parameter::{NamedFile, Value, Values},
     reflection::{ModelEntry, Surface, brdf_of, bsdf},
     registry::Registry,
     scene::field::Ids,
@@ -206,6 +209,12 @@ pub(super) fn setting(
     written: &str,
 ) -> Result<(&'static str, Value), String> {
     let parameter = model.named(name)?;
+    if let Some(format) = parameter.kind.format() {
+        // Whoever types a command may read any file, unlike a scene.
+        let file = Value::File(NamedFile::chosen(written, Path::new(""), format));
+        let checked = parameter.check(&file).map_err(|rule| format!("{name} is {written}, but {rule}"));
+        return checked.map(|()| (parameter.name, file));
+    }
     match parameter.parse(written) {
         Ok(value) => Ok((parameter.name, value)),
         Err(error) => Err(format!("{name} {error}")),

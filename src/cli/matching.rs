@@ -18,7 +18,11 @@ use crate::files::Shown as _;
 use crate::{
     export::write::inputs,
     failure::Failure,
-    matching::{self, Match, MatchError, Request, What, digits, match_view},
+    matching::{
+        self, Match, MatchError, Request, What, digits,
+        each::{Matched, Ranking, candidates, match_each},
+        match_view,
+    },
     parameter::Value,
     progress::Progress,
     registry::Registry,
@@ -35,6 +39,9 @@ pub(super) struct Arguments {
     /// Scene file with variants; `-` is standard input
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
+    /// Match every model for opaque surfaces to view A, with all its numbers and colours free, and list them, the nearest first
+    #[arg(long, conflicts_with_all = ["view", "free", "output"])]
+    each: bool,
     /// The view whose parameters are searched: its letter, or its name
     #[arg(long, default_value = "B", value_name = "LETTER|NAME")]
     view: String,
@@ -81,6 +88,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let registry = &workshop.registry;
     drawable(registry, &scene)?;
     let invalid = |why: &dyn std::fmt::Display| Failure::Invalid(format!("{}: {why}", source.name()));
+    if arguments.each {
+        return each(&scene, arguments, options, registry);
+    }
     let view = view(&scene, &arguments.view, invalid)?;
     let free: Vec<&str> = match arguments.free.as_slice() {
         [] => {
@@ -119,6 +129,58 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         options.tell(format_args!("wrote {}", file.shown()));
     }
     Ok(())
+}
+
+/// `lcm match --each`.
+fn each(scene: &Scene, arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
+    let what = arguments.on;
+    let bar = progress(100, options);
+    let tell = |done: f32, step: &str| {
+        bar.set_position((100.0 * done) as u64);
+        bar.set_message(step.to_owned());
+    };
+    let progress = Progress { tell: &tell, cancelled: &|| false };
+    let ranking = match_each(scene, candidates(registry), what, registry, &progress).unwrap_or_default();
+    bar.finish_and_clear();
+    if arguments.json {
+        print_json(&ranking_as_json(&ranking, what))?;
+    } else {
+        print_text(&ranking_in_words(&ranking, what))?;
+    }
+    if ranking.matched.is_empty() {
+        return Err(Failure::Invalid("no model could be matched to view A".to_owned()));
+    }
+    Ok(())
+}
+
+fn ranking_in_words(ranking: &Ranking, what: What) -> String {
+    let mut text = format!("{}\n", what.unit());
+    let widest = ranking.matched.iter().map(|matched| matched.model.len()).max().unwrap_or_default();
+    for Matched { model, found } in &ranking.matched {
+        let values: Vec<_> = found.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        text += &format!("{:>8}  {model:widest$}  {}", digits(found.after), values.join(" "));
+        text.truncate(text.trim_end().len());
+        text.push('\n');
+    }
+    for (model, why) in &ranking.left_out {
+        text += &format!("{model}: {why}\n");
+    }
+    text
+}
+
+fn ranking_as_json(ranking: &Ranking, what: What) -> Json {
+    let matched = |Matched { model, found }: &Matched| {
+        let values: serde_json::Map<_, _> =
+            found.values.iter().map(|(name, v)| ((*name).to_owned(), v.json())).collect();
+        json!({ "model": model, "before": found.before, "after": found.after, "values": values })
+    };
+    let left_out = |(model, why): &(&str, MatchError)| json!({ "model": model, "why": why.to_string() });
+    json!({
+        "on": what.id(),
+        "unit": what.unit(),
+        "models": ranking.matched.iter().map(matched).collect::<Vec<_>>(),
+        "left_out": ranking.left_out.iter().map(left_out).collect::<Vec<_>>(),
+    })
 }
 
 fn unwritten(error: &SaveError) -> Failure {

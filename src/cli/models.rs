@@ -1,6 +1,6 @@
 //! `lcm models`: the reflection models, shading models, light types and object types.
 
-use super::{Options, Outcome, custom, print_json, print_text, workshop::Places};
+use super::{Options, Outcome, custom, evaluate::Settings, print_json, print_text, workshop::Places};
 use crate::files::Shown as _;
 use crate::{
     failure::Failure,
@@ -44,6 +44,8 @@ enum Command {
     Check {
         /// ID of the model, as listed by `lcm models`
         id: String,
+        #[command(flatten)]
+        set: Settings,
         /// Print the result as JSON
         #[arg(long)]
         json: bool,
@@ -64,8 +66,8 @@ pub(super) fn run(arguments: Arguments, options: Options, places: &Places, known
         Some(Command::Duplicate { id, name }) => {
             custom::duplicate(&id, name.as_deref(), options, places, &known)
         }
-        Some(Command::Check { id, json }) => {
-            custom::check(&id, json, options, &mut places.open(options, known)?)
+        Some(Command::Check { id, set, json }) => {
+            custom::check(&id, &set, json, options, &mut places.open(options, known)?)
         }
         None => {
             let mut workshop = places.open(options, known)?;

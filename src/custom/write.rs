@@ -27,6 +27,12 @@ pub enum NotDuplicated {
         /// The rule that it breaks.
         rule: String,
     },
+    /// The model has a parameter that names a file, which those of custom models cannot.
+    #[error("{id} reads a file, which custom models cannot; write one that has its equation instead")]
+    File {
+        /// The id of the model.
+        id: &'static str,
+    },
 }
 
 /// A name without a valid identifier.
@@ -87,7 +93,7 @@ pub fn template(id: &str, name: &str) -> String {
 /// name of the copy; if it equals the id, a name is derived from it.
 ///
 /// # Errors
-/// Returns an error if the id is invalid.
+/// Returns an error if the id is invalid, or if the model reads a file.
 pub fn duplicate(
     entry: &ModelEntry,
     sources: &Sources,
@@ -96,6 +102,9 @@ pub fn duplicate(
 ) -> Result<String, NotDuplicated> {
     identifier(id).map_err(|rule| NotDuplicated::Id { id: id.to_owned(), rule })?;
     let d = entry.declaration;
+    if entry.file().is_some() {
+        return Err(NotDuplicated::File { id: d.id });
+    }
     let source = sources.text(&d.wgsl);
     // Everything in a file is copied except the declaration, which is rewritten.
     let body = comment(source).map_or(source, |c| &source[c.end..]).trim_start();

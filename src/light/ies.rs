@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use crate::{
-    parameter::{FileFormat, FileProblem},
+    parameter::{FileFormat, FileProblem, Shipped},
     text::{plural, shortened},
 };
 
@@ -24,7 +24,7 @@ pub static FORMAT: FileFormat = FileFormat {
     read,
     shipped: &[(
         "wall_washer.ies",
-        include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/wall_washer.ies")),
+        Shipped::Bytes(include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/wall_washer.ies"))),
     )],
 };
 
@@ -466,7 +466,7 @@ mod tests {
 
     #[test]
     fn the_shipped_file_is_legal_and_says_that_it_is_made_up() {
-        let [(name, bytes)] = FORMAT.shipped else { panic!("one") };
+        let [(name, Shipped::Bytes(bytes))] = FORMAT.shipped else { panic!("one") };
         let text = String::from_utf8_lossy(bytes);
         assert!(text.contains("calculated, not measured"), "{name}");
         // It throws most light towards C = 0.

@@ -36,6 +36,7 @@ use crate::{
 };
 
 mod axis;
+pub mod each;
 mod highlight;
 pub mod least_squares;
 mod lobe;

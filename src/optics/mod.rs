@@ -15,6 +15,7 @@ pub mod equivalence;
 pub mod film;
 pub mod fresnel;
 pub mod geometry;
+pub mod half_difference;
 pub mod interface;
 pub mod interior;
 pub mod lobe;

@@ -154,7 +154,7 @@ fn requested(what: Pick, session: &Session, registry: &Registry) -> (&'static st
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             ("save dialog", dialog.default_file_name(&name), DialogMode::SaveFile)
         }
-        Pick::File(_, parameter) => ("file dialog", file_dialog(parameter), DialogMode::PickFile),
+        Pick::File(.., parameter) => ("file dialog", file_dialog(parameter), DialogMode::PickFile),
         Pick::Lesson => {
             let lessons = "Lessons (*.md)";
             let dialog = picker("Open a lesson").add_file_filter_extensions(lessons, vec!["md"]);
@@ -178,8 +178,8 @@ fn action(what: Pick, path: PathBuf, session: &Session, registry: &Registry) -> 
         // The user was asked about unsaved changes before the dialog opened.
         Pick::Open => Action::Open(path),
         Pick::Save => Action::SaveAs(path),
-        Pick::File(part, parameter) => {
-            return session.file_chosen(part, parameter, &path, registry).map(Action::Edit);
+        Pick::File(part, key, parameter) => {
+            return session.file_chosen(part, key, parameter, &path, registry).map(Action::Edit);
         }
         Pick::Lesson => Action::Lesson(LessonCommand::Open(LessonSource::File(path))),
         Pick::ShaderFolder => Action::Do(Effect::ExportShaders(path)),

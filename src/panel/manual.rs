@@ -10,8 +10,8 @@ macro_rules! pages {
 }
 
 /// The pages with their ids, which are the paths of the files.
-pub const PAGES: [(&str, &str); 36] = pages! {
-    "README" "installing" "window" "keys" "scenes" "reflection-models" "shading-and-lights" "comparing" "lessons"
+pub const PAGES: [(&str, &str); 37] = pages! {
+    "README" "installing" "window" "keys" "scenes" "reflection-models" "measured" "shading-and-lights" "comparing" "lessons"
     "command-line" "python" "figures" "worked-examples" "study" "exporting" "performance" "custom-models" "extending"
     "extending/reflection-model" "extending/light-type" "extending/object-type" "extending/shading-model"
     "extending/parameters" "extending/parameter-kind" "extending/scene-field" "extending/panel" "extending/systems"

@@ -34,7 +34,16 @@ pub struct FileFormat {
     /// The numbers of a file, for renderers.
     pub read: fn(&[u8]) -> Result<Vec<f32>, FileProblem>,
     /// Files that are part of the program, by name: at least the default.
-    pub shipped: &'static [(&'static str, &'static [u8])],
+    pub shipped: &'static [(&'static str, Shipped)],
+}
+
+/// The content of a file that is part of the program.
+#[derive(Clone, Copy, Debug)]
+pub enum Shipped {
+    /// A file as it could be on disk.
+    Bytes(&'static [u8]),
+    /// Numbers that the program calculates, as [`FileFormat::read`] would return them.
+    Numbers(fn() -> Vec<f32>),
 }
 
 /// A mistake in a file.
@@ -66,8 +75,8 @@ pub struct NamedFile {
 
 /// The content of a file, shared by all that name it.
 struct Content {
-    /// The file, or its bytes if it is part of the program.
-    source: Result<PathBuf, &'static [u8]>,
+    /// The file, or its content if it is part of the program.
+    source: Result<PathBuf, Shipped>,
     /// The folder of the scenes that name it, which must contain it; `None` if it may be anywhere.
     folder: Option<PathBuf>,
     format: &'static FileFormat,
@@ -101,10 +110,10 @@ type Key = (files::Identity, &'static str);
 /// The contents of files on disk that are in use, by path, by the folder that must contain them and by format.
 type Contents = HashMap<(PathBuf, Option<PathBuf>, &'static str), Weak<Content>>;
 /// The contents of shipped files, by name and format.
-type Shipped = HashMap<(&'static str, &'static str), Arc<Content>>;
+type OfProgram = HashMap<(&'static str, &'static str), Arc<Content>>;
 
 static CONTENTS: LazyLock<Mutex<Contents>> = LazyLock::new(Mutex::default);
-static SHIPPED: LazyLock<Mutex<Shipped>> = LazyLock::new(Mutex::default);
+static SHIPPED: LazyLock<Mutex<OfProgram>> = LazyLock::new(Mutex::default);
 /// The numbers in use. An entry keeps none of them.
 static NUMBERS: LazyLock<Mutex<HashMap<Key, Weak<Numbers>>>> = LazyLock::new(Mutex::default);
 static CHANGES: AtomicU64 = AtomicU64::new(0);
@@ -118,8 +127,8 @@ pub fn file_changes() -> u64 {
 }
 
 /// Maximum size of all files named in a scene, in bytes, each counted once, whatever paths lead to it. Twenty
-/// large models of 20 MiB are within it.
-pub const MAX_FILES_BYTES: u64 = 512 << 20;
+/// measured materials of 34 MiB are within it.
+pub const MAX_FILES_BYTES: u64 = 768 << 20;
 /// Maximum number of values in all files named in a scene: 1 GiB in memory. Models in text have a third as
 /// many numbers as bytes, binary ones about as many; but a small file may show the same triangles often.
 pub const MAX_FILES_NUMBERS: usize = 256 << 20;
@@ -222,11 +231,11 @@ impl NamedFile {
 
     /// A shipped file.
     pub(super) fn shipped(name: &'static str, format: &'static FileFormat) -> Self {
-        let bytes =
-            format.shipped.iter().find(|(shipped, _)| *shipped == name).map_or(&[][..], |(_, bytes)| bytes);
+        let found = format.shipped.iter().find(|(shipped, _)| *shipped == name);
+        let source = found.map_or(Shipped::Bytes(&[]), |(_, content)| *content);
         let mut shipped = lock(&SHIPPED);
         let content =
-            shipped.entry((name, format.name)).or_insert_with(|| Content::new(Err(bytes), None, format));
+            shipped.entry((name, format.name)).or_insert_with(|| Content::new(Err(source), None, format));
         Self { name: Cow::Borrowed(name), content: content.clone() }
     }
 
@@ -340,7 +349,7 @@ impl Outside {
 
 impl Content {
     fn new(
-        source: Result<PathBuf, &'static [u8]>,
+        source: Result<PathBuf, Shipped>,
         folder: Option<PathBuf>,
         format: &'static FileFormat,
     ) -> Arc<Self> {
@@ -429,7 +438,8 @@ impl Content {
         let stamp = self.path().and_then(files::Stamp::settled);
         let mut key = None;
         let read = match &self.source {
-            Err(shipped) => (self.format.read)(shipped).map_err(|problem| problem.message),
+            Err(Shipped::Bytes(bytes)) => (self.format.read)(bytes).map_err(|problem| problem.message),
+            Err(Shipped::Numbers(calculate)) => Ok(calculate()),
             Ok(path) => {
                 let bytes = self.place(path).and_then(|place| {
                     key = self.identity_at(&place).map(|(key, _)| key);
@@ -482,7 +492,8 @@ fn shared(key: Option<Key>, numbers: Vec<f32>) -> Arc<Numbers> {
 /// Equal if the name and the file are the same.
 impl PartialEq for NamedFile {
     fn eq(&self, other: &Self) -> bool {
-        self.name == other.name && self.content.source == other.content.source
+        // Shipped files of one name and format are one.
+        self.name == other.name && self.content.format == other.content.format && self.path() == other.path()
     }
 }
 

@@ -20,8 +20,8 @@ mod values;
 
 pub use component::{TypeComponent, Watch, watch};
 pub use file::{
-    FileFormat, FileProblem, MAX_FILES_BYTES, MAX_FILES_NUMBERS, NamedFile, Table, file_changes, files_read,
-    read_all,
+    FileFormat, FileProblem, MAX_FILES_BYTES, MAX_FILES_NUMBERS, NamedFile, Shipped, Table, file_changes,
+    files_read, read_all,
 };
 pub use kind::{ParameterKind, Value, json, lanes};
 pub use layout::{BLOCK_BYTES, layout, pack, stride, words};

@@ -37,6 +37,7 @@ impl Declaration {
             matte: false,
             transmits: false,
             sharp: false,
+            measured: false,
             solid: false,
             wgsl,
         }
@@ -81,6 +82,9 @@ impl Declaration {
 
         /// Makes it a model that also reflects or transmits without spreading.
         sharp() { sharp: true }
+
+        /// Makes it a model whose response comes from a file, on which laws that it does not claim depend.
+        measured() { measured: true }
 
         /// Makes it a model of a solid body, with an [`interior`](super::ReflectionModel::interior).
         solid() { solid: true }

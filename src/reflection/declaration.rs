@@ -38,6 +38,8 @@ pub struct Declaration {
     /// True for a model with directions in which light does not spread; see
     /// [`sharp`](super::ReflectionModel::sharp).
     pub sharp: bool,
+    /// True for a model whose response comes from a file: laws that it does not claim depend on the file.
+    pub measured: bool,
     /// True for a model of a solid body; see [`interior`](super::ReflectionModel::interior).
     pub solid: bool,
     /// The twin in WGSL: `fn response` over a struct `Parameters`, and `fn ambient_response` for models
@@ -115,6 +117,8 @@ texts! {
         Standard = "Standard",
         /// Surfaces that light passes through.
         Transmission = "Transmission",
+        /// Measured surfaces.
+        Measured = "Measured",
         /// Models written by users.
         Custom = "Custom models",
     }

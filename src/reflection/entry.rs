@@ -28,7 +28,7 @@ use crate::{
         colour::Encoding,
         interior::Interior,
     },
-    parameter::{Parameter, Value, Values, pack},
+    parameter::{Parameter, Table, Value, Values, pack},
     shader::Source,
     text::{listed, nearest},
 };
@@ -104,6 +104,8 @@ pub(crate) enum Lobe {
 
 /// Number of surfaces with curves to keep.
 const KEPT: usize = 1024;
+/// The same of surfaces that hold the numbers of a file: as many files as a scene may reasonably show.
+const KEPT_WITH_FILE: usize = 24;
 
 impl ModelEntry {
     /// The entry of a model type.
@@ -269,20 +271,35 @@ impl ModelEntry {
         }
     }
 
+    /// The parameter that names a file, of a model that has one.
+    #[must_use]
+    pub fn file(&self) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|p| p.kind.format().is_some())
+    }
+
+    /// The file of a surface, with its numbers.
+    #[must_use]
+    pub fn table(&self, values: &Values) -> Option<Table> {
+        values.table(self.file()?)
+    }
+
     /// The model with the parameters of one object.
     #[must_use]
     pub fn instantiate(&self, values: &Values, encoding: Encoding) -> Arc<dyn Surface> {
         if !self.has_curve() {
             return (self.instantiate)(values, encoding);
         }
-        let key = pack(self.parameters, values, encoding);
+        let mut key = pack(self.parameters, values, encoding);
+        let file = self.table(values).and_then(|table| table.file);
+        let most = if file.is_some() { KEPT_WITH_FILE } else { KEPT };
+        key.extend(file.map_or(0, |file| file.version()).to_le_bytes());
         let kept = || lock(&self.kept);
         if let Some(surface) = kept().get(&key) {
             return surface.clone();
         }
         let surface = (self.instantiate)(values, encoding);
         let mut kept = kept();
-        if kept.len() >= KEPT {
+        if kept.len() >= most {
             kept.clear();
         }
         kept.entry(key).or_insert(surface).clone()

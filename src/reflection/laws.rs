@@ -287,26 +287,28 @@ impl Findings {
     }
 }
 
-/// Searches for violations of a model's laws. `ask` returns the responses to pairs of directions (to the light, to the
+/// Searches for violations of a model's laws with the `given` values and any others. `ask` returns the responses to pairs of directions (to the light, to the
 /// viewer) in the local frame.
 ///
 /// # Errors
 /// Returns the errors of `ask`.
 pub fn examine<E>(
     model: &ModelEntry,
+    given: &Values,
     effort: Effort,
     mut ask: impl FnMut(&Values, &[(Vec3, Vec3)]) -> Result<Vec<Terms>, E>,
 ) -> Result<Findings, E> {
     let mut random = Random(0x5eed);
     let mut findings = Findings::default();
     for set in 0..effort.sets {
-        let values = match set {
+        let mut values = match set {
             0 => Values::default(),
             1 => least(model),
             2 => ends(model, true),
             3..40 if set % 2 == 1 => random.corner(model),
             _ => random.values(model),
         };
+        values.0.extend(given.0.clone());
         // A few sets are enough: lobes that suit the parameters also suit the ends of their ranges.
         if set < 3 {
             let lobes = model.instantiate(&values, Encoding::Srgb).lobes();
@@ -327,12 +329,13 @@ pub fn examine<E>(
 /// Returns [`Cancelled`] if the user cancels.
 pub fn examine_on_cpu(
     model: &ModelEntry,
+    given: &Values,
     effort: Effort,
     progress: &Progress,
 ) -> Result<Findings, Cancelled> {
     let mut last: Option<(Values, Arc<dyn Surface>)> = None;
     let mut sets = 0;
-    examine(model, effort, |values, pairs| {
+    examine(model, given, effort, |values, pairs| {
         if last.as_ref().is_none_or(|(known, _)| known != values) {
             progress.step(sets as f32 / effort.sets as f32, "sets of parameters")?;
             sets += 1;

@@ -32,7 +32,7 @@ pub struct OnPages {
 
 /// A reflection model. The implementing struct contains its parameters (see
 /// [`parameters!`](crate::parameters)).
-pub trait ReflectionModel: ParameterSet + Copy {
+pub trait ReflectionModel: ParameterSet + Clone {
     /// Name, source, laws, equation, shader.
     const DECLARATION: Declaration;
 

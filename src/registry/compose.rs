@@ -22,8 +22,8 @@ use crate::{
         Source,
         compose::{
             ABSORPTION, ALBEDO, BODY, CHANNELS, Composed, Composer, DISPERSION, DISPLAY, EVALUATE, EXTENDED,
-            HIERARCHY, INSIDE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING, SEEN, SHADING,
-            SHADING_ALONE, Sources, THROUGH, TRANSMISSION, WRAPPER, parameter_struct,
+            FILE, HALF_DIFFERENCE, HIERARCHY, INSIDE, LIGHT_ALONE, LIGHTS, LOOP, OPTICS, PANORAMA, SAMPLING,
+            SEEN, SHADING, SHADING_ALONE, Sources, THROUGH, TRANSMISSION, WRAPPER, parameter_struct,
         },
         definitions::definition,
     },
@@ -85,9 +85,12 @@ pub(crate) fn passes(model: &ModelEntry, passage: Passage, text: &str) -> String
     }
 }
 
-/// Adds the row of a model, and the model.
-fn push_model(c: &mut Composer, model: &ModelEntry, passage: Passage, more: &str) {
+/// Adds the row of a model, and the model; `file` is the part that reads the numbers of its file, if it has one.
+fn push_model(c: &mut Composer, model: &ModelEntry, passage: Passage, more: &str, file: &str) {
     c.push("(row)", &row_struct(model, more));
+    if model.file().is_some() {
+        c.push(FILE, &part(file, &[]));
+    }
     if model.has_curve() {
         c.source(&ALBEDO);
     }
@@ -206,9 +209,25 @@ pub fn light_dispatch(lights: &[LightEntry]) -> String {
 }
 
 /// The files that every source for drawing needs besides the vocabulary, and those for other uses.
-pub(crate) const SHARED: [Source; 17] = [
-    ALBEDO, PANORAMA, DISPERSION, ABSORPTION, LIGHTS, SAMPLING, SHADING, HIERARCHY, INSIDE, THROUGH, LOOP,
-    EXTENDED, CHANNELS, DISPLAY, WRAPPER, SEEN, EVALUATE,
+pub(crate) const SHARED: [Source; 18] = [
+    ALBEDO,
+    PANORAMA,
+    HALF_DIFFERENCE,
+    DISPERSION,
+    ABSORPTION,
+    LIGHTS,
+    SAMPLING,
+    SHADING,
+    HIERARCHY,
+    INSIDE,
+    THROUGH,
+    LOOP,
+    EXTENDED,
+    CHANNELS,
+    DISPLAY,
+    WRAPPER,
+    SEEN,
+    EVALUATE,
 ];
 
 /// The table from which a single light type reads the numbers of its files: one row, see [`compose_light`].
@@ -310,7 +329,7 @@ pub fn compose(
     if solid {
         words.push_str("    interior: array<vec4<f32>, 2>,\n");
     }
-    push_model(&mut c, model, passage, &words);
+    push_model(&mut c, model, passage, &words, "file_drawn");
     if extent || solid {
         c.push("(lobes)", &part("lobes", &[]));
     }
@@ -412,7 +431,7 @@ pub fn files(
     let known = OPTICS
         .iter()
         .chain(TRANSMISSION)
-        .chain([&ALBEDO, &PANORAMA, &DISPERSION, &ABSORPTION])
+        .chain([&ALBEDO, &PANORAMA, &HALF_DIFFERENCE, &DISPERSION, &ABSORPTION])
         .map(|s| (Part::Vocabulary, s))
         .chain(lights.iter().map(|l| (Part::LightType, &l.declaration.wgsl)))
         .chain([
@@ -448,9 +467,24 @@ pub fn files(
 /// model needs.
 #[must_use]
 pub fn compose_evaluation(sources: &Sources, model: &ModelEntry) -> Composed {
+    evaluation(sources, model, "", "file_evaluated")
+}
+
+/// Like [`compose_evaluation`], with the numbers of the file of the model, if it has one, at the end of the row: for the
+/// interpreter, which knows one table. There is room for those of the default.
+#[must_use]
+pub fn compose_interpreted(sources: &Sources, model: &ModelEntry) -> Composed {
+    let Some(table) = model.table(&Values::default()) else { return compose_evaluation(sources, model) };
+    // What follows the last number of the curve in its quadruple.
+    let padding = if model.has_curve() { part("file_padding", &[("padding", &3)]) } else { String::new() };
+    let more = padding + &part("file_row", &[("words", &table.numbers.len())]);
+    evaluation(sources, model, &more, "file_alone")
+}
+
+fn evaluation(sources: &Sources, model: &ModelEntry, more: &str, file: &str) -> Composed {
     let mut c = Composer::new(sources);
     OPTICS.iter().for_each(|s| c.source(s));
-    push_model(&mut c, model, model.declaration.passage(), "");
+    push_model(&mut c, model, model.declaration.passage(), more, file);
     c.source(&EVALUATE);
     c.composed
 }
@@ -498,6 +532,9 @@ mod tests {
                 for (i, line) in composed.text.lines().enumerate() {
                     let (path, at) = composed.map.locate(i + 1).expect("every line has a place");
                     if let Some(source) = pieces.iter().find(|s| s.path == path) {
+                        // An import is a remark once it was followed.
+                        let line =
+                            line.strip_prefix("// ").filter(|l| l.starts_with("#import")).unwrap_or(line);
                         assert_eq!(source.text.lines().nth(at - 1), Some(line), "{path}:{at}");
                     }
                 }

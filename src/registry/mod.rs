@@ -397,6 +397,9 @@ impl Register for Registry {
         let check = || -> Result<(), Mistake> {
             check::reflection_model(self, &entry)?;
             place(self.model(d.id).is_some(), d.id, admission, PART)?;
+            if admission != Admission::BuiltIn {
+                check::shipped_files(entry.parameters)?;
+            }
             if Self::wants_wgsl(admission) {
                 check::wgsl::model(&Sources::default(), &entry)?;
             }
@@ -494,7 +497,8 @@ mod tests {
         let registry = Registry::builtin();
         let lights = registry.lights().iter().map(|light| light.parameters);
         let shapes = registry.shapes().iter().map(|shape| shape.parameters);
-        for parameters in lights.chain(shapes) {
+        let models = registry.models().iter().map(|model| model.parameters);
+        for parameters in lights.chain(shapes).chain(models) {
             assert_eq!(check::shipped_files(parameters), Ok(()));
         }
     }

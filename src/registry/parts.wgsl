@@ -46,6 +46,23 @@ fn light_word(light: Light, i: u32) -> u32 {
 fn light_number(light: Light, i: u32) -> f32 {
     return illumination_number(light.first_word + i);
 }
+[[file_drawn]]
+// The numbers of the file of the object.
+@group(#{MATERIAL_BIND_GROUP}) @binding(3) var<storage, read> file_words: array<u32>;
+[[file_evaluated]]
+@group(0) @binding(3) var<storage, read> file_words: array<u32>;
+[[file_drawn file_evaluated]]
+fn file_word(i: u32) -> u32 {
+    return file_words[i];
+}
+[[file_padding]]
+    padding: array<u32, {{padding}}>,
+[[file_row]]
+    file: array<u32, {{words}}>,
+[[file_alone]]
+fn file_word(i: u32) -> u32 {
+    return parameter_table[object_row].file[i];
+}
 [[light_alone]]
 struct FileRow { numbers: array<f32, {{numbers}}> }
 @group(0) @binding(0) var<storage, read> file_table: array<FileRow>;

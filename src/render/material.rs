@@ -55,7 +55,8 @@ pub(super) enum Vertices {
 pub struct MaterialInputs {
     /// The parameters of all objects with the model.
     pub parameters: Handle<ShaderBuffer>,
-    /// The hierarchy of the object's mesh, for models of solid bodies; for others any buffer.
+    /// The hierarchy of the object's mesh, for models of solid bodies, or the numbers of the object's file, for models that
+    /// read one; for others any buffer.
     pub solid: Handle<ShaderBuffer>,
     /// The lights of the scene, shared by all materials.
     pub illumination: LightBuffers,
@@ -180,14 +181,14 @@ pub(super) fn plugin(app: &mut App) {
     app.add_plugins(MaterialPlugin::<ModelMaterial>::default()).init_resource::<SharedMaterials>();
 }
 
-/// The materials by shader, light buffer and, for solid bodies, hierarchy: one for each pair of models in use, shared by the
+/// The materials by shader, light buffer and, for solid bodies and measured surfaces, the buffer of those: one for each pair of models in use, shared by the
 /// views without overrides, and separate for each view with overrides.
 #[derive(Default, Resource)]
 struct SharedMaterials(HashMap<[bevy::asset::UntypedAssetId; 3], SharedMaterial>);
 
 struct SharedMaterial {
     material: Handle<ModelMaterial>,
-    /// True if it holds the hierarchy of a mesh.
+    /// True if it holds the hierarchy of a mesh, or the numbers of a file.
     is_body: bool,
 }
 

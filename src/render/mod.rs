@@ -10,6 +10,7 @@ pub mod drawn;
 pub mod entities;
 pub(crate) mod exchange;
 mod facing;
+mod file_buffers;
 pub mod illumination;
 pub mod live;
 pub mod material;

@@ -8,6 +8,7 @@ use super::{
     camera::follow_scene,
     converge::Convergence,
     entities::{CurrentScene, SceneEntities},
+    file_buffers::FileBuffers,
     illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
     live::{self, exchange},
     material, mean,
@@ -59,6 +60,7 @@ impl Plugin for ScenePlugin {
             .register_type::<parts::Animated>()
             .init_resource::<ShapeMeshes>()
             .init_resource::<Solids>()
+            .init_resource::<FileBuffers>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
             .init_schedule(LabFrame)

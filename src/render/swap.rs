@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::{
     drawn::{ByChance, Drawn},
     entities::{CurrentScene, SceneEntities},
+    file_buffers::FileBuffers,
     illumination::{IlluminationBuffer, Lit, word_count},
     live::LiveShaders,
     material::{MaterialInputs, Vertices, attach, forget},
@@ -155,7 +156,8 @@ pub fn swap(
 fn touch_those_from_files(world: &mut World) {
     let mut objects = world.query::<&mut ShownObject>();
     for mut object in objects.iter_mut(world) {
-        if object.0.shape.0.values().any(|value| matches!(value, Value::File(_))) {
+        let mut values = object.0.shape.0.values().chain(object.0.material.0.values());
+        if values.any(|value| matches!(value, Value::File(_))) {
             object.set_changed();
         }
     }
@@ -304,7 +306,11 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         |stage| stage.illumination.clone(),
     );
     let gamma_naive = now.encoding == Encoding::Off;
-    let solid = if now.passage.solid {
+    let solid = if let Some(table) = model.table(&shown.material) {
+        world.resource_scope(|world, mut files: Mut<FileBuffers>| {
+            files.get(&table, &mut world.resource_mut::<Assets<ShaderBuffer>>())
+        })
+    } else if now.passage.solid {
         world.resource_scope(|world, mut solids: Mut<Solids>| {
             solids.get(shape, &shown, &mut world.resource_mut::<Assets<ShaderBuffer>>())
         })

@@ -149,10 +149,12 @@ impl Scene {
         passages.reduce(|all, one| all | one).unwrap_or_else(|| model.passage(&Values::default()))
     }
 
-    /// The files named by lights and objects, with repetitions.
+    /// The files named by lights, objects and materials, with repetitions.
     pub fn files(&self) -> impl Iterator<Item = &NamedFile> {
         let of_lights = self.lights.iter().map(|light| &light.parameters);
-        let values = of_lights.chain(self.objects.iter().map(|object| &object.shape));
+        let of_objects = self.objects.iter().flat_map(|object| [&object.shape, &object.material]);
+        let of_variants = self.variants.iter().map(|variant| &variant.material);
+        let values = of_lights.chain(of_objects).chain(of_variants);
         values.flat_map(|values| values.0.values()).filter_map(|value| match value {
             Value::File(file) => Some(file),
             _ => None,

@@ -3,7 +3,7 @@
 //!
 //! Any file may import another file of the author: the line `#import "noise.wgsl"`, with a path relative to
 //! the importing file's folder, inserts that file before it, once per composed source however often it is
-//! imported. Of the built-in files, [`PANORAMA`] can be imported.
+//! imported. Of the built-in files, [`PANORAMA`] and [`HALF_DIFFERENCE`] can be imported.
 
 use std::{
     collections::{BTreeMap, BTreeSet, HashSet},
@@ -33,6 +33,8 @@ pub const DISPERSION: Source = wgsl!("optics/dispersion.wgsl");
 pub const ABSORPTION: Source = wgsl!("optics/absorption.wgsl");
 /// The directional albedo from the curve in a row, for models that have one.
 pub const ALBEDO: Source = wgsl!("optics/albedo.wgsl");
+/// Tables over half and difference angles, for models that import it.
+pub const HALF_DIFFERENCE: Source = wgsl!("optics/half_difference.wgsl");
 /// Pictures of the surroundings, for light types that import it.
 pub const PANORAMA: Source = wgsl!("optics/panorama.wgsl");
 /// The light record.
@@ -65,6 +67,9 @@ pub const EVALUATE: Source = wgsl!("evaluate.wgsl");
 
 /// The generated part of solid models, with the buffer of the mesh.
 pub const BODY: &str = "(the body)";
+
+/// The generated part of models that read a file, with the buffer of its numbers.
+pub const FILE: &str = "(the file)";
 
 /// The generated part of the source of a single light type, with the numbers of its files.
 pub const LIGHT_ALONE: &str = "(light type)";
@@ -258,7 +263,8 @@ impl<'a> Composer<'a> {
         if !self.done.insert(path.clone()) {
             return;
         }
-        let built_in = (path == PANORAMA.path).then_some(PANORAMA.text);
+        let importable = [PANORAMA, HALF_DIFFERENCE];
+        let built_in = importable.iter().find(|source| source.path == path).map(|source| source.text);
         let most = super::limits::LIMITS.bytes;
         match self.sources.get(&path).or(built_in) {
             Some(text) if self.composed.text.len() + text.len() > most => {

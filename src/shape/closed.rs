@@ -357,7 +357,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        parameter::Table,
+        parameter::{Shipped, Table},
         registry::Registry,
         shape::{
             Cube, MeshFile, ObjectType as _, Sphere, Superellipsoid, Teapot, Torus, mesh::Polygon, mesh_file,
@@ -491,7 +491,8 @@ mod tests {
             ("lampshade.obj", 1, 0.067_750_6 / 9.025_5),
             ("slab.obj", 0, 4.32 / 27.0),
         ] {
-            let (_, bytes) = mesh_file::FORMAT.shipped.iter().find(|(known, _)| *known == name).expect(name);
+            let shipped = mesh_file::FORMAT.shipped.iter().find(|(known, _)| *known == name);
+            let Some((_, Shipped::Bytes(bytes))) = shipped else { panic!("{name}") };
             for normals in [0, 1] {
                 let numbers = Arc::from((mesh_file::FORMAT.read)(bytes).expect("an OBJ file"));
                 let mesh = MeshFile { path: Table { file: None, numbers }, normals }.mesh(1);

@@ -11,8 +11,8 @@ use crate::{
     optics::{Frame, Terms, colour::Encoding},
     parameter::{self, Value, Values},
     reflection::{Ambient, ModelEntry, Surface},
-    registry::check,
-    shader::{compose::Sources, interpret::Program},
+    registry::{check, compose::compose_interpreted},
+    shader::{check::validate, compose::Sources, interpret::Program},
 };
 
 /// Maximum difference attributed to rounding, relative where the response is not dark.
@@ -32,7 +32,8 @@ pub fn all(model: &ModelEntry, sources: &Sources) -> Outcome {
 }
 
 fn program(model: &ModelEntry, sources: &Sources, function: &str) -> Result<Program, String> {
-    let module = check::wgsl::model(sources, model).map_err(|problem| problem.to_string())?;
+    check::wgsl::model(sources, model).map_err(|problem| problem.to_string())?;
+    let module = validate(&compose_interpreted(sources, model)).map_err(|problem| problem.to_string())?;
     Program::with_table(&module, function, "parameter_table").map_err(|e| format!("{function}: {e}"))
 }
 
@@ -42,6 +43,14 @@ fn parameter_words(model: &ModelEntry, values: &Values) -> Vec<u32> {
         [] => vec![0],
         all => parameter::words(all, values, Encoding::Srgb),
     }
+}
+
+/// The row of a surface, with the numbers of its file at the end.
+fn row_of(model: &ModelEntry, values: &Values, uniform_light: bool) -> Vec<u32> {
+    let mut row = words(&model.row(values, Encoding::Srgb, uniform_light));
+    let table = model.table(values);
+    row.extend(table.iter().flat_map(|table| table.numbers.iter()).map(|number| number.to_bits()));
+    row
 }
 
 /// A model's response calculated by its WGSL, with one set of parameters.
@@ -54,7 +63,7 @@ struct Twin<'a> {
 
 impl<'a> Twin<'a> {
     fn new(program: &'a Program, model: &ModelEntry, values: &Values) -> Self {
-        let row = words(&model.row(values, Encoding::Srgb, false));
+        let row = row_of(model, values, false);
         Self {
             program,
             transmits: model.declaration.transmits,
@@ -212,7 +221,7 @@ pub fn under_uniform_light(model: &ModelEntry, sources: &Sources) -> Outcome {
     for _ in 0..5 {
         let values = random_values(model, &mut seed);
         let surface = model.instantiate(&values, Encoding::Srgb);
-        let row = words(&model.row(&values, Encoding::Srgb, true));
+        let row = row_of(model, &values, true);
         for _ in 0..50 {
             let v = direction(&mut seed);
             let directions = [v, Frame::LOCAL.n, Frame::LOCAL.t, Frame::LOCAL.b];

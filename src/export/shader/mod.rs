@@ -100,8 +100,8 @@ struct Section {
 /// The shader of a reflection model and a shading model for the lights of a scene.
 ///
 /// # Errors
-/// Returns an error if the sources cannot be combined: only for unresolved `#import`s, which drawing reports
-/// too.
+/// Returns an error if the sources cannot be combined: for unresolved `#import`s, which drawing reports too, and for models
+/// that read a file.
 pub fn compose(
     lights: &Lights,
     registry: &Registry,
@@ -109,6 +109,13 @@ pub fn compose(
     shading: &ShadingEntry,
     host: Host,
 ) -> Result<Shader, ExportError> {
+    if let Some(file) = model.file() {
+        let (name, label) = (model.declaration.id, file.label);
+        return Err(ExportError::refused(format!(
+            "the {label} of {name} is a file of megabytes, which no uniform holds; fit another model to it with `lcm match`, \
+             or export a program"
+        )));
+    }
     let files = 4 * lights.numbers.len();
     fits("the photometric files of the lamps", files, "files with fewer angles")?;
     let sources = registry.sources();

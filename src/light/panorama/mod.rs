@@ -9,7 +9,10 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3};
 
-use crate::{optics::colour::luminance, parameter::FileFormat};
+use crate::{
+    optics::colour::luminance,
+    parameter::{FileFormat, Shipped},
+};
 
 mod average;
 mod read;
@@ -33,7 +36,10 @@ pub static FORMAT: FileFormat = FileFormat {
     extensions: &["hdr", "exr"],
     max_bytes: 256 << 20,
     read: read::read,
-    shipped: &[("room.hdr", include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/room.hdr")))],
+    shipped: &[(
+        "room.hdr",
+        Shipped::Bytes(include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/room.hdr"))),
+    )],
 };
 
 /// A picture in the layout of [`FORMAT`].

@@ -14,7 +14,7 @@ use image::{Rgb, codecs::hdr::HdrEncoder};
 use super::{FORMAT, MAX_COLUMNS, Panorama, average::Average};
 use crate::{
     optics::colour::luminance,
-    parameter::NamedFile,
+    parameter::{NamedFile, Shipped},
     registry::compose::FILE_TABLE,
     shader::{
         Source,
@@ -708,7 +708,7 @@ fn the_shipped_picture_is_the_calculated_room() {
             .sum();
         (sum / 64.0).as_vec3().to_array()
     });
-    let [(name, shipped)] = FORMAT.shipped else { panic!("one") };
+    let [(name, Shipped::Bytes(shipped))] = FORMAT.shipped else { panic!("one") };
     if calculated != *shipped {
         let path = std::env::temp_dir().join(name);
         std::fs::write(&path, &calculated).expect("written");

@@ -14,7 +14,7 @@ use crate::{
     },
     parameter::Value,
     reflection::{EquationPart, Term, usage::unused},
-    scene::{Light, limits},
+    scene::{Key, Light, limits},
 };
 
 pub(super) fn light(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
@@ -45,7 +45,11 @@ pub(super) fn light(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
                         unused(entry.parameters, p, &light.parameters).as_deref(),
                     )
                 {
-                    context.act(Action::Do(Effect::Pick(Pick::File(Selection::Light(i), p))));
+                    context.act(Action::Do(Effect::Pick(Pick::File(
+                        Selection::Light(i),
+                        Key::Own(p.name),
+                        p,
+                    ))));
                 }
                 if let Some(v) = knob_of(ui, p.name, p, (entry.parameters, &light.parameters), None) {
                     let values = light.setting(entry, p, v);

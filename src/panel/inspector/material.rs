@@ -4,8 +4,13 @@ use bevy_egui::egui::{CollapsingHeader, TextFormat, text::LayoutJob};
 
 use super::{measured::measured, object::Shown, part::knob_of, variant::marked};
 use crate::{
-    panel::{knob, lesson::point, prelude::*},
-    parameter::Parameter,
+    panel::{
+        knob,
+        lesson::point,
+        prelude::*,
+        state::{Effect, Pick},
+    },
+    parameter::{Parameter, Value},
     reflection::{ModelEntry, ungrouped},
     scene::Key,
     shading::ShadingEntry,
@@ -25,8 +30,18 @@ impl Shown<'_> {
         let listed = self.listed(ui, model);
         self.filter(ui, model, context);
         let mut knob = |ui: &mut Ui, p: &'static Parameter| {
-            let value = marked(ui, Key::Material(p.name), context, |ui| {
-                let fixed = self.fixed(Key::Material(p.name));
+            let key = Key::Material(p.name);
+            if let Value::File(file) = object.material.get(p) {
+                let asked = marked(ui, key, context, |ui| knob::file_knob(ui, p, &file, self.fixed(key)));
+                if let Part::Object(i) = part
+                    && asked
+                {
+                    context.act(Action::Do(Effect::Pick(Pick::File(Selection::Object(i), key, p))));
+                }
+                return;
+            }
+            let value = marked(ui, key, context, |ui| {
+                let fixed = self.fixed(key);
                 knob_of(ui, p.name, p, (model.parameters, &object.material), fixed)
             });
             context.edits(value.map(|v| Edit::material(part, p.name, v)));

@@ -180,7 +180,7 @@ impl Shown<'_> {
             if let Value::File(file) = object.shape.get(p)
                 && linked::within(ui, Domain::Shape, |ui| knob::file_knob(ui, p, &file, None))
             {
-                context.act(Action::Do(Effect::Pick(Pick::File(Selection::Object(i), p))));
+                context.act(Action::Do(Effect::Pick(Pick::File(Selection::Object(i), Key::Own(p.name), p))));
             }
         }
     }

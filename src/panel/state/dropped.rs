@@ -9,7 +9,7 @@ use crate::{
     document::Selection,
     parameter::{Parameter, Value},
     registry::Registry,
-    scene::formats,
+    scene::{Key, formats},
 };
 
 /// True if a file has one of these extensions, ignoring case.
@@ -71,7 +71,7 @@ impl Session {
         let id = lamp.declaration.id;
         match selected.filter(|(_, known)| *known == id) {
             Some((i, _)) => {
-                let edit = self.setting(Selection::Light(i), parameter, file, registry);
+                let edit = self.setting(Selection::Light(i), Key::Own(parameter.name), parameter, file, registry);
                 self.edit(edit, registry);
             }
             None => self.add_light(id, |light| light.parameters.set(parameter.name, file), registry),

@@ -6,7 +6,12 @@ use bevy::ecs::message::Message;
 use glam::Vec3;
 
 use super::SheetOf;
-use crate::{document::Selection, matching::What, parameter::Parameter, scene::load::Stamp};
+use crate::{
+    document::Selection,
+    matching::What,
+    parameter::Parameter,
+    scene::{Key, load::Stamp},
+};
 
 /// Work that needs files, entities or the operating system: a message to the systems that carry it out.
 #[derive(Clone, Debug, PartialEq, Message)]
@@ -143,8 +148,8 @@ pub enum Pick {
     Open,
     /// A file to save to.
     Save,
-    /// A file for a parameter of a light or an object.
-    File(Selection, &'static Parameter),
+    /// A file for a parameter of a light, an object or a material, by its key there.
+    File(Selection, Key, &'static Parameter),
     /// The destination of an export in a format, by its id.
     Export(&'static str),
     /// A file for the picture of a single view, or of all as shown.

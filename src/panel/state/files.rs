@@ -9,7 +9,7 @@ use crate::{
     optics::TermSelection,
     parameter::{NamedFile, Outside, Parameter, Value, Values},
     registry::Registry,
-    scene::{Part, Scene, examples::EXAMPLES, formats},
+    scene::{Key, Part, Scene, examples::EXAMPLES, formats},
 };
 
 /// The file for a name typed for a scene: keeps the extension of a writable format, once, and otherwise appends that of
@@ -118,33 +118,40 @@ impl Session {
         let mut scene = self.document.scene().clone();
         let lights = scene.lights.iter_mut().map(|light| &mut light.parameters).enumerate();
         let lights = lights.map(|(i, values)| (Extent::Light(i), values));
-        let objects = scene.objects.iter_mut().map(|object| &mut object.shape).enumerate();
-        let objects = objects.map(|(i, values)| (Extent::Object(i), values));
-        let moved =
-            lights.chain(objects).filter_map(|(part, values)| see_from(values, folder).then_some(part));
+        let lights = lights.map(|(part, values)| (part, see_from(values, folder)));
+        let objects = scene.objects.iter_mut().enumerate().map(|(i, object)| {
+            let seen = [&mut object.shape, &mut object.material].map(|values| see_from(values, folder));
+            (Extent::Object(i), seen.contains(&true))
+        });
+        let variants = scene.variants.iter_mut();
+        let variants = variants.map(|variant| (Extent::Rest, see_from(&mut variant.material, folder)));
+        let all = lights.chain(objects).chain(variants);
+        let moved = all.filter_map(|(part, seen)| seen.then_some(part));
         for part in moved.collect::<Vec<_>>() {
             self.document.change("Place of a file", part, self.selection, |to| part.copy(&scene, to));
         }
         self.outside.allow(self.document.files());
     }
 
-    /// The edit that sets a file parameter of a light or an object. The name is relative to the folder of the scene if
+    /// The edit that sets a file parameter of a light, an object or a material. The name is relative to the folder of the scene if
     /// the file is inside it.
     pub(in crate::panel) fn file_chosen(
         &self,
         part: Selection,
+        key: Key,
         parameter: &'static Parameter,
         path: &Path,
         registry: &Registry,
     ) -> Option<Edit> {
         let file = self.chosen(parameter, path)?;
-        Some(self.setting(part, parameter, file, registry))
+        Some(self.setting(part, key, parameter, file, registry))
     }
 
     /// The edit that sets a parameter of a light or an object, with what has to follow.
     pub(super) fn setting(
         &self,
         part: Selection,
+        key: Key,
         parameter: &'static Parameter,
         value: Value,
         registry: &Registry,
@@ -159,7 +166,7 @@ impl Session {
             Some((light, entry)) => {
                 Edit::Set { part, values: light.setting(entry, parameter, value), what: None }
             }
-            None => Edit::parameter(part, parameter.name, value),
+            None => Edit::set(part, key, value),
         }
     }
 

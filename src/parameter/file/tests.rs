@@ -107,7 +107,7 @@ fn a_shipped_file_is_read_once_when_its_numbers_are_needed() {
             READ.fetch_add(1, Ordering::Relaxed);
             Ok(bytes.iter().map(|&byte| f32::from(byte)).collect())
         },
-        shipped: &[("one", &[1, 2])],
+        shipped: &[("one", Shipped::Bytes(&[1, 2]))],
     };
     let file = NamedFile::shipped("one", &FORMAT);
     assert_eq!(READ.load(Ordering::Relaxed), 0);

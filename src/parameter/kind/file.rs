@@ -16,7 +16,7 @@ pub type Given = NamedFile;
 pub type Field = Table;
 
 /// A file of numbers, given by its name relative to the folder of the scene file. Light types and object types may have
-/// such parameters.
+/// such parameters, and a reflection model one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct File {
     /// The files that are legal.
@@ -37,7 +37,7 @@ impl ParameterKind {
 }
 
 impl Parameter {
-    /// A file of numbers, for light types and object types; the default is the name of a file that is shipped with the format.
+    /// A file of numbers, for light types, object types and reflection models; the default is the name of a file that is shipped with the format.
     #[must_use]
     pub const fn file(name: &'static str, format: &'static FileFormat, default: &'static str) -> Self {
         Self::new(name, ParameterKind::File(File { format, default }))

@@ -72,7 +72,7 @@ pub(super) fn parameters(all: &[Parameter], reserved: &[&str], part: &str, files
             of(format!("the name is that of another key of {part} in scene files; choose another"))
         })?;
         ensure(files || p.kind.format().is_none(), || {
-            of("is a file, which only light types and object types may have".to_owned())
+            of("is a file, which shading models may not have".to_owned())
         })?;
         kind(p).map_err(of)?;
         if let Some(problem) = usage::problem(all, p) {
@@ -173,11 +173,23 @@ fn shared(
     Ok(())
 }
 
+/// Checks that a model has one buffer besides its parameters: the numbers of a file, or the mesh of a solid body.
+fn one_file(entry: &ModelEntry) -> Check {
+    let files: Vec<_> = entry.parameters.iter().filter(|p| p.kind.format().is_some()).collect();
+    let [first, rest @ ..] = &files[..] else { return Ok(()) };
+    let is = |why: &str| format!("parameter `{}`: is a file, but {why}", rest.first().unwrap_or(first).name);
+    ensure(rest.is_empty(), || is("a reflection model may have only one"))?;
+    ensure(!entry.passages().iter().any(|passage| passage.solid), || {
+        is("a model of a solid body may not have any")
+    })
+}
+
 /// Checks a reflection model.
 pub(super) fn reflection_model(registry: &Registry, entry: &ModelEntry) -> Check {
     let d = entry.declaration;
     identity(d.id, d.name)?;
-    parameters(entry.parameters, OBJECT_KEYS, OBJECT, false)?;
+    parameters(entry.parameters, OBJECT_KEYS, OBJECT, true)?;
+    one_file(entry)?;
     if let Some((_, problem)) = Group::problem(entry.groups, entry.parameters) {
         return Err(problem);
     }

@@ -76,6 +76,17 @@ fn row(device: &RenderDevice, model: &ModelEntry, values: &Values, encoding: Enc
     })
 }
 
+/// The numbers of the file of a surface; of a model without a file a word that is not read.
+fn file(device: &RenderDevice, model: &ModelEntry, values: &Values) -> Buffer {
+    let numbers = model.table(values).map(|table| table.numbers);
+    let words = numbers.as_deref().unwrap_or(&[0.0]).iter().flat_map(|number| number.to_le_bytes());
+    device.create_buffer_with_data(&BufferInitDescriptor {
+        label: Some("file"),
+        contents: &words.collect::<Vec<_>>(),
+        usage: BufferUsages::STORAGE,
+    })
+}
+
 /// Size of `Pair` in `evaluate.wgsl`, in bytes: two vec3, each padded to 16.
 const PAIR_BYTES: usize = 32;
 /// Size of `Terms` in `terms.wgsl`, in bytes: three vec3, each padded to 16.
@@ -93,6 +104,8 @@ pub struct Evaluator {
     queue: RenderQueue,
     pass: Compute,
     row: Buffer,
+    /// The numbers of its file.
+    file: Buffer,
     /// The model on the CPU, if it is interpreted there.
     on_cpu: Option<Arc<dyn Surface>>,
     /// The model on the CPU, if it mirrors light without spreading it, which its response leaves out.
@@ -110,17 +123,19 @@ impl Evaluator {
         check::validate(&composed).map_err(GpuError::Invalid)?;
         let RenderResources(device, queue, ..) = device()?;
         let row = row(&device, model, &Values::default(), Encoding::Srgb);
+        let file = file(&device, model, &Values::default());
         // Users' shaders may ask for bindings that do not exist here.
         let scope = device.wgpu_device().push_error_scope(wgpu::ErrorFilter::Validation);
         let read = storage_buffer_read_only_sized(false, None);
-        let entries = (read, read, storage_buffer_sized(false, None));
+        let entries = (read, read, storage_buffer_sized(false, None), read);
         let entries = BindGroupLayoutEntries::sequential(ShaderStages::COMPUTE, entries);
         let pass = Compute::new(&device, "evaluate", composed.text.as_str().into(), "evaluate", &entries);
         if let Some(error) = block_on(scope.pop()) {
             return Err(GpuError::Invalid(refused(&composed, &error)));
         }
         let (model, patience) = (model.clone(), PATIENCE);
-        let mut evaluator = Self { model, device, queue, pass, row, on_cpu: None, mirror: None, patience };
+        let (on_cpu, mirror) = (None, None);
+        let mut evaluator = Self { model, device, queue, pass, row, file, on_cpu, mirror, patience };
         evaluator.set(&Values::default(), Encoding::Srgb);
         Ok(evaluator)
     }
@@ -128,6 +143,7 @@ impl Evaluator {
     /// Sets the parameters for subsequent evaluations.
     pub fn set(&mut self, values: &Values, encoding: Encoding) {
         self.row = row(&self.device, &self.model, values, encoding);
+        self.file = file(&self.device, &self.model, values);
         self.on_cpu = self.model.is_interpreted().then(|| self.model.instantiate(values, encoding));
         self.mirror = self.model.declaration.sharp.then(|| self.model.instantiate(values, encoding));
     }
@@ -183,8 +199,9 @@ impl Evaluator {
         let empty = |usage| buffer(device, "answers", size, usage);
         let output = empty(BufferUsages::STORAGE | BufferUsages::COPY_SRC);
         let staging = empty(BufferUsages::COPY_DST | BufferUsages::MAP_READ);
-        let [row, from, to] = [&self.row, &input, &output].map(|buffer| buffer.as_entire_buffer_binding());
-        let entries = BindGroupEntries::sequential((row, from, to));
+        let all = [&self.row, &input, &output, &self.file];
+        let [row, from, to, file] = all.map(|buffer| buffer.as_entire_buffer_binding());
+        let entries = BindGroupEntries::sequential((row, from, to, file));
         let mut encoder =
             device.create_command_encoder(&CommandEncoderDescriptor { label: Some("evaluate") });
         let groups = pairs.len().div_ceil(64) as u32;

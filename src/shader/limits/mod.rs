@@ -14,7 +14,7 @@ use std::thread;
 use naga::{Module, Span};
 
 use super::{
-    compose::{BODY, Composed, EVALUATE, LIGHT_ALONE, SEEN, SHADING_ALONE, WRAPPER},
+    compose::{BODY, Composed, EVALUATE, FILE, LIGHT_ALONE, SEEN, SHADING_ALONE, WRAPPER},
     place::locate,
     problem::ShaderProblem,
     token::{self, Finding, at_most},
@@ -63,7 +63,7 @@ pub fn check_text(composed: &Composed) -> Result<(), Box<ShaderProblem>> {
     let binds = |at: usize| {
         let file = composed.map.locate(line_of(at)).map(|(file, _)| file);
         file.is_none_or(|file| {
-            [WRAPPER.path, SEEN.path, EVALUATE.path, BODY, LIGHT_ALONE, SHADING_ALONE].contains(&file)
+            [WRAPPER.path, SEEN.path, EVALUATE.path, BODY, FILE, LIGHT_ALONE, SHADING_ALONE].contains(&file)
         })
     };
     text::check(text, &LIMITS, binds).map_err(|refusal| match refusal {

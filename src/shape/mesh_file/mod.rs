@@ -2,7 +2,7 @@
 
 use super::{Declaration, ObjectType, PolygonMesh};
 use crate::{
-    parameter::{FileFormat, FileProblem, Parameter},
+    parameter::{FileFormat, FileProblem, Parameter, Shipped},
     parameters,
 };
 
@@ -19,7 +19,7 @@ pub use model::{MAX_CORNERS, MAX_POLYGONS, MAX_VERTICES};
 /// A file of the folder `scenes`, with its name.
 macro_rules! shipped {
     ($name:literal) => {
-        ($name, include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $name)).as_slice())
+        ($name, Shipped::Bytes(include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $name))))
     };
 }
 

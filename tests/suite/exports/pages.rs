@@ -72,7 +72,7 @@ fn every_model_can_be_drawn_with_every_shading_model_under_every_light() {
     let mut scene = scene(&shipped("default.json"));
     let object = scene.objects[0].clone();
     scene.objects.clear();
-    for model in registry.models() {
+    for model in registry.models().iter().filter(|model| model.file().is_none()) {
         let mut object = object.clone();
         object.reflection_model = Some(model.declaration.id.to_owned());
         scene.objects.push(object);

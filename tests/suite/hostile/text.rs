@@ -24,6 +24,7 @@ use lights_camera_models::{
     },
     parameter::Outside,
     recovery::Store,
+    reflection::{merl, samples},
     registry::Registry,
     scene::{
         Scene,
@@ -355,6 +356,38 @@ fn readers() -> Vec<Reader> {
             pairs: &[],
             phrases: &["a\0string\0\u{1}\0\0\0a", "channels\0chlist\0\u{1}\0\0\0\0", "a\0"],
             read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "table of measurements",
+            around: ["theta_i,phi_i,theta_o,phi_o,value\n1,2,3,4,1\n".into(), String::new()],
+            pairs: &[],
+            phrases: &["1,2,3,4,1\n", "1,", "-1,1,1,1,1\n", "#\n", "1,2,3,4,-1\n"],
+            read: |bytes| (samples::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "head of a table of measurements",
+            around: [String::new(), ",value\n1,2,3,4,1\n".into()],
+            pairs: &[],
+            phrases: &["theta_i,", "sigma;", "value\t", "\""],
+            read: |bytes| (samples::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "measured material",
+            around: [String::new(), String::new()],
+            pairs: &[],
+            phrases: &["Z\0\0\0", "Z\0\0\0Z\0\0\0", "\u{7f}"],
+            read: |bytes| (merl::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "entries of a measured material",
+            around: [String::new(), String::new()],
+            pairs: &[],
+            phrases: &["\u{1}\u{2}", "aaaaaaaa"],
+            read: |bytes| {
+                let counts = merl::COUNTS.iter().flat_map(|count| (*count as i32).to_le_bytes());
+                let whole: Vec<u8> = counts.chain(bytes.iter().copied()).collect();
+                (merl::FORMAT.read)(&whole).map(drop).map_err(|p| p.message)
+            },
         },
         Reader {
             name: "OBJ file",

@@ -333,7 +333,7 @@ fn parameters_of_light_types_fit_and_their_cone_is_a_number() {
 }
 
 #[test]
-fn files_are_for_light_types_and_object_types_and_their_defaults_are_shipped() {
+fn files_are_not_for_shading_models_and_their_defaults_are_shipped() {
     const WEB: Parameter = Parameter::file("web", &ies::FORMAT, "wall_washer.ies");
     light!(Lost, LAMP, { web: file = Parameter::file("web", &ies::FORMAT, "lost.ies") });
     light_refused::<Lost>(&[
@@ -351,9 +351,7 @@ fn files_are_for_light_types_and_object_types_and_their_defaults_are_shipped() {
     let mut registry = Registry::builtin();
     registry.try_add_object_type::<OfShape>().expect("an object type may have files");
     shading!(OfShading, SHADING, { web: file = WEB });
-    shading_refused::<OfShading>(&[
-        "parameter `web`: is a file, which only light types and object types may have",
-    ]);
+    shading_refused::<OfShading>(&["parameter `web`: is a file, which shading models may not have"]);
     const READING: Source = Source::new(
         "lamp.wgsl",
         "fn incident_lamp(light: Light, m: LampParameters, p: vec3<f32>) -> Incident {
@@ -363,6 +361,22 @@ fn files_are_for_light_types_and_object_types_and_their_defaults_are_shipped() {
     );
     light!(Reading, light::Declaration::new("lamp", "Lamp", READING), { web: file = WEB });
     assert!(Registry::builtin().try_add_light_type::<Reading>().is_ok());
+    const PRINTED: Source = Source::new(
+        "printed.wgsl",
+        "fn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: Parameters) -> Terms {
+    return Terms(vec3(0.0), vec3(bitcast<f32>(file_word(m.web))), vec3(0.0));
+}
+fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+    return vec3(1.0);
+}
+",
+    );
+    const OTHER: Parameter = Parameter::file("other", &ies::FORMAT, "wall_washer.ies");
+    model!(Printed, MODEL.wgsl(PRINTED), { web: file = WEB });
+    let mut registry = Registry::builtin();
+    registry.try_add_reflection_model::<Printed>().expect("a reflection model may have a file");
+    model!(TwoFiles, MODEL.wgsl(PRINTED), { web: file = WEB, other: file = OTHER });
+    model_refused::<TwoFiles>(&["parameter `other`: is a file, but a reflection model may have only one"]);
 }
 
 #[test]

@@ -274,7 +274,8 @@ fn shipped_scenes_are_written_as_the_program_writes_them() {
 fn the_matrix_shows_every_model_in_every_shading_model() {
     let (_, scene) = scenes().into_iter().find(|(name, _)| name == "model_matrix").expect("shipped");
     let registry = Registry::builtin();
-    for model in registry.models() {
+    // The scene is a web page, too, which holds no measurements.
+    for model in registry.models().iter().filter(|model| model.file().is_none()) {
         for shading in registry.shading_models() {
             let (model, shading) = (model.declaration.id, shading.declaration.id);
             let shown = scene.objects.iter().any(|o| {

@@ -397,7 +397,7 @@ fn files_that_are_large_together_are_refused_before_any_is_read() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut room: serde_json::Value = serde_json::from_str(&scene("large.obj", "")).expect("JSON");
     let object = room["objects"][0].clone();
-    let objects = (0..17).map(|i| {
+    let objects = (0..25).map(|i| {
         let name = format!("large{i}.obj");
         let file = fs::File::create(folder.path().join(&name)).expect("created");
         file.set_len(32 << 20).expect("a hole takes no space");
@@ -411,7 +411,7 @@ fn files_that_are_large_together_are_refused_before_any_is_read() {
     let start = Instant::now();
     let said = load::file(&path, &Registry::builtin(), Defaults::Refuse).expect_err("too much").to_string();
     let name = path.display();
-    assert_eq!(said, format!("{name}: the scene names files of 544 MiB in total; at most 512 MiB are read"));
+    assert_eq!(said, format!("{name}: the scene names files of 800 MiB in total; at most 768 MiB are read"));
     assert!(start.elapsed() < Duration::from_secs(5), "{:?}", start.elapsed());
 }
 
