@@ -13,6 +13,8 @@ pub use area::{Cell, PictureArea};
 pub use aside::Aside;
 pub(super) use author::BUILT_IN;
 pub use author::{Authoring, LawCheck, ModelDraft, NameProblem, check_name};
+pub(super) use code::read_scene;
+pub use code::{CODE_TAB, Code, CodeCommand, CodeOf, KeptCode, MOST_CODE, OpenCode, SCENE_JSON, Theirs};
 pub use compare::CompareCommand;
 pub use desk::Desk;
 pub use disk::OnDisk;
@@ -55,6 +57,7 @@ mod action;
 mod area;
 mod aside;
 mod author;
+mod code;
 mod compare;
 mod desk;
 mod disk;
@@ -132,6 +135,8 @@ with_defaults! {
         pub shaders: ShaderStatus = ShaderStatus::default(),
         /// The writing of custom models and shaders.
         pub authoring: Authoring = Authoring::default(),
+        /// The texts that are open in the editor.
+        pub code: Code = Code::default(),
         /// The match that is about to start.
         pub match_draft: Option<MatchDraft> = None,
         /// The options of a picture or a sheet that is about to be saved.
