@@ -222,7 +222,7 @@ pub(super) fn find(ui: &mut Ui, panel: &mut CodePanel, open: &OpenCode, context:
     };
     ui.horizontal_wrapped(|ui| {
         let finder = &mut panel.finder;
-        let mut field = |ui: &mut Ui, id: &str, hint: &str, text: &mut String| {
+        let field = |ui: &mut Ui, id: &str, hint: &str, text: &mut String| {
             let before = text.clone();
             let edit =
                 TextEdit::singleline(text).id(Id::new(id)).hint_text(hint.to_owned()).desired_width(160.0);

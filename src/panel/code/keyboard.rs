@@ -31,6 +31,8 @@ pub(super) struct Typing {
     pub(super) id: Option<Id>,
     /// True while words are offered.
     pub(super) offers: bool,
+    /// True if Enter takes one of them.
+    pub(super) takes_enter: bool,
     /// True while the bar to find is open.
     pub(super) finds: bool,
     /// The indentation of the line of the cursor.
@@ -80,7 +82,8 @@ pub(in crate::panel) fn keys(ctx: &Context, session: &Session) -> Vec<Action> {
                 Key::Space if writes && ctrl => Some(Ask::Complete),
                 Key::ArrowDown if typing.offers && plain => Some(Ask::Choose(1)),
                 Key::ArrowUp if typing.offers && plain => Some(Ask::Choose(-1)),
-                Key::Tab | Key::Enter if typing.offers && writes && plain => Some(Ask::Accept),
+                Key::Tab if typing.offers && writes && plain => Some(Ask::Accept),
+                Key::Enter if typing.takes_enter && writes && plain => Some(Ask::Accept),
                 // Space, as in the shipped models.
                 Key::Tab if writes && plain => {
                     input.events.push(Event::Text("    ".to_owned()));

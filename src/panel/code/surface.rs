@@ -8,7 +8,7 @@ use bevy_egui::egui::{
     text_edit::TextEditState,
 };
 
-use super::{CodePanel, bars, keyboard, keyboard::Typing, language};
+use super::{CodePanel, Mark, bars, keyboard, keyboard::Typing, language, tokens};
 use crate::panel::{
     prelude::*,
     state::{CodeCommand, OpenCode},
@@ -87,15 +87,21 @@ impl CodePanel {
         let whole = ui.available_rect_before_wrap();
         let (text, foot) = whole.split_top_bottom_at_y(whole.bottom() - FOOT);
         ui.painter().rect_filled(text, 2.0, Palette::here(ui).field);
+        let before = self.buffer.len();
         let field = ui.scope_builder(UiBuilder::new().max_rect(text), |ui| self.text(ui, id, open, context));
-        let offers = field.inner;
+        if field.inner && self.buffer.len() > before {
+            self.begin_offer(open, false, context);
+        }
+        self.offers(ui, open, context);
         theme::column(ui, foot, |ui| self.foot(ui, open, context));
         let start = self.buffer[..self.cursor[0].min(self.buffer.len())].rfind('\n').map_or(0, |at| at + 1);
         let before = self.buffer.get(start..self.cursor[0]).unwrap_or_default();
         let indent = before.chars().take_while(|c| matches!(c, ' ' | '\t')).collect();
         let finds = self.finder.open;
+        let (offers, takes_enter) = (self.offer.is_some(), self.offer.as_ref().is_some_and(|o| o.wanted));
         kept::with(&ctx, |typing: &mut Typing| {
-            (typing.id, typing.offers, typing.finds, typing.indent) = (Some(id), offers, finds, indent);
+            (typing.id, typing.offers, typing.takes_enter) = (Some(id), offers, takes_enter);
+            (typing.finds, typing.indent) = (finds, indent);
         });
     }
 
@@ -107,17 +113,25 @@ impl CodePanel {
                 keyboard::Ask::Find(replace) => self.begin_finding(open, replace),
                 keyboard::Ask::Next(backwards) => self.find_next(ui.ctx(), open, backwards),
                 keyboard::Ask::Escape => {
-                    self.finder.open = false;
+                    if self.offer.take().is_none() {
+                        self.finder.open = false;
+                    }
                     ui.ctx().memory_mut(|memory| memory.request_focus(id_of(open)));
                 }
-                keyboard::Ask::Complete | keyboard::Ask::Choose(_) | keyboard::Ask::Accept => {
-                    let _ = &context;
+                keyboard::Ask::Complete => self.begin_offer(open, true, context),
+                keyboard::Ask::Choose(by) => {
+                    if let Some(offering) = &mut self.offer {
+                        let count = offering.offer.words.len();
+                        offering.chosen = (offering.chosen + count).saturating_add_signed(by) % count.max(1);
+                        offering.wanted = true;
+                    }
                 }
+                keyboard::Ask::Accept => self.accept(ui.ctx(), open, context),
             }
         }
     }
 
-    /// The gutter and the text. True while words are offered.
+    /// The gutter and the text. True if something was typed.
     fn text(&mut self, ui: &mut Ui, id: Id, open: &OpenCode, context: &mut PanelContext<'_>) -> bool {
         let (palette, font) = (Palette::here(ui), TextStyle::Monospace.resolve(ui.style()));
         let digits = self.buffer.split('\n').count().to_string().len().max(3);
@@ -126,6 +140,7 @@ impl CodePanel {
         let whole = ui.available_rect_before_wrap();
         let (numbers, inside) = whole.split_left_right_at_x(whole.left() + gutter);
         let before = self.buffer.len();
+        let marks = self.marks(open, context.session());
         let mut shown = None;
         ui.scope_builder(UiBuilder::new().max_rect(inside), |ui| {
             ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
@@ -143,15 +158,20 @@ impl CodePanel {
                     .layouter(&mut lay)
                     .show(ui);
                 if let Some(cursor) = output.cursor_range {
-                    let [at, other] = [cursor.primary, cursor.secondary].map(|c| byte(buffer, c.index.0));
-                    self.cursor = [at, other];
+                    let ends = [cursor.primary, cursor.secondary].map(|c| byte(buffer, c.index.0));
+                    if std::mem::replace(&mut self.cursor, ends) != ends && !output.response.changed() {
+                        self.offer = None;
+                    }
                 }
                 if std::mem::take(&mut self.reveals) {
                     let at = CCursor::new(character(buffer, self.cursor[0]));
                     let place = output.galley.pos_from_cursor(at).translate(output.galley_pos.to_vec2());
                     ui.scroll_to_rect(place.expand2(vec2(8.0, 24.0)), None);
                 }
-                self.marks(ui, &output.galley, output.galley_pos, &palette);
+                self.places(ui, &output.galley, output.galley_pos, &palette);
+                self.underline(ui, &marks, &output.galley, output.galley_pos, &palette);
+                let at = output.galley.pos_from_cursor(CCursor::new(character(&self.buffer, self.cursor[0])));
+                self.cursor_at = at.translate(output.galley_pos.to_vec2());
                 shown = Some((
                     output.galley.clone(),
                     output.galley_pos,
@@ -164,25 +184,48 @@ impl CodePanel {
         if changed || before != self.buffer.len() {
             self.typed(context);
         }
-        self.gutter(ui, numbers, &galley, at, clip);
-        false
+        self.gutter(ui, numbers, &marks, &galley, at, clip);
+        changed
     }
 
     /// Numbers of the lines in sight.
-    fn gutter(&self, ui: &Ui, place: Rect, galley: &Galley, at: Pos2, clip: Rect) {
+    fn gutter(&self, ui: &Ui, place: Rect, marks: &[Mark], galley: &Galley, at: Pos2, clip: Rect) {
         let (palette, font) = (Palette::here(ui), TextStyle::Monospace.resolve(ui.style()));
         let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
         let now = self.buffer[..self.cursor[0].min(self.buffer.len())].matches('\n').count();
         for row in in_sight(galley, at, clip) {
             let y = at.y + galley.rows[row].pos.y;
             let colour = if row == now { palette.text } else { palette.weak };
+            if marks.iter().any(|mark| mark.line == row + 1) {
+                let centre = pos2(place.left() + 0.6 * GAP, y + 0.5 * galley.rows[row].size.y);
+                icon::severity(&painter, centre, 4.5, Severity::Error, &palette);
+            }
             let place = pos2(place.right() - GAP, y);
             painter.text(place, Align2::RIGHT_TOP, (row + 1).to_string(), font.clone(), colour);
         }
     }
 
-    /// Marks in the text.
-    fn marks(&self, ui: &Ui, galley: &Galley, at: Pos2, palette: &Palette) {
+    /// Lines below the words with errors.
+    fn underline(&self, ui: &Ui, marks: &[Mark], galley: &Galley, at: Pos2, palette: &Palette) {
+        let rows = in_sight(galley, at, ui.clip_rect());
+        for mark in marks.iter().filter(|mark| rows.contains(&(mark.line - 1))) {
+            let row = &galley.rows[mark.line - 1];
+            let text = &self.buffer[line(&self.buffer, mark.line)];
+            let from = mark.column.saturating_sub(1).min(text.chars().count());
+            let word = text.chars().skip(from).take_while(|c| tokens::is_of_word(*c)).count().max(1);
+            let (from, to) = match mark.column {
+                0 => (0, text.chars().count().max(1)),
+                _ => (from, from + word),
+            };
+            let x = |column: usize| at.x + row.pos.x + row.x_offset(column.into());
+            let y = at.y + row.pos.y + row.size.y - 1.0;
+            let right = x(to).max(x(from) + 4.0);
+            ui.painter().hline(x(from)..=right, y, Stroke::new(2.0, palette.error));
+        }
+    }
+
+    /// The places that were found.
+    fn places(&self, ui: &Ui, galley: &Galley, at: Pos2, palette: &Palette) {
         let rows = in_sight(galley, at, ui.clip_rect());
         for place in self.finder.places_in(&self.buffer, &rows) {
             let [from, to] = [place.start, place.end]
@@ -194,15 +237,49 @@ impl CodePanel {
     }
 
     /// The line below the text.
-    fn foot(&self, ui: &mut Ui, _open: &OpenCode, _context: &mut PanelContext<'_>) {
+    fn foot(&mut self, ui: &mut Ui, open: &OpenCode, context: &PanelContext<'_>) {
         let before = &self.buffer[..self.cursor[0].min(self.buffer.len())];
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().map_or(0, |last| last.chars().count()) + 1;
+        let marks = self.marks(open, context.session());
+        let (language, parameters, at) = (language(open), self.parameters(open), self.cursor[0]);
+        let known = kept::of_key(ui.ctx(), Id::new("help in the code"), (open.text.to_string(), at), || {
+            self.vocabulary(context);
+            let (_, words) = self.vocabulary.as_ref()?;
+            words.help(&self.buffer, at, language, parameters)
+        });
+        let mut goes = None;
         ui.horizontal(|ui| {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.label(theme::small(ui, format!("line {line}, column {column}")));
+                if !marks.is_empty() && ui.small_button("Next error").clicked() {
+                    let next = marks.iter().find(|mark| mark.line > line).or(marks.first());
+                    goes = next.map(|mark| mark.line);
+                }
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    let here = marks.iter().find(|mark| mark.line == line).or(marks.first());
+                    match (here, known) {
+                        (Some(mark), _) => {
+                            icon::sign(ui, [14.0, 18.0], 5.0, Severity::Error);
+                            let text = format!("line {}: {}", mark.line, mark.message);
+                            let text = RichText::new(text).color(Palette::here(ui).error);
+                            ui.add(Label::new(text).truncate());
+                        }
+                        (None, Some(word)) => {
+                            let text = RichText::new(&word.usage).monospace();
+                            ui.add(Label::new(text).truncate());
+                            ui.add(Label::new(theme::small(ui, word.help)).truncate());
+                        }
+                        (None, None) => {}
+                    }
+                });
             });
         });
+        if let Some(wanted) = goes {
+            let start = self::line(&self.buffer, wanted).start;
+            self.select(ui.ctx(), open, start..start);
+            ui.ctx().memory_mut(|memory| memory.request_focus(id_of(open)));
+        }
     }
 }
 

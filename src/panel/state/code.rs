@@ -203,8 +203,8 @@ pub enum CodeCommand {
     TakeTheirs,
     /// Show the difference from the other version, or the text.
     Difference(bool),
-    /// Continue with the n-th text of an earlier window.
-    Recover(usize),
+    /// Continue with the text of this file that an earlier window left.
+    Recover(PathBuf),
 }
 
 impl Session {
@@ -253,7 +253,7 @@ impl Session {
             CodeCommand::Difference(on) => {
                 self.code.visible_mut().into_iter().for_each(|open| open.shows_difference = on)
             }
-            CodeCommand::Recover(at) => self.recover_code(at),
+            CodeCommand::Recover(path) => self.recover_code(&path),
         }
     }
 
@@ -374,10 +374,8 @@ impl Session {
         }
     }
 
-    fn recover_code(&mut self, at: usize) {
-        if at >= self.code.kept.len() {
-            return;
-        }
+    fn recover_code(&mut self, path: &Path) {
+        let Some(at) = self.code.kept.iter().position(|kept| kept.path == path) else { return };
         let kept = self.code.kept.remove(at);
         let of = CodeOf::File(kept.path.clone());
         self.view.unfold(CODE_TAB);
@@ -401,7 +399,7 @@ impl Session {
                 kept.path.shown(),
                 kept.when
             );
-            let command = CodeCommand::Recover(self.code.kept.len());
+            let command = CodeCommand::Recover(kept.path.clone());
             self.code.kept.push(kept);
             self.note(Note::new(Severity::Warning, text).offering("Continue", super::Action::Code(command)));
         }

@@ -13,7 +13,7 @@ pub use area::{Cell, PictureArea};
 pub use aside::Aside;
 pub(super) use author::BUILT_IN;
 pub use author::{Authoring, LawCheck, ModelDraft, NameProblem, check_name};
-pub(super) use code::read_scene;
+pub(in crate::panel) use code::read_scene;
 pub use code::{CODE_TAB, Code, CodeCommand, CodeOf, KeptCode, MOST_CODE, OpenCode, SCENE_JSON, Theirs};
 pub use compare::CompareCommand;
 pub use desk::Desk;
