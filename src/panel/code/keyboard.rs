@@ -56,54 +56,18 @@ pub(in crate::panel) fn keys(ctx: &Context, session: &Session) -> Vec<Action> {
     };
     let focused = ctx.memory(|memory| memory.focused());
     let writes = focused == Some(id);
-    let finds = focused.is_some_and(|focused| super::bars::FIELDS.map(Id::new).contains(&focused));
+    let finds = focused.is_some_and(|focused| super::finder::FIELDS.map(Id::new).contains(&focused));
     if !writes && !finds {
         return Vec::new();
     }
     let (mut actions, mut asked) = (Vec::new(), Vec::new());
     ctx.input_mut(|input| {
         for event in std::mem::take(&mut input.events) {
-            let Event::Key { key, pressed: true, modifiers, .. } = event else {
-                input.events.push(event);
-                continue;
-            };
-            let is = |wanted: Modifiers| modifiers.matches_exact(wanted);
-            let (plain, ctrl) = (is(Modifiers::NONE), is(Modifiers::COMMAND));
-            let ask = match key {
-                Key::S if ctrl => None,
-                Key::Enter if ctrl => None,
-                Key::F if ctrl => Some(Ask::Find(false)),
-                Key::H if ctrl => Some(Ask::Find(true)),
-                Key::F3 if plain => Some(Ask::Next(false)),
-                Key::F3 if is(Modifiers::SHIFT) => Some(Ask::Next(true)),
-                Key::Enter if finds && plain => Some(Ask::Next(false)),
-                Key::Enter if finds && is(Modifiers::SHIFT) => Some(Ask::Next(true)),
-                Key::Escape if typing.offers || typing.finds => Some(Ask::Escape),
-                Key::Space if writes && ctrl => Some(Ask::Complete),
-                Key::ArrowDown if typing.offers && plain => Some(Ask::Choose(1)),
-                Key::ArrowUp if typing.offers && plain => Some(Ask::Choose(-1)),
-                Key::Tab if typing.offers && writes && plain => Some(Ask::Accept),
-                Key::Enter if typing.takes_enter && writes && plain => Some(Ask::Accept),
-                // Space, as in the shipped models.
-                Key::Tab if writes && plain => {
-                    input.events.push(Event::Text("    ".to_owned()));
-                    continue;
-                }
-                Key::Enter if writes && plain => {
-                    match typing.indent.is_empty() {
-                        true => input.events.push(event),
-                        false => input.events.push(Event::Text(format!("\n{}", typing.indent))),
-                    }
-                    continue;
-                }
-                _ => {
-                    input.events.push(event);
-                    continue;
-                }
-            };
-            match ask {
-                Some(ask) => asked.push(ask),
-                None => actions.push(Action::Code(CodeCommand::Save)),
+            match meant(&event, &typing, writes) {
+                Meant::Itself => input.events.push(event),
+                Meant::Text(text) => input.events.push(Event::Text(text)),
+                Meant::Save => actions.push(Action::Code(CodeCommand::Save)),
+                Meant::Ask(ask) => asked.push(ask),
             }
         }
         // A space with Ctrl is no text.
@@ -116,4 +80,39 @@ pub(in crate::panel) fn keys(ctx: &Context, session: &Session) -> Vec<Action> {
         ctx.request_repaint();
     }
     actions
+}
+
+/// The meaning of an event in the editor.
+enum Meant {
+    Itself,
+    Text(String),
+    Save,
+    Ask(Ask),
+}
+
+/// `writes` says that the focus is in the text, and not in the bar to find.
+fn meant(event: &Event, typing: &Typing, writes: bool) -> Meant {
+    let Event::Key { key, pressed: true, modifiers, .. } = event else { return Meant::Itself };
+    let is = |wanted: Modifiers| modifiers.matches_exact(wanted);
+    let (plain, ctrl, shift) = (is(Modifiers::NONE), is(Modifiers::COMMAND), is(Modifiers::SHIFT));
+    let offers = typing.offers && writes && plain;
+    Meant::Ask(match key {
+        Key::S | Key::Enter if ctrl => return Meant::Save,
+        Key::F if ctrl => Ask::Find(false),
+        Key::H if ctrl => Ask::Find(true),
+        Key::F3 if plain || shift => Ask::Next(shift),
+        Key::Enter if !writes && (plain || shift) => Ask::Next(shift),
+        Key::Escape if typing.offers || typing.finds => Ask::Escape,
+        Key::Space if writes && ctrl => Ask::Complete,
+        Key::ArrowDown if offers => Ask::Choose(1),
+        Key::ArrowUp if offers => Ask::Choose(-1),
+        Key::Tab if offers => Ask::Accept,
+        Key::Enter if offers && typing.takes_enter => Ask::Accept,
+        // Spaces, as in the shipped models.
+        Key::Tab if writes && plain => return Meant::Text("    ".to_owned()),
+        Key::Enter if writes && plain && !typing.indent.is_empty() => {
+            return Meant::Text(format!("\n{}", typing.indent));
+        }
+        _ => return Meant::Itself,
+    })
 }

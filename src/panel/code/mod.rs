@@ -26,6 +26,7 @@ pub mod check;
 pub mod difference;
 pub(super) mod disk;
 pub mod find;
+mod finder;
 mod keyboard;
 mod layout;
 mod offering;
@@ -46,7 +47,7 @@ pub(super) struct CodePanel {
     buffer: String,
     same: Option<(u64, Arc<str>)>,
     layouts: Layouts,
-    finder: bars::Finder,
+    finder: finder::Finder,
     /// The document that the scene as JSON shows, and when it was first seen.
     followed: Option<(crate::document::Revision, f64)>,
     /// The byte of the cursor, and the other end of the selection.
@@ -72,7 +73,7 @@ impl Default for CodePanel {
             buffer: String::new(),
             same: None,
             layouts: Layouts::default(),
-            finder: bars::Finder::default(),
+            finder: finder::Finder::default(),
             followed: None,
             cursor: [0; 2],
             cursor_at: Rect::NOTHING,

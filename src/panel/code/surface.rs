@@ -8,7 +8,7 @@ use bevy_egui::egui::{
     text_edit::TextEditState,
 };
 
-use super::{CodePanel, Mark, bars, keyboard, keyboard::Typing, language, tokens};
+use super::{CodePanel, Mark, finder, keyboard, keyboard::Typing, language, tokens, words::Word};
 use crate::panel::{
     prelude::*,
     state::{CodeCommand, OpenCode},
@@ -83,7 +83,7 @@ impl CodePanel {
             context.act(Action::Code(CodeCommand::Arrived));
         }
         self.obey(ui, open, context);
-        bars::find(ui, self, open, context);
+        finder::show(ui, self, open, context);
         let whole = ui.available_rect_before_wrap();
         let (text, foot) = whole.split_top_bottom_at_y(whole.bottom() - FOOT);
         ui.painter().rect_filled(text, 2.0, Palette::here(ui).field);
@@ -110,7 +110,7 @@ impl CodePanel {
         let asked = kept::with(ui.ctx(), |typing: &mut Typing| std::mem::take(&mut typing.asked));
         for ask in asked {
             match ask {
-                keyboard::Ask::Find(replace) => self.begin_finding(open, replace),
+                keyboard::Ask::Find(replace) => self.begin_finding(replace),
                 keyboard::Ask::Next(backwards) => self.find_next(ui.ctx(), open, backwards),
                 keyboard::Ask::Escape => {
                     if self.offer.take().is_none() {
@@ -256,23 +256,8 @@ impl CodePanel {
                     let next = marks.iter().find(|mark| mark.line > line).or(marks.first());
                     goes = next.map(|mark| mark.line);
                 }
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    let here = marks.iter().find(|mark| mark.line == line).or(marks.first());
-                    match (here, known) {
-                        (Some(mark), _) => {
-                            icon::sign(ui, [14.0, 18.0], 5.0, Severity::Error);
-                            let text = format!("line {}: {}", mark.line, mark.message);
-                            let text = RichText::new(text).color(Palette::here(ui).error);
-                            ui.add(Label::new(text).truncate());
-                        }
-                        (None, Some(word)) => {
-                            let text = RichText::new(&word.usage).monospace();
-                            ui.add(Label::new(text).truncate());
-                            ui.add(Label::new(theme::small(ui, word.help)).truncate());
-                        }
-                        (None, None) => {}
-                    }
-                });
+                let here = marks.iter().find(|mark| mark.line == line).or(marks.first());
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| said(ui, here, known));
             });
         });
         if let Some(wanted) = goes {
@@ -280,6 +265,18 @@ impl CodePanel {
             self.select(ui.ctx(), open, start..start);
             ui.ctx().memory_mut(|memory| memory.request_focus(id_of(open)));
         }
+    }
+}
+
+/// An error, or help for a word.
+fn said(ui: &mut Ui, mark: Option<&Mark>, word: Option<Word>) {
+    if let Some(mark) = mark {
+        icon::sign(ui, [14.0, 18.0], 5.0, Severity::Error);
+        let text = RichText::new(format!("line {}: {}", mark.line, mark.message));
+        ui.add(Label::new(text.color(Palette::here(ui).error)).truncate());
+    } else if let Some(word) = word {
+        ui.add(Label::new(RichText::new(&word.usage).monospace()).truncate());
+        ui.add(Label::new(theme::small(ui, word.help)).truncate());
     }
 }
 
