@@ -161,7 +161,8 @@ mod tests {
     }
 
     fn type_text(session: &mut Session, text: &str) {
-        session.apply(Action::Code(CodeCommand::Type(text.into())), &Registry::builtin());
+        let number = session.code.visible().expect("one is open").number;
+        session.apply(Action::Code(CodeCommand::Type(number, text.into())), &Registry::builtin());
     }
 
     /// Saves as the window does.

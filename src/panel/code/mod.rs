@@ -133,6 +133,7 @@ impl CodePanel {
             .is_none_or(|(number, text)| *number != open.number || !Arc::ptr_eq(text, &open.text))
         {
             self.buffer = open.text.to_string();
+            self.offer = None;
             self.same = Some((open.number, open.text.clone()));
         }
         bars::conflict(ui, open, context);

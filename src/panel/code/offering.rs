@@ -15,7 +15,7 @@ impl CodePanel {
     /// Offers the words that fit at the cursor. Unasked, only where a word has begun.
     pub(super) fn begin_offer(&mut self, open: &OpenCode, asked: bool, context: &PanelContext<'_>) {
         self.offer = None;
-        let at = self.cursor[0].min(self.buffer.len());
+        let at = self.buffer.floor_char_boundary(self.cursor[0]);
         let before = self.buffer.get(..at).unwrap_or_default();
         let begun = before.chars().rev().take_while(|c| is_of_word(*c)).count();
         let after_dot = before.ends_with("m.") || before.ends_with("frame.");

@@ -66,10 +66,15 @@ impl CodePanel {
 
     fn typed(&mut self, context: &mut PanelContext<'_>) {
         let text: Arc<str> = self.buffer.as_str().into();
-        if let Some((_, same)) = &mut self.same {
+        if let Some((number, same)) = &mut self.same {
             *same = text.clone();
+            context.act(Action::Code(CodeCommand::Type(*number, text)));
         }
-        context.act(Action::Code(CodeCommand::Type(text)));
+    }
+
+    /// The text before the cursor.
+    fn before(&self) -> &str {
+        &self.buffer[..self.buffer.floor_char_boundary(self.cursor[0])]
     }
 
     pub(super) fn field(&mut self, ui: &mut Ui, open: &OpenCode, context: &mut PanelContext<'_>) {
@@ -94,9 +99,8 @@ impl CodePanel {
         }
         self.offers(ui, open, context);
         theme::column(ui, foot, |ui| self.foot(ui, open, context));
-        let start = self.buffer[..self.cursor[0].min(self.buffer.len())].rfind('\n').map_or(0, |at| at + 1);
-        let before = self.buffer.get(start..self.cursor[0]).unwrap_or_default();
-        let indent = before.chars().take_while(|c| matches!(c, ' ' | '\t')).collect();
+        let line = self.before().rsplit('\n').next().unwrap_or_default();
+        let indent = line.chars().take_while(|c| matches!(c, ' ' | '\t')).collect();
         let finds = self.finder.open;
         let (offers, takes_enter) = (self.offer.is_some(), self.offer.as_ref().is_some_and(|o| o.wanted));
         kept::with(&ctx, |typing: &mut Typing| {
@@ -192,7 +196,7 @@ impl CodePanel {
     fn gutter(&self, ui: &Ui, place: Rect, marks: &[Mark], galley: &Galley, at: Pos2, clip: Rect) {
         let (palette, font) = (Palette::here(ui), TextStyle::Monospace.resolve(ui.style()));
         let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
-        let now = self.buffer[..self.cursor[0].min(self.buffer.len())].matches('\n').count();
+        let now = self.before().matches('\n').count();
         for row in in_sight(galley, at, clip) {
             let y = at.y + galley.rows[row].pos.y;
             let colour = if row == now { palette.text } else { palette.weak };
@@ -208,8 +212,8 @@ impl CodePanel {
     /// Lines below the words with errors.
     fn underline(&self, ui: &Ui, marks: &[Mark], galley: &Galley, at: Pos2, palette: &Palette) {
         let rows = in_sight(galley, at, ui.clip_rect());
-        for mark in marks.iter().filter(|mark| rows.contains(&(mark.line - 1))) {
-            let row = &galley.rows[mark.line - 1];
+        for mark in marks.iter().filter(|mark| rows.contains(&mark.line.saturating_sub(1))) {
+            let row = &galley.rows[mark.line.saturating_sub(1)];
             let text = &self.buffer[line(&self.buffer, mark.line)];
             let from = mark.column.saturating_sub(1).min(text.chars().count());
             let word = text.chars().skip(from).take_while(|c| tokens::is_of_word(*c)).count().max(1);
@@ -238,7 +242,7 @@ impl CodePanel {
 
     /// The line below the text.
     fn foot(&mut self, ui: &mut Ui, open: &OpenCode, context: &PanelContext<'_>) {
-        let before = &self.buffer[..self.cursor[0].min(self.buffer.len())];
+        let before = self.before();
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().map_or(0, |last| last.chars().count()) + 1;
         let marks = self.marks(open, context.session());

@@ -15,6 +15,8 @@ use crate::{
 
 /// Words of WGSL and keys of declarations: the sort, the word, its use, and a sentence.
 const TABLE: &str = include_str!("../../../assets/text/wgsl.tsv");
+/// Greatest size of a text whose own names are offered, bytes: they are collected while one types.
+const MOST_NAMED: usize = 64 << 10;
 /// Most words that are offered.
 pub const MOST_OFFERED: usize = 200;
 /// Greatest depth of JSON in which keys are found.
@@ -104,11 +106,7 @@ impl Vocabulary {
             - text[..at].chars().rev().take_while(|c| is_of_word(*c)).map(char::len_utf8).sum::<usize>();
         let (begun, place) = (&text[start..at], start..at);
         let before = &text[..start];
-        let of = before.strip_suffix('.').map(|rest| {
-            let length: usize = rest.chars().rev().take_while(|c| is_of_word(*c)).map(char::len_utf8).sum();
-            &rest[rest.len() - length..]
-        });
-        let words = match of {
+        let words = match owner(before) {
             Some("m") => fitting(parameters.iter().map(described), begun),
             Some("frame") => fitting(self.frame.iter().cloned(), begun),
             Some(_) => Vec::new(),
@@ -165,14 +163,17 @@ impl Vocabulary {
         if word.is_empty() {
             return None;
         }
-        let offer = self.offer(text, at - before, language, parameters);
-        let exact = offer.words.into_iter().find(|known| known.name == word && !known.help.is_empty());
-        exact.or_else(|| {
-            // The text in place of a key says nothing about its own type.
-            let free = language == Language::Wgsl && !in_declaration(text, at);
-            let all = self.functions.iter().chain(&self.frame);
-            free.then(|| all.clone().find(|known| known.name == word).cloned()).flatten()
-        })
+        let known = |known: &Word| known.name == word && !known.help.is_empty();
+        let declares = language == Language::Wgsl && in_declaration(text, at);
+        if language == Language::Json || declares {
+            return self.offer_json(text, at + after, declares).words.into_iter().find(known);
+        }
+        match owner(&text[..at - before]) {
+            Some("m") => parameters.iter().map(described).find(known),
+            Some("frame") => self.frame.iter().find(|word| known(word)).cloned(),
+            Some(_) => None,
+            None => self.functions.iter().find(|word| known(word)).cloned(),
+        }
     }
 
     /// The parts of the schema that may stand at a path.
@@ -192,6 +193,13 @@ impl Vocabulary {
         }
         now
     }
+}
+
+/// The name before the dot at the end of a text.
+fn owner(before: &str) -> Option<&str> {
+    let rest = before.strip_suffix('.')?;
+    let length: usize = rest.chars().rev().take_while(|c| is_of_word(*c)).map(char::len_utf8).sum();
+    Some(&rest[rest.len() - length..])
 }
 
 fn object_of(node: Option<&Json>) -> Option<&Json> {
@@ -268,6 +276,9 @@ fn fitting(words: impl Iterator<Item = Word>, begun: &str) -> Vec<Word> {
 
 /// The names in a text, but for that at a byte.
 fn names(text: &str, but: usize, known: &BTreeSet<&str>) -> Vec<Word> {
+    if text.len() > MOST_NAMED {
+        return Vec::new();
+    }
     let mut coloured = tokens(text, Language::Wgsl).into_iter().peekable();
     let (mut at, mut found) = (0, BTreeSet::new());
     while at < text.len() {
@@ -392,7 +403,7 @@ mod tests {
         let offer = vocabulary.offer(text, text.len(), Language::Wgsl, &[]);
         assert_eq!(&text[offer.place.clone()], "schl");
         let names: Vec<_> = offer.words.iter().map(|word| word.name.as_str()).collect();
-        assert_eq!(names[..2], ["schlick", "schlick_weight"]);
+        assert_eq!(names[..3], ["schlick", "schlick_smith", "schlick_weight"]);
         assert!(
             offer.words[0].usage.starts_with("fn schlick(f0")
                 && offer.words[0].help.contains("Schlick (1994)")

@@ -174,8 +174,8 @@ pub enum CodeCommand {
     Follow,
     /// Show the n-th open text.
     Show(usize),
-    /// The visible text, as typed.
-    Type(Arc<str>),
+    /// The text with this number, as typed.
+    Type(u64, Arc<str>),
     /// The panel has gone to the line.
     Arrived,
     /// Write the visible text to its file, or make its scene that of the document.
@@ -205,8 +205,8 @@ impl Session {
             CodeCommand::Scene => self.edit_scene_here(registry),
             CodeCommand::Follow => self.follow_scene(registry),
             CodeCommand::Show(at) => self.code.shown = at.min(self.code.open.len().saturating_sub(1)),
-            CodeCommand::Type(text) => {
-                if let Some(open) = self.code.visible_mut() {
+            CodeCommand::Type(number, text) => {
+                if let Some(open) = self.code.open.iter_mut().find(|open| open.number == number) {
                     (open.text, open.closing) = (text, false);
                 }
             }
@@ -359,7 +359,8 @@ mod tests {
     }
 
     fn typed(session: &mut Session, text: &str) {
-        assert_eq!(command(session, CodeCommand::Type(text.into())), []);
+        let number = of(session).number;
+        assert_eq!(command(session, CodeCommand::Type(number, text.into())), []);
     }
 
     fn open() -> Session {

@@ -111,7 +111,8 @@ mod tests {
     }
 
     fn typed(session: &mut Session, text: &str) {
-        command(session, CodeCommand::Type(text.into()));
+        let number = of(session).number;
+        command(session, CodeCommand::Type(number, text.into()));
     }
 
     fn of(session: &Session) -> &OpenCode {
