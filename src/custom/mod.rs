@@ -82,6 +82,13 @@ pub fn is_model(text: &str) -> bool {
     begins || text::comment(text).is_ok() || text::definition(text, "response").is_some()
 }
 
+/// The bytes of the declaration in a text: what stands in its comment.
+#[must_use]
+pub fn declaration_place(text: &str) -> Option<std::ops::Range<usize>> {
+    let comment = text::comment(text).ok()?;
+    Some(comment.start..comment.start + comment.json.len())
+}
+
 /// The name of a file in messages, before its validity is known.
 fn named(path: &Path) -> String {
     format!("models/{}", path.file_name().unwrap_or_default().to_string_lossy())

@@ -30,7 +30,7 @@ pub const MENUS: &[&str] = &["File", "Edit", "View", "Help"];
 /// The buttons above the picture.
 pub const BUTTONS: &[&str] = &["reflection", "shading", "terms"];
 /// The tabs below the picture, by id.
-pub const TABS: &[&str] = &["explain", "plots", "messages"];
+pub const TABS: &[&str] = &["explain", "plots", "messages", "code"];
 /// Controls that do not belong to a declared parameter.
 pub const KNOBS: &[&str] = &[
     "exposure",

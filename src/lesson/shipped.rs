@@ -25,6 +25,7 @@ pub const TEXTS: &[(&str, &str)] = texts![
     "10_a_material_under_the_sky",
     "11_why_a_straw_looks_broken",
     "12_glass_paper_leaf",
+    "13_a_model_of_your_own",
 ];
 
 /// All shipped lessons, in the order of lists.

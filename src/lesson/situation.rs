@@ -40,4 +40,8 @@ pub struct WindowFacts {
     pub explain: bool,
     /// True in presentation mode.
     pub presenting: bool,
+    /// True if the *Code* panel shows a text.
+    pub code: bool,
+    /// Number of errors in the files of shaders and models.
+    pub errors: usize,
 }

@@ -5,9 +5,9 @@ use std::ops::DerefMut;
 use bevy_egui::egui::TextEdit;
 
 use super::{
-    draft,
+    draft, keys,
     prelude::*,
-    state::{BUILT_IN, ModelDraft, NameProblem, check_name},
+    state::{BUILT_IN, CodeCommand, ModelDraft, NameProblem, check_name},
 };
 use crate::{custom::source_path, library::status::Trouble};
 
@@ -45,20 +45,21 @@ pub fn buttons(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let shown = registry.model(session.model_shown()).map(|m| m.declaration);
     let name = shown.map_or(session.model_shown(), |d| d.name);
     ui.horizontal_wrapped(|ui| {
-        let mut offer = |response: Response, command: ModelCommand| {
-            context.on_click(&response, || Action::Model(command));
-        };
         let help = "Writes a file with a small model that works, to be changed in an editor while the picture follows.";
-        offer(ui.button("New model…").on_hover_text(help), ModelCommand::New);
+        let new = ui.button("New model…").on_hover_text(help);
+        context.on_click(&new, || Action::Model(ModelCommand::New));
         let copy = ui.add_enabled(shown.is_some(), Button::new("Duplicate as a file…"));
         let help = format!("Writes {name} to a file as a custom model, to be changed in an editor.");
-        offer(copy.on_hover_text(help), ModelCommand::Duplicate);
+        context.on_click(&copy.on_hover_text(help), || Action::Model(ModelCommand::Duplicate));
         let path = shown.map_or_else(|| source_path(session.model_shown()), |d| d.wgsl.path.to_owned());
         let file = session.shaders.folders.file_of(&path);
+        let code = ui.add_enabled(file.is_some(), Button::new("Edit code")).on_disabled_hover_text(BUILT_IN);
+        let help = keys::hint(ui.ctx(), "Opens the file here, in the panel Code", "code");
+        context.on_click(&code.on_hover_text(help), || Action::Code(CodeCommand::Model));
         let open = ui.add_enabled(file.is_some(), Button::new("Open in editor"));
         let open = open.on_disabled_hover_text(BUILT_IN);
         let help = file.map_or_else(String::new, |f| f.shown().to_string());
-        offer(open.on_hover_text(help), ModelCommand::EditShown);
+        context.on_click(&open.on_hover_text(help), || Action::Model(ModelCommand::EditShown));
     });
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{
+    code,
     files::{Files, Opened, Saved},
     prelude::*,
     progress, reload, settings,
@@ -36,6 +37,10 @@ pub fn run(session: &mut Session, registry: &Registry, effect: Effect, files: &m
                 session.lesson_edited(read, registry);
             }
         }
+        Effect::OpenCode { path, line } => code::disk::open(session, path, line),
+        Effect::RecoverCode { path, text } => code::disk::recover(session, path, text),
+        Effect::SaveCode { path, overwrite } => code::disk::save(session, &path, overwrite),
+        Effect::LookAtCode(path) => code::disk::look(session, &path),
         Effect::SaveProgress(name) => {
             let saved = progress::save_own(&session.progress, &name);
             session.warn(saved);

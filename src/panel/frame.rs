@@ -7,7 +7,7 @@ use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Context, Frame, Id, Margin, Rect, Ui, vec2};
 
 use super::{
-    Dialogs, Over, PanelContext, Panels, Place, author, cover, explain,
+    Dialogs, Over, PanelContext, Panels, Place, author, code, cover, explain,
     focus::{self, Region},
     keys, lesson, linked, menu, presentation, sides,
     state::{Action, Effect, PictureArea, Session},
@@ -115,6 +115,7 @@ fn pressed(ctx: &Context, context: &mut PanelContext<'_>, dialog: bool) {
     let (session, registry, area) = (context.session(), context.registry(), context.area());
     let actions = &mut context.actions;
     if !dialog {
+        actions.extend(code::keys(ctx, session));
         let pressed = keys::pressed(ctx, session, registry);
         actions.extend(pressed.into_iter().map(|action| explain::aimed(ctx, session, area, action)));
     }

@@ -34,7 +34,7 @@ use cover::is_in_sight;
 pub use cover::is_over_picture;
 pub use dialogs::Dialogs;
 pub use frame::show;
-use state::{EXPLAIN_TAB, Effect, MESSAGES_TAB, PLOTS_TAB, PictureArea, SHADER_TAB, Session};
+use state::{CODE_TAB, EXPLAIN_TAB, Effect, MESSAGES_TAB, PLOTS_TAB, PictureArea, SHADER_TAB, Session};
 pub use state::{Over, PanelInfo, Place, follow};
 
 pub mod author;
@@ -43,6 +43,7 @@ pub mod caption;
 pub mod channels;
 pub mod chooser;
 pub mod clipping;
+pub mod code;
 pub mod command;
 pub mod compare;
 mod context;
@@ -109,12 +110,15 @@ pub fn register_builtin(to: &mut Panels) {
     let [list, window, question] = [Over::List, Over::Window, Over::Question].map(Place::Over);
     let mut plots = plots::PlotPanel::default();
     let plots = move |ui: &mut Ui, context: &mut PanelContext<'_>| plots.show(ui, context);
+    let mut editor = code::CodePanel::default();
+    let code = move |ui: &mut Ui, context: &mut PanelContext<'_>| editor.show(ui, context);
     for panel in [
         Own::new(["top", "Top bar"], Place::Top, top::show),
         Own::new(["status", "Status line"], Place::Status, status::show),
         Own::new([MESSAGES_TAB, "Messages"], Place::Bottom, messages::show),
         Own::new([PLOTS_TAB, "Plots"], Place::Bottom, plots),
         Own::new([SHADER_TAB, "Shader"], Place::Bottom, shader::show).noted(shader::note),
+        Own::new([CODE_TAB, "Code"], Place::Bottom, code).noted(code::note),
         Own::new([history::HISTORY_TAB, "History"], Place::Bottom, history::show),
         Own::new([EXPLAIN_TAB, "Explain"], Place::Bottom, explain::show),
         Own::new(["lesson", "Lesson"], Place::Left, lesson::show),

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::scene::load::Stamp;
 
 mod store;
+pub mod texts;
 mod writer;
 
 pub use store::{Abandoned, Journal, MAX_COPIES, Store};

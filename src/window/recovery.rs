@@ -25,9 +25,12 @@ use crate::files::Shown as _;
 use crate::{
     panel::{
         files::Files as _,
-        state::{Action, Offer, Question, RecoveryChoice, Session, Severity},
+        state::{Action, KeptCode, Offer, Question, RecoveryChoice, Session, Severity},
     },
-    recovery::{Abandoned, About, Keeper, Store, ago},
+    recovery::{
+        Abandoned, About, Keeper, Store, ago,
+        texts::{self, KeptText, TextKeeper, Texts},
+    },
     registry::Registry,
     render::schedule::LabFrame,
     signals::Interrupt,
@@ -66,7 +69,10 @@ impl Plugin for RecoveryPlugin {
         app.insert_resource(copies)
             .add_systems(PreUpdate, interrupted)
             .add_systems(LabFrame, (stayed, offer).chain().in_set(Loading::Recovery))
-            .add_systems(Last, keep);
+            .add_systems(Last, (keep, keep_texts));
+        let store = Store::of_texts();
+        let kept = store.as_ref().filter(|_| self.search).map(texts::left).unwrap_or_default();
+        app.insert_resource(CodeCopies { keeper: TextKeeper::start(store), kept, offered: !self.ask });
     }
 }
 
@@ -245,6 +251,38 @@ fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry:
         scene: scene.map_err(|problems| problems.into_iter().next().unwrap_or_default()),
     })));
     recovery.asked = Some(copy);
+}
+
+/// Copies of unsaved texts of the editor: of this window, and of earlier ones.
+#[derive(Resource)]
+struct CodeCopies {
+    keeper: TextKeeper,
+    kept: Vec<KeptText>,
+    offered: bool,
+}
+
+/// Hands unsaved texts of the editor to their keeper, and offers those left by earlier windows. A copy stays until the
+/// text is open here.
+fn keep_texts(mut copies: ResMut<CodeCopies>, mut session: ResMut<Session>) {
+    let copies = &mut *copies;
+    if !std::mem::replace(&mut copies.offered, true) && !copies.kept.is_empty() {
+        let of = |kept: &KeptText| KeptCode {
+            path: kept.path.clone(),
+            text: kept.text.as_str().into(),
+            when: kept.when.clone(),
+        };
+        session.offer_code(copies.kept.iter().map(of).collect());
+    }
+    if !session.is_changed() {
+        return;
+    }
+    let unsaved = session.code.open.iter().filter(|open| open.is_unsaved());
+    let texts: Texts =
+        unsaved.filter_map(|open| Some((open.path()?.to_owned(), open.text.clone()))).collect();
+    let opened =
+        copies.kept.extract_if(.., |kept| texts.get(&kept.path).is_some_and(|text| **text == *kept.text));
+    opened.for_each(KeptText::remove);
+    copies.keeper.keep(texts);
 }
 
 /// Hands unsaved changes to the keeper; runs after everything that changes the document in a frame.

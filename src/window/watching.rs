@@ -43,7 +43,12 @@ impl Plugin for WatchingPlugin {
             LabFrame,
             (
                 collect.in_set(Loading::Watch),
-                (watch_files.run_if(resource_changed::<Session>), follow_document, follow_named_files)
+                (
+                    watch_files.run_if(resource_changed::<Session>),
+                    follow_document,
+                    follow_named_files,
+                    follow_code,
+                )
                     .chain()
                     .in_set(Loading::Follow),
             ),
@@ -136,6 +141,19 @@ fn follow_named_files(
             }
             _ => {}
         }
+    }
+}
+
+/// Requests a look at the files in the editor that have changed.
+fn follow_code(
+    mut changed: MessageReader<FilesChanged>,
+    session: Res<Session>,
+    mut effects: MessageWriter<Effect>,
+) {
+    let changed: BTreeSet<_> = changed.read().flat_map(|files| &files.0).collect();
+    let open = session.code.open.iter().filter_map(|open| open.path());
+    for path in open.filter(|path| changed.iter().any(|file| file.as_path() == *path)) {
+        effects.write(Effect::LookAtCode(path.to_owned()));
     }
 }
 

@@ -129,7 +129,7 @@ fn spelling(
             }
             _ => {}
         },
-        Argument::None | Argument::Angle(_) => {}
+        Argument::None | Argument::Angle(_) | Argument::Declared(_) => {}
     }
     if known.is_empty() || known.contains(&written.as_str()) {
         return None;
@@ -170,7 +170,7 @@ fn kind(
             }),
         },
         Argument::Name(name) => of_knob(name, scene, selection, registry),
-        Argument::None | Argument::Angle(_) => {
+        Argument::None | Argument::Angle(_) | Argument::Declared(_) => {
             if asked.group() == "curve" && selection.is_some_and(|s| !matches!(s, Selection::Object(_))) {
                 return Err("this is about the selected object, but the step selects none; write select: object 1 in its view block".to_owned());
             }

@@ -130,6 +130,8 @@ impl Knowledge {
             ("window.active", _) => self.active,
             ("window.views", _) => unchanged(&Path::root().key("variants").key("count")),
             ("window.presenting", _) => false,
+            // Files are the learner's own.
+            (name, _) if name.starts_with("code.") => false,
             (_, Argument::Path(path)) => self.active && unchanged(path),
             (_, Argument::Name(name)) => {
                 let path = match self.selection {

@@ -52,6 +52,8 @@ pub(super) enum Argument {
     Name(String),
     /// An angle in degrees.
     Angle(f64),
+    /// The name of a parameter that a model may declare.
+    Declared(String),
 }
 
 /// A quantity that conditions compare.
@@ -91,6 +93,7 @@ impl Asked {
             Argument::Path(path) => format!("scene.{path}"),
             Argument::Name(name) => format!("knob.{name}"),
             Argument::Angle(angle) => format!("curve.albedo({angle})"),
+            Argument::Declared(name) => format!("code.declares.{name}"),
             Argument::None => self.quantity.name.to_owned(),
         }
     }
@@ -149,6 +152,15 @@ answers! {
     |s, _| object(s).and_then(|object| text(s.scene.shading_model_of(object)));
     "knob.PARAMETER", free, |s, a| match a {
         Argument::Name(name) => knob(s, name),
+        _ => Err("no parameter is given".to_owned()),
+    };
+    "code.open", free, |s, _| Ok(Value::Truth(s.window.code));
+    "code.errors", free, |s, _| number(s.window.errors as u32);
+    "code.custom", free, |s, _| model(s).map(|m| Value::Truth(s.registry.custom_file(m.declaration.id).is_some()));
+    "code.declares.PARAMETER", free, |s, a| match a {
+        Argument::Declared(name) => {
+            model(s).map(|m| Value::Truth(m.parameters.iter().any(|p| p.name == *name)))
+        }
         _ => Err("no parameter is given".to_owned()),
     };
     "probe.pinned", free, |s, _| Ok(Value::Truth(s.pinned));
@@ -214,6 +226,12 @@ fn object<'a>(s: &Situation<'a>) -> Result<&'a crate::scene::Object, String> {
         Selection::Object(i) => scene.objects.get(i).ok_or_else(|| "no object is selected".to_owned()),
         _ => Err("no object is selected".to_owned()),
     }
+}
+
+/// The reflection model of the selected object.
+fn model<'a>(s: &Situation<'a>) -> Result<&'a ModelEntry, String> {
+    let id = s.scene.model_of(object(s)?);
+    s.registry.model(id).ok_or_else(|| format!("the model {id} is not known"))
 }
 
 fn with_surface(
@@ -286,6 +304,9 @@ pub(super) fn asked(word: &str) -> Result<Asked, (usize, String)> {
     }
     if let Some(name) = word.strip_prefix("knob.") {
         return of("knob.PARAMETER", Argument::Name(name.to_owned())).ok_or_else(unknown);
+    }
+    if let Some(name) = word.strip_prefix("code.declares.") {
+        return of("code.declares.PARAMETER", Argument::Declared(name.to_owned())).ok_or_else(unknown);
     }
     if let Some((name, angle)) = word.split_once('(') {
         if name != "curve.albedo" {

@@ -26,7 +26,7 @@ pub(super) fn truth(asked: &Asked, value: bool) -> Option<&'static str> {
 /// The minimum and maximum of a numeric quantity, if known.
 pub(super) fn range(asked: &Asked, registry: &Registry) -> Option<[f64; 2]> {
     match &asked.argument {
-        Argument::None | Argument::Angle(_) => asked.quantity.range,
+        Argument::None | Argument::Angle(_) | Argument::Declared(_) => asked.quantity.range,
         Argument::Name(name) => parameter(name, registry).and_then(|p| p.kind.limits()).map(ends),
         Argument::Path(path) => match path.segments() {
             [Segment::Key(_), Segment::Key(count)] if count == "count" => Some([0.0, f64::INFINITY]),
@@ -60,7 +60,7 @@ fn list_field(key: &str) -> Option<&'static Field> {
 pub(super) fn of(asked: &Asked, situation: &Situation) -> Subject {
     let registry = situation.registry;
     match &asked.argument {
-        Argument::None | Argument::Angle(_) => {
+        Argument::None | Argument::Angle(_) | Argument::Declared(_) => {
             let (mut name, unit) = match (asked.quantity.kind, asked.quantity.words) {
                 (Kind::Number, [unit, name]) => (name.to_owned(), unit),
                 _ => (asked.quantity.name.to_owned(), ""),

@@ -30,6 +30,8 @@ fn situation<'a>(scene: &'a Scene, registry: &'a Registry) -> Situation<'a> {
         plots: Some(Plot::Albedo),
         explain: true,
         presenting: false,
+        code: true,
+        errors: 2,
     };
     Situation { scene, registry, selection: Selection::Object(0), window, probe: None, pinned: false }
 }
@@ -52,6 +54,9 @@ fn every_quantity_of_scene_and_window_has_its_value() {
         ("scene.objects[0].reflection_model = \"blinn_phong\"", true),
         ("scene.objects[0].rotation[2] = 0", true),
         ("scene.objects[0].visible", true),
+        ("code.open and code.errors = 2 and not code.custom", true),
+        ("code.declares.alpha and not code.declares.no_such", true),
+        ("code.declares.no_such or code.errors > 2", false),
         ("scene.objects.count = 1 and scene.lights.count = 1", true),
         ("scene.variants.count > 0", false),
         ("scene.lights[0].intensity ≥ 20", true),

@@ -229,7 +229,7 @@ fn last(asked: &Asked) -> &str {
             Some(Segment::Key(key)) => key,
             _ => "",
         },
-        Argument::None | Argument::Angle(_) => "",
+        Argument::None | Argument::Angle(_) | Argument::Declared(_) => "",
     }
 }
 

@@ -5,7 +5,7 @@ use crate::{
     document::{Edit, Selection},
     panel::{
         history::HISTORY_TAB,
-        state::{Action, Alike, Arrangement, Effect, ModelCommand, Pick, ViewChange},
+        state::{Action, Alike, Arrangement, CodeCommand, Effect, ModelCommand, Pick, ViewChange},
     },
 };
 
@@ -151,6 +151,9 @@ fn models(to: &mut List) {
     let duplicate = model("duplicate_model", "Duplicate the model as a file…", ModelCommand::Duplicate);
     to.add(duplicate.keys("Ctrl+Shift+D"));
     to.add(model("edit_model", "Open the model in an editor", ModelCommand::EditShown).keys("Ctrl+E"));
+    let code = |id, name, what| command(id, name, Action::Code(what)).group(Group::CustomModels);
+    to.add(code("code", "Edit the code of the model", CodeCommand::Model).keys("Ctrl+Shift+E").at_desk());
+    to.add(code("scene_code", "Edit the scene as JSON", CodeCommand::Scene).keys("Ctrl+Shift+J").at_desk());
     let export = Action::Do(Effect::Pick(Pick::ShaderFolder));
     to.add(command("export_shaders", "Export shaders for editing…", export).group(Group::CustomModels));
 }

@@ -3,10 +3,11 @@
 use crate::{
     document::Revision,
     lesson::{Situation, Task, WindowFacts},
+    library::status::Reloaded,
     panel::{
         explain,
         prelude::*,
-        state::{EXPLAIN_TAB, PLOTS_TAB, Plots, View},
+        state::{CODE_TAB, EXPLAIN_TAB, PLOTS_TAB, Plots, View},
     },
 };
 
@@ -20,6 +21,8 @@ struct Question {
     plots: Plots,
     /// Number of explanations calculated so far.
     explained: u64,
+    /// The shaders, and whether a text is open in the editor.
+    code: (Option<Reloaded>, usize, bool),
 }
 
 /// The checks so far, and the result of the latest.
@@ -60,6 +63,11 @@ pub(in crate::panel) fn update(ctx: &Context, session: &Session, registry: &Regi
         view: session.view.clone(),
         plots: session.plots.clone(),
         explained: explain::calculations(ctx),
+        code: (
+            session.shaders.last.clone(),
+            session.shaders.troubles.len(),
+            session.code.visible().is_some(),
+        ),
     };
     let Checks(count, known) = kept::get(ctx);
     let entered = match known {
@@ -97,6 +105,8 @@ fn situation<'a>(
             plots: shown(PLOTS_TAB).then_some(session.plots.kind),
             explain: shown(EXPLAIN_TAB),
             presenting: view.presenting,
+            code: shown(CODE_TAB) && session.code.visible().is_some(),
+            errors: session.shaders.troubles.len(),
         },
         probe: explained.map(|explained| &explained.explanation).filter(|_| pinned),
         pinned,

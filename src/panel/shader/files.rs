@@ -6,7 +6,7 @@ use super::{missing_model, open_in_editor};
 use crate::{
     panel::{
         prelude::*,
-        state::{Effect, Pick},
+        state::{CodeCommand, Effect, Pick},
     },
     program,
     registry::compose::{File, Part},
@@ -149,6 +149,9 @@ fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
             if let Some(file) = &on_disk {
                 let open = icon::button(ui, Icon::Pencil, &format!("Open {path} in an editor"));
                 context.on_click(&open, || open_in_editor(file, session.line_of_trouble(path)));
+                let code = ui.small_button("Code").on_hover_text("Edits the file here, in the panel Code");
+                let command = || CodeCommand::File(file.clone(), session.line_of_trouble(path));
+                context.on_click(&code, || Action::Code(command()));
             }
             if let Some(t) = trouble {
                 ui.label(RichText::new(format!("line {}", t.problem.line)).small().color(palette.error));

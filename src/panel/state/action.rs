@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use glam::Vec3;
 
 use super::{
-    Alike, Arrangement, CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand, Session, Severity,
-    TakeCommand, ViewChange,
+    Alike, Arrangement, CodeCommand, CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand,
+    Session, Severity, TakeCommand, ViewChange,
 };
 use crate::{
     document::{Edit, Selection},
@@ -103,6 +103,8 @@ pub enum Action {
     Do(Effect),
     /// A command for custom models and shaders.
     Model(ModelCommand),
+    /// A command for the editor.
+    Code(CodeCommand),
     /// A command for exports.
     Export(ExportCommand),
     /// A command for the views of a comparison.
@@ -275,6 +277,7 @@ impl Session {
             Action::LookFromSide | Action::Focus(_) => {}
             Action::Do(effect) => self.request(effect),
             Action::Model(ask) => self.author(ask, registry),
+            Action::Code(command) => self.code(command, registry),
             Action::Export(command) => self.export(command),
             Action::Say(severity, text) => self.say(severity, text),
             Action::Dismiss(index) => self.messages.dismiss(index),

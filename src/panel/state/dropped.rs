@@ -71,7 +71,8 @@ impl Session {
         let id = lamp.declaration.id;
         match selected.filter(|(_, known)| *known == id) {
             Some((i, _)) => {
-                let edit = self.setting(Selection::Light(i), Key::Own(parameter.name), parameter, file, registry);
+                let edit =
+                    self.setting(Selection::Light(i), Key::Own(parameter.name), parameter, file, registry);
                 self.edit(edit, registry);
             }
             None => self.add_light(id, |light| light.parameters.set(parameter.name, file), registry),

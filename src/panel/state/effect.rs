@@ -1,6 +1,6 @@
 //! Effects: work that needs files, entities or the operating system.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::Arc};
 
 use bevy::ecs::message::Message;
 use glam::Vec3;
@@ -81,6 +81,29 @@ pub enum Effect {
         /// The line to go to, from 1.
         line: usize,
     },
+    /// Open a file in the panel *Code*; see [`effects::run`](crate::panel::effects::run).
+    OpenCode {
+        /// The file.
+        path: PathBuf,
+        /// The line to go to, from 1.
+        line: usize,
+    },
+    /// Open a file in the panel *Code*, with the unsaved text of an earlier window.
+    RecoverCode {
+        /// The file.
+        path: PathBuf,
+        /// The text.
+        text: Arc<str>,
+    },
+    /// Write the text of the panel *Code* to its file.
+    SaveCode {
+        /// The file.
+        path: PathBuf,
+        /// True to overwrite a file that changed on disk since it was read, after asking the user.
+        overwrite: bool,
+    },
+    /// Look at a file that is open in the panel *Code*, and may have changed on disk.
+    LookAtCode(PathBuf),
     /// Search for violations of the laws of a model.
     CheckLaws(String),
     /// Export the scene.

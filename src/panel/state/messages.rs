@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bevy::prelude::Deref;
 
-use super::{Action, MESSAGES_TAB, SHADER_TAB, Session, Severity};
+use super::{Action, CODE_TAB, MESSAGES_TAB, SHADER_TAB, Session, Severity};
 use crate::{files::printable, program::in_own_words};
 
 /// Maximum number of messages; the oldest are dropped.
@@ -207,7 +207,12 @@ impl Session {
     }
 
     /// Unfolds the strip with the shader panel because of an error.
+    ///
+    /// Not over the editor, which marks the error at its line.
     pub(in crate::panel) fn unfold_shaders(&mut self) {
+        if self.sees(CODE_TAB) {
+            return;
+        }
         if !self.sees(SHADER_TAB) && self.messages.shaders.is_none() {
             self.messages.shaders = Some(self.strip());
         }

@@ -15,6 +15,7 @@ pub use arrange::{Arrangement, Together};
 pub use aside::Aside;
 pub(super) use author::BUILT_IN;
 pub use author::{Authoring, LawCheck, ModelDraft, NameProblem, check_name};
+pub use code::{CODE_TAB, Code, CodeCommand, CodeOf, KeptCode, MOST_CODE, OpenCode, SCENE_JSON, Theirs};
 pub use compare::CompareCommand;
 pub use desk::Desk;
 pub use disk::OnDisk;
@@ -33,6 +34,7 @@ pub use plots::{MOST_LIGHT, Of, PinnedCurve, PlotCommand, Plots, Slot};
 pub use probe::{EXPLAIN_TAB, Pin};
 pub use progress::{Past, Progress};
 pub use question::{MissingPart, Offer, Question, Questions};
+pub(in crate::panel) use scene_code::read_scene;
 pub use settings::{RECENT_FILES, SCALES, Settings, ThemeChoice, nearest_scale};
 pub use severity::Severity;
 pub use sheet_of::{SheetOf, Turning};
@@ -59,6 +61,7 @@ mod area;
 mod arrange;
 mod aside;
 mod author;
+mod code;
 mod compare;
 mod desk;
 mod disk;
@@ -86,6 +89,7 @@ mod probe;
 mod progress;
 mod question;
 mod rows;
+mod scene_code;
 mod seen;
 mod selection;
 mod settings;
@@ -137,6 +141,8 @@ with_defaults! {
         pub shaders: ShaderStatus = ShaderStatus::default(),
         /// The writing of custom models and shaders.
         pub authoring: Authoring = Authoring::default(),
+        /// The texts that are open in the editor.
+        pub code: Code = Code::default(),
         /// The match that is about to start.
         pub match_draft: Option<MatchDraft> = None,
         /// The options of a picture or a sheet that is about to be saved.

@@ -18,9 +18,14 @@ use lights_camera_models::{
     light::{ies, panorama},
     linear::{self, Limits, MAX_PIXELS, Pixels},
     panel::{
+        code::{
+            difference, find,
+            tokens::{self, Language},
+            words::{self, Vocabulary},
+        },
         command::{Menu, declared, own},
         progress, settings,
-        state::Session,
+        state::{MOST_CODE, Session},
     },
     parameter::Outside,
     recovery::Store,
@@ -135,6 +140,26 @@ fn recovery(bytes: &[u8]) -> Result<(), String> {
         fs::write(journal.join(name), content).map_err(|e| e.to_string())?;
     }
     assert_eq!(store.abandoned().len(), 1, "the copy counts whatever the file about it holds");
+    Ok(())
+}
+
+/// The editor: colours, words, places, differences.
+fn code(bytes: &[u8]) -> Result<(), String> {
+    static WORDS: LazyLock<Vocabulary> = LazyLock::new(|| Vocabulary::of(&REGISTRY));
+    let text = String::from_utf8_lossy(bytes);
+    let text = &text[..text.floor_char_boundary(MOST_CODE)];
+    for language in [Language::Wgsl, Language::Json] {
+        for (range, _) in tokens::tokens(text, language) {
+            assert!(text.get(range).is_some());
+        }
+        for at in [text.len(), text.len() / 2] {
+            let offer = WORDS.offer(text, at, language, &[]);
+            assert!(text.get(offer.place).is_some() && offer.words.len() <= words::MOST_OFFERED);
+            let _ = WORDS.help(text, at, language, &[]);
+        }
+    }
+    assert!(find::find(text, "a", false).len() <= find::MOST_FOUND);
+    assert!(difference::difference(text, "a\nb\n").len() >= text.lines().count());
     Ok(())
 }
 
@@ -464,6 +489,13 @@ fn readers() -> Vec<Reader> {
             pairs: &[("[", "]"), ("{\"a\":", "}")],
             phrases: &["\"a\":", "[],"],
             read: |bytes| in_folder("lessons.json", bytes, |folder| progress::load(folder).1),
+        },
+        Reader {
+            name: "code",
+            around: ["/* lcm {\"name\": ".into(), "} */ fn f() {}".into()],
+            pairs: &[("{\"a\":", "}"), ("[", "]"), ("/*", "*/"), ("f(", ")")],
+            phrases: &["m.", "frame.", "let a = 1.0;\n", "\"a\": ", "// a\n", "0x1p-", "*/", "#import "],
+            read: code,
         },
         Reader {
             name: "recovery",

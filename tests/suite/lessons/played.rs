@@ -1,7 +1,10 @@
 //! Every shipped lesson from start to end: each task can be solved as its text asks, is not solved before,
 //! and is not solved by a plausible mistake.
 
+use std::path::Path;
+
 use lights_camera_models::{
+    custom,
     document::Selection,
     explain::{Explainer, Explanation},
     lesson::{Goal, Lesson, Situation, WindowFacts, shipped::LESSONS},
@@ -25,6 +28,10 @@ enum Deed {
     Pin,
     /// Shows a single term.
     Terms(TermSelection),
+    /// Opens a text in the editor.
+    OpenCode,
+    /// Saves a model of one's own, with this change of the template, and shows it.
+    Write(&'static [(&'static str, &'static str)]),
 }
 
 /// The learner at a step.
@@ -114,6 +121,22 @@ impl Learner {
             }
             Deed::Terms(terms) => {
                 self.window.terms = *terms;
+                self.holds(goal)
+            }
+            Deed::OpenCode => {
+                self.window.code = true;
+                self.holds(goal)
+            }
+            Deed::Write(changes) => {
+                let mut text = custom::template("own", "Own");
+                for (from, to) in *changes {
+                    assert!(text.contains(from), "{from}");
+                    text = text.replace(from, to);
+                }
+                let read = custom::read(Path::new("models/own.wgsl"), &text, &self.registry);
+                let model = read.unwrap_or_else(|problems| panic!("{problems:?}"));
+                self.registry.put_custom_model(model);
+                self.scene.reflection_model = "own".to_owned();
                 self.holds(goal)
             }
             Deed::Pin => {
@@ -306,7 +329,31 @@ const TASKS: &[(&str, &str, Deed, Deed)] = &[
         Deed::Set(&[("/lights/0/source", || json!("studio"))]),
         Deed::Set(&[("/lights/0/intensity", || json!(0.1))]),
     ),
+    (
+        "13",
+        "Begin with one that works",
+        Deed::Write(&[]),
+        Deed::Set(&[("/reflection_model", || json!("phong"))]),
+    ),
+    ("13", "Its code", Deed::OpenCode, Deed::Terms(TermSelection::Diffuse)),
+    (
+        "13",
+        "A new knob",
+        Deed::Write(&[RIM]),
+        Deed::Write(&[("\"polish\"", "\"rims\""), ("m.polish", "m.rims")]),
+    ),
+    ("13", "The rim", Deed::Write(&[RIM, ADDED]), Deed::Write(&[RIM])),
 ];
+
+/// The parameter that the last lesson declares, and the line in which the model uses it.
+const RIM: (&str, &str) = (
+    "    ],\n}\n*/",
+    "        { \"name\": \"rim\", \"min\": 0, \"max\": 1, \"default\": 0.5, \"help\": \"The light at the edge.\" },\n    ],\n}\n*/",
+);
+const ADDED: (&str, &str) = (
+    "let diffuse = (1.0 - m.gloss) * m.base_colour * cos_l;",
+    "let diffuse = ((1.0 - m.gloss) * m.base_colour + m.rim * power(1.0 - cos_v, 3.0)) * cos_l;",
+);
 
 #[test]
 fn every_task_of_every_lesson_can_be_solved_and_a_mistake_does_not_solve_it() {
@@ -339,5 +386,5 @@ fn the_lessons_are_of_a_length_for_one_sitting() {
         assert!(lesson.minutes.is_some_and(|minutes| (5..=20).contains(&minutes)), "{}", lesson.id);
         assert!(lesson.summary.ends_with('.') && (5..=9).contains(&lesson.steps.len()), "{}", lesson.id);
     }
-    assert_eq!(LESSONS.len(), 12);
+    assert_eq!(LESSONS.len(), 13);
 }

@@ -1,6 +1,7 @@
 //! The window: panels, keys, pointer, pictures.
 
 mod clipping;
+mod code;
 mod dialogs;
 mod editors;
 mod equations;

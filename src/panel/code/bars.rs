@@ -1,0 +1,143 @@
+//! What stands above the text: the tabs, and the question about a conflict.
+
+use super::{
+    CodeCommand, CodeOf, OpenCode, Theirs,
+    difference::{self, Change},
+};
+use crate::panel::{keys, prelude::*};
+
+fn button(
+    ui: &mut Ui,
+    text: &str,
+    enabled: bool,
+    command: CodeCommand,
+    context: &mut PanelContext<'_>,
+) -> Response {
+    let button = ui.add_enabled(enabled, Button::new(text));
+    context.on_click(&button, || Action::Code(command));
+    button
+}
+
+/// The open texts, and what can be done with them.
+pub(super) fn tabs(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            commands(ui, context);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| names(ui, context));
+        });
+    });
+}
+
+/// Laid out from right to left.
+fn commands(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
+    let visible = session.code.visible();
+    if visible.is_some() {
+        let close = icon::button(ui, Icon::Cross, "Close this text");
+        context.on_click(&close, || Action::Code(CodeCommand::Close));
+    }
+    let unsaved = visible.is_some_and(OpenCode::is_unsaved);
+    let (word, help) = match visible.map(|open| &open.of) {
+        Some(CodeOf::Scene) => ("Apply", "Makes this the scene, as one step of the history (Ctrl+Enter)"),
+        _ => ("Save", "Writes the file; the picture then follows (Ctrl+S)"),
+    };
+    button(ui, word, unsaved, CodeCommand::Save, context).on_hover_text(help);
+    let scene = session.code.of(&CodeOf::Scene).is_none();
+    let help = keys::hint(ui.ctx(), "Edit the scene as JSON", "scene_code");
+    button(ui, "Scene", scene, CodeCommand::Scene, context).on_hover_text(help);
+    let help = keys::hint(ui.ctx(), "Edit the code of the model", "code");
+    button(ui, "Model", true, CodeCommand::Model, context).on_hover_text(help);
+}
+
+fn names(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let code = &context.session().code;
+    let scroll = ScrollArea::horizontal().id_salt("code tabs").auto_shrink(false).max_height(26.0);
+    scroll.show(ui, |ui| {
+        let row = |ui: &mut Ui| {
+            for (i, open) in code.open.iter().enumerate() {
+                let sign = if open.is_unsaved() { "● " } else { "" };
+                let tab = ui.add(Button::selectable(i == code.shown, format!("{sign}{}", open.name)));
+                let help = open.path().map(|path| path.shown().to_string());
+                let tab = tab.on_hover_text(help.as_deref().unwrap_or("The scene of this document"));
+                context.on_click(&tab, || Action::Code(CodeCommand::Show(i)));
+            }
+        };
+        ui.horizontal(row);
+    });
+}
+
+/// The panel without a text.
+pub(super) fn nothing(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    ui.add_space(8.0);
+    let text = "Open the code of a custom model, or the scene as JSON. A built-in model is edited as a copy: duplicate it as \
+                a file, or export the shaders.";
+    ui.add(Label::new(text).wrap());
+    ui.add_space(4.0);
+    super::super::author::buttons(ui, context);
+}
+
+/// The question about a text that is being closed, or that another program has changed.
+pub(super) fn conflict(ui: &mut Ui, open: &OpenCode, context: &mut PanelContext<'_>) {
+    let name = &open.name;
+    let (text, commands): (String, Vec<(&str, CodeCommand)>) = if open.closing {
+        let text = format!("{name} has changes that are not saved.");
+        (text, vec![("Discard them", CodeCommand::Discard), ("Keep it open", CodeCommand::Stay)])
+    } else {
+        match &open.theirs {
+            None => return,
+            Some(Theirs::Changed(_)) => {
+                let text = match open.of {
+                    CodeOf::Scene => format!("The scene was changed elsewhere, and you have changed {name}."),
+                    CodeOf::File(_) => format!("Another program has changed {name}, and you have too."),
+                };
+                let see = match open.shows_difference {
+                    true => ("Back to the text", CodeCommand::Difference(false)),
+                    false => ("Show the difference", CodeCommand::Difference(true)),
+                };
+                let choices =
+                    vec![("Keep mine", CodeCommand::KeepMine), ("Take theirs", CodeCommand::TakeTheirs), see];
+                (text, choices)
+            }
+            Some(Theirs::Gone) => {
+                let text =
+                    format!("{name} was deleted. Its text is still here; saving it writes the file again.");
+                (text, Vec::new())
+            }
+            Some(Theirs::Unreadable(why)) => {
+                let text = format!("{name} can no longer be read: {why}. Its last text is still here.");
+                (text, vec![("Write mine over it", CodeCommand::KeepMine)])
+            }
+        }
+    };
+    let palette = Palette::here(ui);
+    let frame = egui::Frame::new().fill(palette.raised).inner_margin(4.0).corner_radius(4.0);
+    frame.show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            icon::sign(ui, [14.0, 18.0], 5.5, Severity::Warning);
+            ui.label(text);
+            for (word, command) in commands {
+                button(ui, word, true, command, context);
+            }
+        });
+    });
+}
+
+/// The difference between the text as typed and the other version.
+pub(super) fn difference(ui: &mut Ui, mine: &str, theirs: &str) {
+    let palette = Palette::here(ui);
+    let all = difference::difference(mine, theirs);
+    let height = ui.text_style_height(&TextStyle::Monospace);
+    let scroll = ScrollArea::both().id_salt("code difference").auto_shrink(false);
+    ui.spacing_mut().item_spacing.y = 0.0;
+    scroll.show_rows(ui, height, all.len(), |ui, rows| {
+        for change in &all[rows] {
+            let (sign, line, colour) = match change {
+                Change::Both(line) => ("  ", line, palette.weak),
+                Change::Mine(line) => ("− mine    ", line, palette.accent),
+                Change::Theirs(line) => ("+ theirs  ", line, palette.warning),
+            };
+            let text = RichText::new(format!("{sign}{line}")).monospace().color(colour);
+            ui.add(Label::new(text).extend());
+        }
+    });
+}

@@ -1,0 +1,181 @@
+//! Checks of a text while it is typed: on a thread, after a short rest, and without a change of anything else.
+
+use std::path::Path;
+
+use super::super::state::{CodeOf, OpenCode, read_scene};
+use crate::{
+    caught::{catch, message},
+    custom,
+    panel::prelude::*,
+    parameter::{Outside, Parameter},
+    registry::compose::compose,
+    shader::{check::ShaderProblem, whole::validate_drawing},
+    shading::Stage,
+};
+
+/// Most errors that are marked.
+pub const MOST_MARKS: usize = 1000;
+
+/// An error in a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mark {
+    /// The line, from 1.
+    pub line: usize,
+    /// The column, from 1; 0 for the whole line.
+    pub column: usize,
+    /// The message.
+    pub message: String,
+}
+
+/// The outcome of a check.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Checked {
+    /// The errors, by line.
+    pub(super) marks: Vec<Mark>,
+    /// The parameters that the text declares, if its declaration can be read.
+    pub(super) parameters: Option<&'static [Parameter]>,
+}
+
+/// What a check needs of the window.
+pub(super) struct Given {
+    of: CodeOf,
+    text: Arc<str>,
+    registry: Registry,
+    scene: Option<std::path::PathBuf>,
+    outside: Outside,
+    shown: [String; 2],
+}
+
+impl Given {
+    pub(super) fn new(open: &OpenCode, session: &Session, registry: &Registry) -> Self {
+        Self {
+            of: open.of.clone(),
+            text: open.text.clone(),
+            registry: registry.clone(),
+            scene: session.path.clone(),
+            outside: session.outside.clone(),
+            shown: [session.model_shown().to_owned(), session.shading_shown().to_owned()],
+        }
+    }
+
+    /// Checks the text. A panic of a library is an error like any other.
+    pub(super) fn check(self) -> Checked {
+        catch(|| self.run()).unwrap_or_else(|payload| {
+            let message = format!("this text cannot be checked: {}", message(&*payload));
+            Checked { marks: vec![Mark { line: 1, column: 0, message }], parameters: None }
+        })
+    }
+
+    fn run(&self) -> Checked {
+        let CodeOf::File(path) = &self.of else {
+            let read = read_scene(&self.text, self.scene.as_deref(), &self.registry, &self.outside);
+            let mark = |(line, message)| Mark { line, column: 0, message };
+            let marks = read.err().into_iter().flatten().take(MOST_MARKS).map(mark).collect();
+            return Checked { marks, parameters: None };
+        };
+        let [model, shading] = &self.shown;
+        let found = problems(path, &self.text, &self.registry, [model, shading]);
+        let source = self.registry.folders().source_of(path).unwrap_or_default();
+        let parameters = custom::is_model(&self.text)
+            .then(|| custom::declare(path, &self.text, &self.registry).ok())
+            .flatten()
+            .map(|model| model.entry.parameters);
+        Checked { marks: marks(found, &source), parameters }
+    }
+}
+
+/// The problems as marks in the text of one of the files.
+fn marks(found: Vec<ShaderProblem>, source: &str) -> Vec<Mark> {
+    let mark = |problem: ShaderProblem| match problem.file == source || source.is_empty() {
+        true => Mark { line: problem.line, column: problem.column, message: problem.message },
+        false => Mark { line: 1, column: 0, message: problem.to_string() },
+    };
+    let mut all: Vec<_> = found.into_iter().take(MOST_MARKS).map(mark).collect();
+    all.sort_by_key(|mark| (mark.line, mark.column));
+    all
+}
+
+/// The problems of the text of a file, as far as they can be known without drawing. `shown` are the ids of the
+/// reflection model and the shading model of the picture, with which a file that belongs to no model is checked.
+#[must_use]
+pub fn problems(path: &Path, text: &str, registry: &Registry, shown: [&str; 2]) -> Vec<ShaderProblem> {
+    let source = registry.folders().source_of(path);
+    let is_custom = source.as_deref().is_none_or(|source| source.starts_with("models/"));
+    if is_custom && custom::is_model(text) {
+        return custom::read(path, text, registry).err().unwrap_or_default();
+    }
+    let Some(source) = source else { return Vec::new() };
+    let mut sources = registry.sources().clone();
+    sources.edit(source.clone(), text);
+    let own = registry.models().iter().find(|model| model.declaration.wgsl.path == source);
+    let own_shading = registry.shading_models().iter().find(|s| s.declaration.wgsl.path == source);
+    let Some((model, shading)) = own
+        .or_else(|| registry.model(shown[0]))
+        .zip(own_shading.or_else(|| registry.shading_model(shown[1])))
+    else {
+        return Vec::new();
+    };
+    let composed = compose(&sources, (model, model.declaration.passage()), shading, registry.lights());
+    if !composed.map.has(&source) && composed.problem.is_none() {
+        return Vec::new();
+    }
+    let faces = shading.declaration.stage == Stage::Polygon;
+    validate_drawing(&composed, faces).err().map(|problem| vec![*problem]).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::library::assets::EXAMPLES;
+
+    const SHOWN: [&str; 2] = ["lambert", "phong"];
+
+    fn said(text: &str) -> Vec<Mark> {
+        let found = problems(Path::new("models/a.wgsl"), text, &Registry::builtin(), SHOWN);
+        marks(found, "models/a.wgsl")
+    }
+
+    #[test]
+    fn an_error_is_at_its_line_and_a_correct_model_has_none() {
+        let (_, text) = EXAMPLES[1];
+        assert_eq!(said(text), []);
+        let line = 1 + text.lines().position(|line| line.starts_with("fn response")).expect("a model");
+        let broken = text.replacen("fn response", "fn wrong() -> f32 { return no_such; }\nfn response", 1);
+        let marks = said(&broken);
+        assert_eq!(marks.len(), 1);
+        assert_eq!(marks[0].line, line);
+        assert!(marks[0].message.contains("no_such"), "{}", marks[0].message);
+        assert_eq!(
+            broken.lines().nth(line - 1).map(|l| l.find("no_such").map(|at| at + 1)),
+            Some(Some(marks[0].column))
+        );
+    }
+
+    #[test]
+    fn errors_of_a_declaration_are_all_marked() {
+        let text = "/* lcm\n{\n  \"laws\": [\"no law\"],\n  \"nonsense\": 1\n}\n*/\nfn response() {}\n";
+        let lines: Vec<_> = said(text).into_iter().map(|mark| mark.line).collect();
+        assert_eq!(lines, [3, 4]);
+    }
+
+    #[test]
+    fn whatever_is_typed_a_check_ends() {
+        for text in
+            ["", "/*", "/* lcm {", "fn response(", &"(".repeat(100_000), &"/*".repeat(50_000), "\u{0}é"]
+        {
+            let open = |of| {
+                let mut code = super::super::super::state::Code::default();
+                code.add(of, String::new(), text, 1);
+                code.open.remove(0)
+            };
+            for of in [CodeOf::File("models/a.wgsl".into()), CodeOf::Scene] {
+                let given = Given::new(&open(of.clone()), &Session::default(), &Registry::builtin());
+                let checked = given.check();
+                assert!(
+                    !checked.marks.is_empty() || text.is_empty() || matches!(of, CodeOf::File(_)),
+                    "{text:.20}"
+                );
+            }
+        }
+    }
+}

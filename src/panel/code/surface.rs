@@ -1,0 +1,307 @@
+//! The text field: gutter, text, marks.
+
+use std::ops::Range;
+
+use bevy_egui::egui::{
+    TextBuffer, TextEdit,
+    text::{CCursor, CCursorRange},
+    text_edit::TextEditState,
+};
+
+use super::{CodePanel, Mark, finder, keyboard, keyboard::Typing, language, tokens, words::Word};
+use crate::panel::{
+    prelude::*,
+    state::{CodeCommand, OpenCode},
+};
+
+/// Height of the line below the text, in points.
+const FOOT: f32 = 22.0;
+/// Room between line numbers and text, in points.
+const GAP: f32 = 10.0;
+
+/// The id of the field of a text.
+fn id_of(open: &OpenCode) -> Id {
+    Id::new(("code", open.number))
+}
+
+/// The byte of a character.
+pub(super) fn byte(text: &str, character: usize) -> usize {
+    text.char_indices().nth(character).map_or(text.len(), |(at, _)| at)
+}
+
+/// The character of a byte.
+pub(super) fn character(text: &str, byte: usize) -> usize {
+    text[..text.floor_char_boundary(byte)].chars().count()
+}
+
+/// The bytes of a line, from 1, without its end; the last one if there are fewer.
+pub(super) fn line(text: &str, number: usize) -> Range<usize> {
+    let mut start = 0;
+    for _ in 1..number {
+        match text[start..].find('\n') {
+            Some(at) => start += at + 1,
+            None => break,
+        }
+    }
+    let end = text[start..].find('\n').map_or(text.len(), |at| start + at);
+    start..end
+}
+
+impl CodePanel {
+    /// Selects a place of the text, and brings it into sight.
+    pub(super) fn select(&mut self, ctx: &Context, open: &OpenCode, place: Range<usize>) {
+        let ends = [place.start, place.end].map(|at| CCursor::new(character(&self.buffer, at)));
+        let mut state = TextEditState::load(ctx, id_of(open)).unwrap_or_default();
+        state.cursor.set_char_range(Some(CCursorRange::two(ends[0], ends[1])));
+        state.store(ctx, id_of(open));
+        self.cursor = [place.end, place.start];
+        self.reveals = true;
+    }
+
+    /// Replaces the text as typing would.
+    pub(super) fn put(&mut self, text: String, context: &mut PanelContext<'_>) {
+        self.buffer = text;
+        self.typed(context);
+    }
+
+    fn typed(&mut self, context: &mut PanelContext<'_>) {
+        let text: Arc<str> = self.buffer.as_str().into();
+        if let Some((number, same)) = &mut self.same {
+            *same = text.clone();
+            context.act(Action::Code(CodeCommand::Type(*number, text)));
+        }
+    }
+
+    /// The text before the cursor.
+    fn before(&self) -> &str {
+        &self.buffer[..self.buffer.floor_char_boundary(self.cursor[0])]
+    }
+
+    pub(super) fn field(&mut self, ui: &mut Ui, open: &OpenCode, context: &mut PanelContext<'_>) {
+        let (ctx, id) = (ui.ctx().clone(), id_of(open));
+        if let Some((number, wanted)) = context.session().code.goto
+            && number == open.number
+        {
+            let start = line(&self.buffer, wanted).start;
+            self.select(&ctx, open, start..start);
+            ctx.memory_mut(|memory| memory.request_focus(id));
+            context.act(Action::Code(CodeCommand::Arrived));
+        }
+        self.obey(ui, open, context);
+        finder::show(ui, self, open, context);
+        let whole = ui.available_rect_before_wrap();
+        let (text, foot) = whole.split_top_bottom_at_y(whole.bottom() - FOOT);
+        ui.painter().rect_filled(text, 2.0, Palette::here(ui).field);
+        let before = self.buffer.len();
+        let field = ui.scope_builder(UiBuilder::new().max_rect(text), |ui| self.text(ui, id, open, context));
+        if field.inner && self.buffer.len() > before {
+            self.begin_offer(open, false, context);
+        }
+        self.offers(ui, open, context);
+        theme::column(ui, foot, |ui| self.foot(ui, open, context));
+        let line = self.before().rsplit('\n').next().unwrap_or_default();
+        let indent = line.chars().take_while(|c| matches!(c, ' ' | '\t')).collect();
+        let finds = self.finder.open;
+        let (offers, takes_enter) = (self.offer.is_some(), self.offer.as_ref().is_some_and(|o| o.wanted));
+        kept::with(&ctx, |typing: &mut Typing| {
+            (typing.id, typing.offers, typing.takes_enter) = (Some(id), offers, takes_enter);
+            (typing.finds, typing.indent) = (finds, indent);
+        });
+    }
+
+    /// Does what keys asked for.
+    fn obey(&mut self, ui: &Ui, open: &OpenCode, context: &mut PanelContext<'_>) {
+        let asked = kept::with(ui.ctx(), |typing: &mut Typing| std::mem::take(&mut typing.asked));
+        for ask in asked {
+            match ask {
+                keyboard::Ask::Find(replace) => self.begin_finding(replace),
+                keyboard::Ask::Next(backwards) => self.find_next(ui.ctx(), open, backwards),
+                keyboard::Ask::Escape => {
+                    if self.offer.take().is_none() {
+                        self.finder.open = false;
+                    }
+                    ui.ctx().memory_mut(|memory| memory.request_focus(id_of(open)));
+                }
+                keyboard::Ask::Complete => self.begin_offer(open, true, context),
+                keyboard::Ask::Choose(by) => {
+                    if let Some(offering) = &mut self.offer {
+                        let count = offering.offer.words.len();
+                        offering.chosen = (offering.chosen + count).saturating_add_signed(by) % count.max(1);
+                        offering.wanted = true;
+                    }
+                }
+                keyboard::Ask::Accept => self.accept(ui.ctx(), open, context),
+            }
+        }
+    }
+
+    /// The gutter and the text. True if something was typed.
+    fn text(&mut self, ui: &mut Ui, id: Id, open: &OpenCode, context: &mut PanelContext<'_>) -> bool {
+        let (palette, font) = (Palette::here(ui), TextStyle::Monospace.resolve(ui.style()));
+        let digits = self.buffer.split('\n').count().to_string().len().max(3);
+        let letter = ui.fonts_mut(|fonts| fonts.glyph_width(&font, '0'));
+        let gutter = letter * digits as f32 + 2.0 * GAP;
+        let whole = ui.available_rect_before_wrap();
+        let (numbers, inside) = whole.split_left_right_at_x(whole.left() + gutter);
+        let before = self.buffer.len();
+        let marks = self.marks(open, context.session());
+        let mut shown = None;
+        ui.scope_builder(UiBuilder::new().max_rect(inside), |ui| {
+            ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
+                let Self { buffer, layouts, .. } = self;
+                let language = language(open);
+                let mut lay =
+                    |ui: &Ui, text: &dyn TextBuffer, _: f32| layouts.lay(ui, text.as_str(), language);
+                let output = TextEdit::multiline(buffer)
+                    .id(id)
+                    .font(TextStyle::Monospace)
+                    .lock_focus(true)
+                    .frame(egui::Frame::NONE)
+                    .desired_width(f32::INFINITY)
+                    .min_size(ui.available_size())
+                    .layouter(&mut lay)
+                    .show(ui);
+                if let Some(cursor) = output.cursor_range {
+                    let ends = [cursor.primary, cursor.secondary].map(|c| byte(buffer, c.index.0));
+                    if std::mem::replace(&mut self.cursor, ends) != ends && !output.response.changed() {
+                        self.offer = None;
+                    }
+                }
+                if std::mem::take(&mut self.reveals) {
+                    let at = CCursor::new(character(buffer, self.cursor[0]));
+                    let place = output.galley.pos_from_cursor(at).translate(output.galley_pos.to_vec2());
+                    ui.scroll_to_rect(place.expand2(vec2(8.0, 24.0)), None);
+                }
+                self.places(ui, &output.galley, output.galley_pos, &palette);
+                self.underline(ui, &marks, &output.galley, output.galley_pos, &palette);
+                let at = output.galley.pos_from_cursor(CCursor::new(character(&self.buffer, self.cursor[0])));
+                self.cursor_at = at.translate(output.galley_pos.to_vec2());
+                shown = Some((
+                    output.galley.clone(),
+                    output.galley_pos,
+                    output.response.changed(),
+                    ui.clip_rect(),
+                ));
+            });
+        });
+        let Some((galley, at, changed, clip)) = shown else { return false };
+        if changed || before != self.buffer.len() {
+            self.typed(context);
+        }
+        self.gutter(ui, numbers, &marks, &galley, at, clip);
+        changed
+    }
+
+    /// Numbers of the lines in sight.
+    fn gutter(&self, ui: &Ui, place: Rect, marks: &[Mark], galley: &Galley, at: Pos2, clip: Rect) {
+        let (palette, font) = (Palette::here(ui), TextStyle::Monospace.resolve(ui.style()));
+        let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
+        let now = self.before().matches('\n').count();
+        for row in in_sight(galley, at, clip) {
+            let y = at.y + galley.rows[row].pos.y;
+            let colour = if row == now { palette.text } else { palette.weak };
+            if marks.iter().any(|mark| mark.line == row + 1) {
+                let centre = pos2(place.left() + 0.6 * GAP, y + 0.5 * galley.rows[row].size.y);
+                icon::severity(&painter, centre, 4.5, Severity::Error, &palette);
+            }
+            let place = pos2(place.right() - GAP, y);
+            painter.text(place, Align2::RIGHT_TOP, (row + 1).to_string(), font.clone(), colour);
+        }
+    }
+
+    /// Lines below the words with errors.
+    fn underline(&self, ui: &Ui, marks: &[Mark], galley: &Galley, at: Pos2, palette: &Palette) {
+        let rows = in_sight(galley, at, ui.clip_rect());
+        for mark in marks.iter().filter(|mark| rows.contains(&mark.line.saturating_sub(1))) {
+            let row = &galley.rows[mark.line.saturating_sub(1)];
+            let text = &self.buffer[line(&self.buffer, mark.line)];
+            let from = mark.column.saturating_sub(1).min(text.chars().count());
+            let word = text.chars().skip(from).take_while(|c| tokens::is_of_word(*c)).count().max(1);
+            let (from, to) = match mark.column {
+                0 => (0, text.chars().count().max(1)),
+                _ => (from, from + word),
+            };
+            let x = |column: usize| at.x + row.pos.x + row.x_offset(column.into());
+            let y = at.y + row.pos.y + row.size.y - 1.0;
+            let right = x(to).max(x(from) + 4.0);
+            ui.painter().hline(x(from)..=right, y, Stroke::new(2.0, palette.error));
+        }
+    }
+
+    /// The places that were found.
+    fn places(&self, ui: &Ui, galley: &Galley, at: Pos2, palette: &Palette) {
+        let rows = in_sight(galley, at, ui.clip_rect());
+        for place in self.finder.places_in(&self.buffer, &rows) {
+            let [from, to] = [place.start, place.end]
+                .map(|byte| galley.pos_from_cursor(CCursor::new(character(&self.buffer, byte))));
+            let area = from.union(to).translate(at.to_vec2());
+            let stroke = Stroke::new(1.0, palette.warning);
+            ui.painter().rect_stroke(area.expand(1.0), 2.0, stroke, StrokeKind::Outside);
+        }
+    }
+
+    /// The line below the text.
+    fn foot(&mut self, ui: &mut Ui, open: &OpenCode, context: &PanelContext<'_>) {
+        let before = self.before();
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |last| last.chars().count()) + 1;
+        let marks = self.marks(open, context.session());
+        let (language, parameters, at) = (language(open), self.parameters(open), self.cursor[0]);
+        let known = kept::of_key(ui.ctx(), Id::new("help in the code"), (open.text.to_string(), at), || {
+            self.vocabulary(context);
+            let (_, words) = self.vocabulary.as_ref()?;
+            words.help(&self.buffer, at, language, parameters)
+        });
+        let mut goes = None;
+        ui.horizontal(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(theme::small(ui, format!("line {line}, column {column}")));
+                if !marks.is_empty() && ui.small_button("Next error").clicked() {
+                    let next = marks.iter().find(|mark| mark.line > line).or(marks.first());
+                    goes = next.map(|mark| mark.line);
+                }
+                let here = marks.iter().find(|mark| mark.line == line).or(marks.first());
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| said(ui, here, known));
+            });
+        });
+        if let Some(wanted) = goes {
+            let start = self::line(&self.buffer, wanted).start;
+            self.select(ui.ctx(), open, start..start);
+            ui.ctx().memory_mut(|memory| memory.request_focus(id_of(open)));
+        }
+    }
+}
+
+/// An error, or help for a word.
+fn said(ui: &mut Ui, mark: Option<&Mark>, word: Option<Word>) {
+    if let Some(mark) = mark {
+        icon::sign(ui, [14.0, 18.0], 5.0, Severity::Error);
+        let text = RichText::new(format!("line {}: {}", mark.line, mark.message));
+        ui.add(Label::new(text.color(Palette::here(ui).error)).truncate());
+    } else if let Some(word) = word {
+        ui.add(Label::new(RichText::new(&word.usage).monospace()).truncate());
+        ui.add(Label::new(theme::small(ui, word.help)).truncate());
+    }
+}
+
+/// The rows of a layout that are in sight.
+fn in_sight(galley: &Galley, at: Pos2, clip: Rect) -> Range<usize> {
+    let above = |y: f32| galley.rows.partition_point(|row| at.y + row.pos.y + row.size.y < y);
+    above(clip.top())..(above(clip.bottom()) + 1).min(galley.rows.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_characters_and_lines_lead_to_each_other() {
+        let text = "é\nab\n\n漢";
+        for (at, _) in text.char_indices().chain([(text.len(), ' ')]) {
+            assert_eq!(byte(text, character(text, at)), at);
+        }
+        assert_eq!((byte(text, 99), character(text, 1)), (text.len(), 0));
+        assert_eq!([1, 2, 3, 4, 9].map(|number| &text[line(text, number)]), ["é", "ab", "", "漢", "漢"]);
+        assert_eq!(line("", 1), 0..0);
+    }
+}

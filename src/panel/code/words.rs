@@ -1,0 +1,484 @@
+//! The words that the editor offers and explains: WGSL, the program's vocabulary, declared parameters, names in the
+//! text; for JSON the keys and values of the schema.
+
+use std::{collections::BTreeSet, ops::Range};
+
+use serde_json::Value as Json;
+
+use super::tokens::{Language, Sort, is_of_word, tokens};
+use crate::{
+    parameter::Parameter,
+    registry::Registry,
+    scene::schema,
+    shader::compose::{OPTICS, TRANSMISSION},
+};
+
+/// Words of WGSL and keys of declarations: the sort, the word, its use, and a sentence.
+const TABLE: &str = include_str!("../../../assets/text/wgsl.tsv");
+/// Greatest size of a text whose own names are offered, bytes: they are collected while one types.
+const MOST_NAMED: usize = 64 << 10;
+/// Most words that are offered.
+pub const MOST_OFFERED: usize = 200;
+/// Greatest depth of JSON in which keys are found.
+const DEEPEST: usize = 64;
+
+/// A word.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Word {
+    /// The word.
+    pub name: String,
+    /// The text that it is in the file.
+    pub insert: String,
+    /// How it is used.
+    pub usage: String,
+    /// A sentence about it.
+    pub help: String,
+}
+
+impl Word {
+    fn new(name: &str, usage: &str, help: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            insert: name.to_owned(),
+            usage: usage.to_owned(),
+            help: help.to_owned(),
+        }
+    }
+
+    fn json(name: &str, usage: &str, help: &str) -> Self {
+        Self { insert: format!("\"{name}\""), ..Self::new(name, usage, help) }
+    }
+}
+
+/// All words that do not depend on the text.
+#[derive(Debug)]
+pub struct Vocabulary {
+    functions: Vec<Word>,
+    frame: Vec<Word>,
+    keys: Vec<Word>,
+    schema: Json,
+}
+
+/// A place in a text, with the words that fit there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Offer {
+    /// The bytes that a word replaces.
+    pub place: Range<usize>,
+    /// The words, the likeliest first.
+    pub words: Vec<Word>,
+}
+
+impl Vocabulary {
+    /// The words with these models.
+    #[must_use]
+    pub fn of(registry: &Registry) -> Self {
+        let rows = |sort: &'static str| {
+            TABLE.lines().filter_map(move |line| {
+                let mut cells = line.split('\t');
+                let [of, name, usage, help] = std::array::from_fn(|_| cells.next().unwrap_or_default());
+                (of == sort).then_some((name, usage, help))
+            })
+        };
+        let word = |(name, usage, help): (&str, &str, &str)| Word::new(name, usage, help);
+        let mut functions: Vec<_> = rows("call").chain(rows("word")).map(word).collect();
+        for source in OPTICS.iter().chain(TRANSMISSION) {
+            functions.extend(defined(registry.sources().text(source)));
+        }
+        functions.sort_by(|a, b| a.name.cmp(&b.name));
+        functions.dedup_by(|a, b| a.name == b.name);
+        Self {
+            functions,
+            frame: rows("frame").map(word).collect(),
+            keys: rows("key").map(|(name, usage, help)| Word::json(name, usage, help)).collect(),
+            schema: schema::schema(registry),
+        }
+    }
+
+    /// The words that fit at a byte of a text. `parameters` are those that the model declares.
+    #[must_use]
+    pub fn offer(&self, text: &str, at: usize, language: Language, parameters: &[Parameter]) -> Offer {
+        let at = text.floor_char_boundary(at);
+        let declares = language == Language::Wgsl && in_declaration(text, at);
+        if language == Language::Json || declares {
+            return self.offer_json(text, at, declares);
+        }
+        let start = text[..at].len()
+            - text[..at].chars().rev().take_while(|c| is_of_word(*c)).map(char::len_utf8).sum::<usize>();
+        let (begun, place) = (&text[start..at], start..at);
+        let before = &text[..start];
+        let words = match owner(before) {
+            Some("m") => fitting(parameters.iter().map(described), begun),
+            Some("frame") => fitting(self.frame.iter().cloned(), begun),
+            Some(_) => Vec::new(),
+            None => {
+                let known: BTreeSet<_> = self.functions.iter().map(|word| word.name.as_str()).collect();
+                let own = names(text, start, &known);
+                fitting(self.functions.iter().cloned().chain(own), begun)
+            }
+        };
+        Offer { place, words }
+    }
+
+    fn offer_json(&self, text: &str, at: usize, declares: bool) -> Offer {
+        let word = text[..at].len()
+            - text[..at]
+                .chars()
+                .rev()
+                .take_while(|c| is_of_word(*c) || *c == '$')
+                .map(char::len_utf8)
+                .sum::<usize>();
+        let quoted = text[..word].ends_with('"');
+        let start = if quoted { word - 1 } else { word };
+        let end = if quoted && text[at..].starts_with('"') { at + 1 } else { at };
+        let begun = &text[word..at];
+        if declares {
+            return Offer { place: start..end, words: fitting(self.keys.iter().cloned(), begun) };
+        }
+        let here = place_in(&text[..start]);
+        let nodes = self.nodes(&here.path);
+        let words: Vec<_> = match here.is_key {
+            true => {
+                let follows = text[end..].trim_start().starts_with(':');
+                let keys = nodes.iter().filter_map(|node| node["properties"].as_object()).flatten();
+                let key = |(key, node): (&String, &Json)| Word {
+                    insert: if follows { format!("\"{key}\"") } else { format!("\"{key}\": ") },
+                    ..Word::json(key, &usage(node), text_of(node, "description"))
+                };
+                keys.map(key).collect()
+            }
+            false => nodes.iter().flat_map(|node| values(node)).collect(),
+        };
+        let mut words = fitting(words.into_iter(), begun);
+        words.dedup_by(|a, b| a.name == b.name);
+        Offer { place: start..end, words }
+    }
+
+    /// The word at a byte of a text, if anything is known about it.
+    #[must_use]
+    pub fn help(&self, text: &str, at: usize, language: Language, parameters: &[Parameter]) -> Option<Word> {
+        let at = text.floor_char_boundary(at);
+        let before: usize = text[..at].chars().rev().take_while(|c| is_of_word(*c)).map(char::len_utf8).sum();
+        let after: usize = text[at..].chars().take_while(|c| is_of_word(*c)).map(char::len_utf8).sum();
+        let word = &text[at - before..at + after];
+        if word.is_empty() {
+            return None;
+        }
+        let known = |known: &Word| known.name == word && !known.help.is_empty();
+        let declares = language == Language::Wgsl && in_declaration(text, at);
+        if language == Language::Json || declares {
+            return self.offer_json(text, at + after, declares).words.into_iter().find(known);
+        }
+        match owner(&text[..at - before]) {
+            Some("m") => parameters.iter().map(described).find(known),
+            Some("frame") => self.frame.iter().find(|word| known(word)).cloned(),
+            Some(_) => None,
+            None => self.functions.iter().find(|word| known(word)).cloned(),
+        }
+    }
+
+    /// The parts of the schema that may stand at a path.
+    fn nodes(&self, path: &[Step]) -> Vec<&Json> {
+        let mut now = alternatives(&self.schema);
+        for step in path {
+            let next: Vec<&Json> = match step {
+                Step::Key(key) => now
+                    .iter()
+                    .filter_map(|node| {
+                        node["properties"].get(key).or_else(|| object_of(node.get("additionalProperties")))
+                    })
+                    .collect(),
+                Step::Item => now.iter().filter_map(|node| node.get("items")).collect(),
+            };
+            now = next.into_iter().flat_map(alternatives).collect();
+        }
+        now
+    }
+}
+
+/// The name before the dot at the end of a text.
+fn owner(before: &str) -> Option<&str> {
+    let rest = before.strip_suffix('.')?;
+    let length: usize = rest.chars().rev().take_while(|c| is_of_word(*c)).map(char::len_utf8).sum();
+    Some(&rest[rest.len() - length..])
+}
+
+fn object_of(node: Option<&Json>) -> Option<&Json> {
+    node.filter(|node| node.is_object())
+}
+
+/// A part of a schema, and the alternatives and additions in it.
+fn alternatives(node: &Json) -> Vec<&Json> {
+    let mut all = vec![node];
+    for list in ["oneOf", "anyOf", "allOf"] {
+        all.extend(node[list].as_array().into_iter().flatten().flat_map(alternatives));
+    }
+    for part in ["then", "else"] {
+        all.extend(node.get(part).map(alternatives).into_iter().flatten());
+    }
+    all
+}
+
+fn text_of<'a>(node: &'a Json, key: &str) -> &'a str {
+    node[key].as_str().unwrap_or_default()
+}
+
+/// The values that a part of a schema names.
+fn values(node: &Json) -> Vec<Word> {
+    let word = |value: &Json| {
+        let shown = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        Word {
+            insert: value.to_string(),
+            ..Word::new(&shown, text_of(node, "title"), text_of(node, "description"))
+        }
+    };
+    let mut all: Vec<_> = node
+        .get("const")
+        .into_iter()
+        .chain(node["enum"].as_array().into_iter().flatten())
+        .map(word)
+        .collect();
+    if node["type"] == "boolean" {
+        all.extend([Json::Bool(true), Json::Bool(false)].iter().map(word));
+    }
+    all
+}
+
+/// The type and the range of a key.
+fn usage(node: &Json) -> String {
+    let kind = text_of(node, "type");
+    let number = |keys: [&str; 2]| keys.iter().find_map(|key| node.get(*key)).map(Json::to_string);
+    match (number(["minimum", "exclusiveMinimum"]), number(["maximum", "exclusiveMaximum"])) {
+        (Some(least), Some(most)) => format!("{kind}, {least} to {most}"),
+        (Some(least), None) => format!("{kind}, from {least}"),
+        _ => kind.to_owned(),
+    }
+}
+
+fn described(parameter: &Parameter) -> Word {
+    let unit = if parameter.unit.is_empty() { String::new() } else { format!(", {}", parameter.unit) };
+    let usage = format!("m.{}: {}{unit}", parameter.name, parameter.rule());
+    Word::new(parameter.name, &usage, parameter.help)
+}
+
+/// The words that begin as the typed one does, then those that contain it.
+fn fitting(words: impl Iterator<Item = Word>, begun: &str) -> Vec<Word> {
+    let begun = begun.to_ascii_lowercase();
+    let mut all: Vec<_> = words
+        .filter_map(|word| {
+            let at = word.name.to_ascii_lowercase().find(&begun)?;
+            Some((at > 0, word))
+        })
+        .collect();
+    all.sort_by(|a, b| (a.0, &a.1.name).cmp(&(b.0, &b.1.name)));
+    all.truncate(MOST_OFFERED);
+    all.into_iter().map(|(_, word)| word).collect()
+}
+
+/// The names in a text, but for that at a byte.
+fn names(text: &str, but: usize, known: &BTreeSet<&str>) -> Vec<Word> {
+    if text.len() > MOST_NAMED {
+        return Vec::new();
+    }
+    let mut coloured = tokens(text, Language::Wgsl).into_iter().peekable();
+    let (mut at, mut found) = (0, BTreeSet::new());
+    while at < text.len() {
+        while coloured.peek().is_some_and(|(range, _)| range.end <= at) {
+            coloured.next();
+        }
+        if let Some((range, sort)) = coloured.peek().filter(|(range, _)| range.start <= at)
+            && *sort != Sort::Function
+        {
+            at = range.end;
+            continue;
+        }
+        let length: usize = text[at..].chars().take_while(|c| is_of_word(*c)).map(char::len_utf8).sum();
+        if length > 2 && at != but && !known.contains(&text[at..at + length]) {
+            found.insert(&text[at..at + length]);
+        }
+        at += length.max(text[at..].chars().next().map_or(1, char::len_utf8));
+    }
+    found.into_iter().map(|name| Word::new(name, "in this text", "")).collect()
+}
+
+/// The functions that a text defines, with the comments above them.
+fn defined(text: &str) -> Vec<Word> {
+    let lines: Vec<_> = text.lines().collect();
+    let each = lines.iter().enumerate().filter_map(|(i, line)| {
+        let name = line.strip_prefix("fn ")?.split('(').next()?;
+        let above = lines[..i].iter().rev().take_while(|line| line.starts_with("//"));
+        let mut help: Vec<_> = above.map(|line| line.trim_start_matches('/').trim()).collect();
+        help.reverse();
+        let usage = line.trim_end_matches(['{', ' ']);
+        Some(Word::new(name, usage, &help.join(" ")))
+    });
+    each.collect()
+}
+
+/// True if a byte is within the declaration of a model.
+fn in_declaration(text: &str, at: usize) -> bool {
+    crate::custom::declaration_place(text).is_some_and(|place| place.start <= at && at <= place.end)
+}
+
+/// A step from a value of JSON to one in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Step {
+    Key(String),
+    Item,
+}
+
+/// A place in JSON.
+struct Here {
+    /// The way to it.
+    path: Vec<Step>,
+    /// True if a key is expected.
+    is_key: bool,
+}
+
+/// The place at the end of the beginning of a JSON text.
+fn place_in(text: &str) -> Here {
+    // Open brackets: the key that is being given a value, or `None` in a list.
+    let mut open: Vec<Option<String>> = Vec::new();
+    let mut is_key = false;
+    let mut last = "";
+    let mut words = tokens(text, Language::Json).into_iter().peekable();
+    let mut at = 0;
+    while at < text.len() {
+        if let Some((range, sort)) = words.next_if(|(range, _)| range.start <= at) {
+            if sort == Sort::Key || sort == Sort::Text {
+                last = &text[range.clone()];
+            }
+            at = range.end.max(at + 1);
+            continue;
+        }
+        let byte = text.as_bytes()[at];
+        match byte {
+            b'{' if open.len() < DEEPEST => (_, is_key) = (open.push(Some(String::new())), true),
+            b'[' if open.len() < DEEPEST => (_, is_key) = (open.push(None), false),
+            b'}' | b']' => {
+                open.pop();
+                is_key = false;
+            }
+            b':' => {
+                if let Some(Some(key)) = open.last_mut() {
+                    last.trim_matches('"').clone_into(key);
+                }
+                is_key = false;
+            }
+            b',' => is_key = matches!(open.last(), Some(Some(_))),
+            _ => {}
+        }
+        at += 1;
+    }
+    let mut path: Vec<_> = open.into_iter().map(|key| key.map_or(Step::Item, Step::Key)).collect();
+    if is_key {
+        path.pop();
+    }
+    Here { path, is_key }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn offered(before: &str, after: &str, language: Language, parameters: &[Parameter]) -> Vec<String> {
+        let vocabulary = Vocabulary::of(&Registry::builtin());
+        let text = format!("{before}{after}");
+        let offer = vocabulary.offer(&text, before.len(), language, parameters);
+        offer.words.into_iter().map(|word| word.name).collect()
+    }
+
+    #[test]
+    fn every_word_of_the_table_has_its_use_and_a_sentence() {
+        for line in TABLE.lines() {
+            let cells: Vec<_> = line.split('\t').collect();
+            assert_eq!(cells.len(), 4, "{line}");
+            assert!(cells[3].ends_with('.') && cells[2].contains(cells[1]), "{line}");
+        }
+    }
+
+    #[test]
+    fn functions_of_the_vocabulary_are_offered_with_their_comments() {
+        let vocabulary = Vocabulary::of(&Registry::builtin());
+        let text = "let f = schl";
+        let offer = vocabulary.offer(text, text.len(), Language::Wgsl, &[]);
+        assert_eq!(&text[offer.place.clone()], "schl");
+        let names: Vec<_> = offer.words.iter().map(|word| word.name.as_str()).collect();
+        assert_eq!(names[..3], ["schlick", "schlick_smith", "schlick_weight"]);
+        assert!(
+            offer.words[0].usage.starts_with("fn schlick(f0")
+                && offer.words[0].help.contains("Schlick (1994)")
+        );
+        // Names of the text, but not the one that is being typed.
+        assert_eq!(offered("let my_gloss = 1.0;\nlet y = my_g", ";", Language::Wgsl, &[]), ["my_gloss"]);
+        assert!(offered("// my_comment\nlet y = my_c", "", Language::Wgsl, &[]).is_empty());
+    }
+
+    #[test]
+    fn after_m_and_frame_their_members_are_offered() {
+        let registry = Registry::builtin();
+        let phong = registry.model("phong").expect("built in").parameters;
+        let all = offered("let x = m.", ";", Language::Wgsl, phong);
+        let mut expected: Vec<_> = phong.iter().map(|p| p.name.to_owned()).collect();
+        expected.sort();
+        assert_eq!(all, expected);
+        assert_eq!(offered("frame.", "", Language::Wgsl, phong), ["b", "n", "t"]);
+        assert!(offered("v.", "", Language::Wgsl, phong).is_empty());
+        assert!(offered("lemm.", "", Language::Wgsl, phong).is_empty());
+    }
+
+    #[test]
+    fn keys_of_a_declaration_are_offered_in_it_alone() {
+        let text = "/* lcm { \"na";
+        assert!(offered(text, "\" } */ fn f() {}", Language::Wgsl, &[]).contains(&"name".to_owned()));
+        assert!(!offered("/* lcm {} */ fn f() { na", " }", Language::Wgsl, &[]).contains(&"name".to_owned()));
+    }
+
+    #[test]
+    fn json_has_the_keys_and_the_values_of_the_schema_at_its_place() {
+        let of = |before: &str, after: &str| offered(before, after, Language::Json, &[]);
+        assert!(of("{ \"", "\" }").contains(&"lights".to_owned()));
+        assert!(!of("{ \"lights\": [ { \"", "\" } ] }").contains(&"lights".to_owned()));
+        assert!(of("{ \"lights\": [ { \"pos", "\" } ] }").contains(&"position".to_owned()));
+        assert!(
+            of("{ \"objects\": [ {}, { \"material\": { \"rough", "\" } } ] }")
+                .contains(&"roughness".to_owned())
+        );
+        assert!(of("{ \"reflection_model\": \"pho", "\" }").contains(&"phong".to_owned()));
+        let vocabulary = Vocabulary::of(&Registry::builtin());
+        let text = "{ \"ligh\" }";
+        let offer = vocabulary.offer(text, 7, Language::Json, &[]);
+        assert_eq!((&text[offer.place], offer.words[0].insert.as_str()), ("\"ligh\"", "\"lights\": "));
+    }
+
+    #[test]
+    fn the_word_under_the_cursor_is_explained() {
+        let vocabulary = Vocabulary::of(&Registry::builtin());
+        let help = |text: &str, language| {
+            let at = text.find('|').expect("a cursor");
+            vocabulary.help(&text.replace('|', ""), at, language, &[])
+        };
+        assert!(
+            help("let c = do|t(a, b);", Language::Wgsl)
+                .is_some_and(|word| word.help.contains("scalar product"))
+        );
+        assert!(help("let c = |schlick(f0, x);", Language::Wgsl).is_some());
+        assert!(help("let c = nothing|;", Language::Wgsl).is_none());
+        assert!(help("let c| = 1;", Language::Wgsl).is_none());
+        assert!(help("{ \"li|ghts\": [] }", Language::Json).is_some_and(|word| !word.help.is_empty()));
+    }
+
+    #[test]
+    fn whatever_the_text_a_place_is_found_in_it() {
+        let vocabulary = Vocabulary::of(&Registry::builtin());
+        let deep = "[{\"a\":".repeat(20_000);
+        for text in [&deep, "é漢\"", "{\"é", "m.é", "/* lcm \"", "\"\\", "}}}]]]:::,,,"] {
+            for language in [Language::Wgsl, Language::Json] {
+                for at in [0, 1, 2, 3, text.len(), text.len() + 9] {
+                    let offer = vocabulary.offer(text, at, language, &[]);
+                    assert!(text.get(offer.place.clone()).is_some(), "{text:?} {at}");
+                    let _ = vocabulary.help(text, at, language, &[]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,436 @@
+//! The texts that are open in the editor: files of shaders and custom models, and the scene as JSON.
+//!
+//! A text of a file has three versions: the one that is typed, the one that was last read or written, and that of the
+//! file now. Where both the first and the last have changed, the user decides; until then nothing is written.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use super::{Effect, Note, Session, Severity};
+use crate::{custom::source_path, files::Shown as _, registry::Registry};
+
+/// Id of the panel with the editor.
+pub const CODE_TAB: &str = "code";
+/// Greatest size of a text in the editor, bytes.
+pub const MOST_CODE: usize = 256 << 10;
+/// Name of the scene in the editor, and in messages about it.
+pub const SCENE_JSON: &str = "scene.json";
+
+/// The subject of an open text.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum CodeOf {
+    /// A file.
+    File(PathBuf),
+    /// The scene of the document.
+    Scene,
+}
+
+/// The version of the subject that another program, or another panel, made meanwhile.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Theirs {
+    /// Another text.
+    Changed(Arc<str>),
+    /// The file is gone.
+    Gone,
+    /// The file cannot be read as text, for this reason.
+    Unreadable(String),
+}
+
+/// An open text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenCode {
+    /// The subject.
+    pub of: CodeOf,
+    /// The name on its tab.
+    pub name: String,
+    /// The text as typed.
+    pub text: Arc<str>,
+    /// The text as last read or written.
+    pub base: Arc<str>,
+    /// True if lines of the file end with a carriage return and a line feed, as on Windows.
+    pub crlf: bool,
+    /// The other version, until the user has decided.
+    pub theirs: Option<Theirs>,
+    /// True while the difference from the other version is shown in place of the text.
+    pub shows_difference: bool,
+    /// True while the user is asked about unsaved changes, because the text is being closed.
+    pub closing: bool,
+    /// Unique number.
+    pub number: u64,
+}
+
+impl OpenCode {
+    /// True if there are changes that are nowhere but in the editor.
+    #[must_use]
+    pub fn is_unsaved(&self) -> bool {
+        self.text != self.base || self.theirs == Some(Theirs::Gone)
+    }
+
+    /// The text as it is written to the file.
+    #[must_use]
+    pub fn written(&self) -> String {
+        if self.crlf { self.text.replace('\n', "\r\n") } else { self.text.to_string() }
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        match &self.of {
+            CodeOf::File(path) => Some(path),
+            CodeOf::Scene => None,
+        }
+    }
+}
+
+/// Unsaved text that an earlier window left.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KeptCode {
+    /// The file that it belongs to.
+    pub path: PathBuf,
+    /// The text.
+    pub text: Arc<str>,
+    /// Its age: "5 minutes ago".
+    pub when: String,
+}
+
+/// The open texts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Code {
+    /// The texts, in the order in which they were opened.
+    pub open: Vec<OpenCode>,
+    /// Index of the visible text.
+    pub shown: usize,
+    /// The line to go to, from 1, with the number of the text; the panel takes it.
+    pub goto: Option<(u64, usize)>,
+    /// Texts of earlier windows that wait for the user.
+    pub kept: Vec<KeptCode>,
+    /// Number of texts opened so far.
+    opened: u64,
+}
+
+impl Code {
+    /// The visible text.
+    #[must_use]
+    pub fn visible(&self) -> Option<&OpenCode> {
+        self.open.get(self.shown)
+    }
+
+    /// The text with this subject.
+    #[must_use]
+    pub fn of(&self, of: &CodeOf) -> Option<&OpenCode> {
+        self.open.iter().find(|open| open.of == *of)
+    }
+
+    pub(in crate::panel) fn of_mut(&mut self, of: &CodeOf) -> Option<&mut OpenCode> {
+        self.open.iter_mut().find(|open| open.of == *of)
+    }
+
+    fn visible_mut(&mut self) -> Option<&mut OpenCode> {
+        self.open.get_mut(self.shown)
+    }
+
+    /// Makes a text visible that is open already, at a line. True if there is one.
+    pub(super) fn show(&mut self, of: &CodeOf, line: usize) -> bool {
+        let Some(at) = self.open.iter().position(|open| open.of == *of) else { return false };
+        self.shown = at;
+        self.goto = Some((self.open[at].number, line));
+        true
+    }
+
+    /// Adds a text, and makes it visible at a line.
+    pub(in crate::panel) fn add(&mut self, of: CodeOf, name: String, text: &str, line: usize) {
+        let base: Arc<str> = text.replace("\r\n", "\n").into();
+        self.opened += 1;
+        let crlf = text.contains("\r\n");
+        let open = OpenCode {
+            of,
+            name,
+            text: base.clone(),
+            base,
+            crlf,
+            theirs: None,
+            shows_difference: false,
+            closing: false,
+            number: self.opened,
+        };
+        self.open.push(open);
+        self.shown = self.open.len() - 1;
+        self.goto = Some((self.opened, line));
+    }
+}
+
+/// A command for the editor.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CodeCommand {
+    /// Open the file of the current model.
+    Model,
+    /// Open a file at a line.
+    File(PathBuf, usize),
+    /// Open the scene as JSON.
+    Scene,
+    /// Let the scene as JSON follow the document.
+    Follow,
+    /// Show the n-th open text.
+    Show(usize),
+    /// The text with this number, as typed.
+    Type(u64, Arc<str>),
+    /// The panel has gone to the line.
+    Arrived,
+    /// Write the visible text to its file, or make its scene that of the document.
+    Save,
+    /// Close the visible text, after a question about unsaved changes.
+    Close,
+    /// Close it, and lose the changes.
+    Discard,
+    /// Do not close it.
+    Stay,
+    /// Keep the text as typed; saving it replaces the other version.
+    KeepMine,
+    /// Take the other version; undoing in the editor brings back the text as typed.
+    TakeTheirs,
+    /// Show the difference from the other version, or the text.
+    Difference(bool),
+    /// Continue with the text of this file that an earlier window left.
+    Recover(PathBuf),
+}
+
+impl Session {
+    /// Applies a command for the editor.
+    pub(super) fn code(&mut self, command: CodeCommand, registry: &Registry) {
+        match command {
+            CodeCommand::Model => self.edit_model_here(registry),
+            CodeCommand::File(path, line) => self.edit_file_here(path, line),
+            CodeCommand::Scene => self.edit_scene_here(registry),
+            CodeCommand::Follow => self.follow_scene(registry),
+            CodeCommand::Show(at) => self.code.shown = at.min(self.code.open.len().saturating_sub(1)),
+            CodeCommand::Type(number, text) => {
+                if let Some(open) = self.code.open.iter_mut().find(|open| open.number == number) {
+                    (open.text, open.closing) = (text, false);
+                }
+            }
+            CodeCommand::Arrived => self.code.goto = None,
+            CodeCommand::Save => self.save_code(registry),
+            CodeCommand::Close => match self.code.visible_mut() {
+                Some(open) if open.is_unsaved() => open.closing = true,
+                Some(_) => self.close_code(),
+                None => {}
+            },
+            CodeCommand::Discard => self.close_code(),
+            CodeCommand::Stay => self.code.visible_mut().into_iter().for_each(|open| open.closing = false),
+            CodeCommand::KeepMine => {
+                let Some(open) = self.code.visible_mut() else { return };
+                open.shows_difference = false;
+                match open.theirs.take() {
+                    Some(Theirs::Changed(theirs)) => open.base = theirs,
+                    // What cannot be read differs from any text.
+                    Some(Theirs::Unreadable(_)) => self.write_code(true),
+                    gone => open.theirs = gone,
+                }
+            }
+            CodeCommand::TakeTheirs => {
+                let Some(open) = self.code.visible_mut() else { return };
+                open.shows_difference = false;
+                match open.theirs.take() {
+                    Some(Theirs::Changed(theirs)) => {
+                        (open.text, open.base) = (theirs.clone(), theirs);
+                    }
+                    other => open.theirs = other,
+                }
+            }
+            CodeCommand::Difference(on) => {
+                self.code.visible_mut().into_iter().for_each(|open| open.shows_difference = on)
+            }
+            CodeCommand::Recover(path) => self.recover_code(&path),
+        }
+    }
+
+    fn close_code(&mut self) {
+        if self.code.shown < self.code.open.len() {
+            self.code.open.remove(self.code.shown);
+            self.code.shown = self.code.shown.min(self.code.open.len().saturating_sub(1));
+        }
+        if self.code.open.is_empty() {
+            self.code.goto = None;
+        }
+    }
+
+    fn edit_model_here(&mut self, registry: &Registry) {
+        let id = self.model_shown();
+        let path = registry.model(id).map_or_else(|| source_path(id), |m| m.declaration.wgsl.path.to_owned());
+        match self.shaders.folders.file_of(&path) {
+            Some(file) => {
+                let line = self.line_of_trouble(&path);
+                self.edit_file_here(file, line);
+            }
+            None => self.note(
+                Note::new(Severity::Info, super::BUILT_IN)
+                    .offering("Duplicate as a file…", super::Action::Model(super::ModelCommand::Duplicate)),
+            ),
+        }
+    }
+
+    fn edit_file_here(&mut self, path: PathBuf, line: usize) {
+        self.view.unfold(CODE_TAB);
+        if !self.code.show(&CodeOf::File(path.clone()), line) {
+            self.request(Effect::OpenCode { path, line });
+        }
+    }
+
+    fn save_code(&mut self, registry: &Registry) {
+        if self.code.visible().is_some_and(|open| open.of == CodeOf::Scene) {
+            self.follow_scene(registry);
+        }
+        let Some(open) = self.code.visible() else { return };
+        match (&open.of, &open.theirs) {
+            (_, Some(Theirs::Changed(_) | Theirs::Unreadable(_))) => {
+                let text = format!("{} has changed on both sides: choose which version to keep.", open.name);
+                self.say(Severity::Warning, text);
+            }
+            (CodeOf::File(_), _) => self.write_code(false),
+            (CodeOf::Scene, _) => self.apply_scene(registry),
+        }
+    }
+
+    fn write_code(&mut self, overwrite: bool) {
+        let Some(open) = self.code.visible() else { return };
+        if let Some(path) = open.path() {
+            let path = path.to_owned();
+            self.request(Effect::SaveCode { path, overwrite });
+        }
+    }
+
+    fn recover_code(&mut self, path: &Path) {
+        let Some(at) = self.code.kept.iter().position(|kept| kept.path == path) else { return };
+        let kept = self.code.kept.remove(at);
+        let of = CodeOf::File(kept.path.clone());
+        self.view.unfold(CODE_TAB);
+        match self.code.of_mut(&of) {
+            Some(open) => open.text = kept.text,
+            None => self.request(Effect::RecoverCode { path: kept.path, text: kept.text }),
+        }
+    }
+
+    /// True if the editor has changes that are nowhere else.
+    #[must_use]
+    pub fn has_unsaved_code(&self) -> bool {
+        self.code.open.iter().any(OpenCode::is_unsaved)
+    }
+
+    /// Offers the unsaved texts that earlier windows left.
+    pub fn offer_code(&mut self, kept: Vec<KeptCode>) {
+        for kept in kept {
+            let text = format!(
+                "Unsaved text of {} was kept {}: it can be continued in the editor.",
+                kept.path.shown(),
+                kept.when
+            );
+            let command = CodeCommand::Recover(kept.path.clone());
+            self.code.kept.push(kept);
+            self.note(Note::new(Severity::Warning, text).offering("Continue", super::Action::Code(command)));
+        }
+    }
+}
+
+impl OpenCode {
+    /// Takes in the present text of the subject. Unsaved changes stay; the user decides about them.
+    pub(in crate::panel) fn found(&mut self, now: Arc<str>) {
+        if now == self.base {
+            self.theirs = None;
+        } else if now == self.text {
+            (self.base, self.theirs) = (now, None);
+        } else if self.text == self.base {
+            (self.text, self.base, self.theirs) = (now.clone(), now, None);
+        } else {
+            self.theirs = Some(Theirs::Changed(now));
+        }
+        self.shows_difference &= self.theirs.is_some();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::panel::state::Action;
+
+    fn command(session: &mut Session, command: CodeCommand) -> Vec<Effect> {
+        session.apply(Action::Code(command), &Registry::builtin())
+    }
+
+    fn typed(session: &mut Session, text: &str) {
+        let number = of(session).number;
+        assert_eq!(command(session, CodeCommand::Type(number, text.into())), []);
+    }
+
+    fn open() -> Session {
+        let mut session = Session::default();
+        session.code.add(CodeOf::File("models/a.wgsl".into()), "a.wgsl".to_owned(), "one\r\ntwo\r\n", 1);
+        session
+    }
+
+    fn of(session: &Session) -> &OpenCode {
+        session.code.visible().expect("one is open")
+    }
+
+    #[test]
+    fn line_ends_of_a_file_stay_as_they_were() {
+        let mut session = open();
+        assert_eq!(&*of(&session).text, "one\ntwo\n");
+        typed(&mut session, "one\ntwo\nthree\n");
+        assert_eq!(of(&session).written(), "one\r\ntwo\r\nthree\r\n");
+        let mut unix = Session::default();
+        unix.code.add(CodeOf::File("b".into()), "b".to_owned(), "one\n", 1);
+        assert_eq!(of(&unix).written(), "one\n");
+    }
+
+    #[test]
+    fn a_change_on_one_side_is_taken_and_one_on_both_waits_for_the_user() {
+        let theirs: Arc<str> = "one\nTHEIRS\n".into();
+        // Only on disk.
+        let mut session = open();
+        session.code.open[0].found(theirs.clone());
+        assert_eq!((&of(&session).text, of(&session).is_unsaved()), (&theirs, false));
+        // On both sides: nothing is written before the user has decided.
+        for (choice, kept, base) in [
+            (CodeCommand::KeepMine, "one\nmine\n", "one\nTHEIRS\n"),
+            (CodeCommand::TakeTheirs, "one\nTHEIRS\n", "one\nTHEIRS\n"),
+        ] {
+            let mut session = open();
+            typed(&mut session, "one\nmine\n");
+            session.code.open[0].found(theirs.clone());
+            assert_eq!(of(&session).theirs, Some(Theirs::Changed(theirs.clone())));
+            assert_eq!(&*of(&session).text, "one\nmine\n");
+            assert_eq!(command(&mut session, CodeCommand::Save), [], "nothing is written");
+            assert!(command(&mut session, CodeCommand::Difference(true)).is_empty());
+            assert!(of(&session).shows_difference);
+            command(&mut session, choice);
+            let now = of(&session);
+            assert_eq!((&*now.text, &*now.base, &now.theirs), (kept, base, &None));
+            assert!(!now.shows_difference);
+            assert_eq!(now.is_unsaved(), kept != base);
+        }
+        // Both made the same change.
+        let mut session = open();
+        typed(&mut session, "one\nTHEIRS\n");
+        session.code.open[0].found(theirs);
+        assert!(!of(&session).is_unsaved() && of(&session).theirs.is_none());
+    }
+
+    #[test]
+    fn a_text_with_changes_is_closed_only_by_a_word_of_the_user() {
+        let mut session = open();
+        typed(&mut session, "mine");
+        command(&mut session, CodeCommand::Close);
+        assert!(of(&session).closing);
+        command(&mut session, CodeCommand::Stay);
+        assert!(!of(&session).closing && session.has_unsaved_code());
+        command(&mut session, CodeCommand::Close);
+        command(&mut session, CodeCommand::Discard);
+        assert!(session.code.open.is_empty() && !session.has_unsaved_code());
+        // Without changes there is nothing to ask.
+        let mut session = open();
+        command(&mut session, CodeCommand::Close);
+        assert!(session.code.open.is_empty());
+    }
+}

@@ -1,0 +1,201 @@
+//! Copies of unsaved texts of the editor, one journal each, written by a thread a second after the first change.
+//!
+//! They are in a store of their own, so that a copy of a scene is never taken for that of a shader.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        mpsc::{self, Receiver, RecvTimeoutError, Sender},
+    },
+    thread::{self, JoinHandle},
+    time::{Duration, Instant, SystemTime},
+};
+
+use super::{Abandoned, About, Journal, Store, ago};
+use crate::{files, library::assets, program};
+
+/// Delay between the first change that is not in a copy and its writing.
+const DELAY: Duration = Duration::from_secs(1);
+/// Name of the folder with the copies, in the user's data.
+const FOLDER: &str = "recovery of code";
+/// Greatest size of a copy that is read, bytes.
+const MOST: u64 = 1 << 20;
+
+/// The texts with unsaved changes, by their files.
+pub type Texts = BTreeMap<PathBuf, Arc<str>>;
+
+impl Store {
+    /// The store of the editor's texts in the user's data; `None` without such a folder.
+    #[must_use]
+    pub fn of_texts() -> Option<Self> {
+        Some(Self::new(program::own(assets::data_folder()?).join(FOLDER)))
+    }
+}
+
+/// Keeps copies of texts up to date.
+#[derive(Debug)]
+pub struct TextKeeper {
+    wanted: Option<Sender<Texts>>,
+    last: Texts,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl TextKeeper {
+    /// Starts to keep copies in a store; without one, nothing is kept.
+    #[must_use]
+    pub fn start(store: Option<Store>) -> Self {
+        let (wanted, texts) = mpsc::channel();
+        let run = |store| {
+            thread::Builder::new().name("recovery of code".to_owned()).spawn(move || run(&store, &texts)).ok()
+        };
+        let thread = store.and_then(run);
+        Self { wanted: thread.is_some().then_some(wanted), last: Texts::new(), thread }
+    }
+
+    /// Records the texts with unsaved changes. Copies of others are no longer needed.
+    pub fn keep(&mut self, texts: Texts) {
+        if texts == self.last {
+            return;
+        }
+        self.last = texts.clone();
+        // The thread ends with this value.
+        self.wanted.iter().for_each(|wanted| drop(wanted.send(texts.clone())));
+    }
+}
+
+impl Drop for TextKeeper {
+    fn drop(&mut self) {
+        self.wanted = None;
+        self.thread.take().into_iter().for_each(|thread| drop(thread.join()));
+    }
+}
+
+/// Follows the texts until nobody sends any more; the last ones are written at once.
+fn run(store: &Store, texts: &Receiver<Texts>) {
+    let mut journals: BTreeMap<PathBuf, (Journal, Arc<str>)> = BTreeMap::new();
+    while let Ok(mut now) = texts.recv() {
+        let until = Instant::now() + DELAY;
+        let ended = loop {
+            match texts.recv_timeout(until.saturating_duration_since(Instant::now())) {
+                Ok(next) => now = next,
+                Err(RecvTimeoutError::Timeout) => break false,
+                Err(RecvTimeoutError::Disconnected) => break true,
+            }
+        };
+        update(store, &mut journals, &now);
+        if ended {
+            return;
+        }
+    }
+}
+
+fn update(store: &Store, journals: &mut BTreeMap<PathBuf, (Journal, Arc<str>)>, texts: &Texts) {
+    let gone: Vec<_> = journals.keys().filter(|path| !texts.contains_key(*path)).cloned().collect();
+    for path in gone {
+        journals.remove(&path).into_iter().for_each(|(journal, _)| journal.remove());
+    }
+    for (path, text) in texts {
+        if journals.get(path).is_some_and(|(_, kept)| kept == text) {
+            continue;
+        }
+        let title = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.clone());
+        let about = About { title, path: Some(absolute), stamp: None, process: std::process::id() };
+        let known = journals.remove(path).map(|(journal, _)| journal);
+        // Without a place for copies, the text is in the editor all the same.
+        let Some(mut journal) = known.or_else(|| store.begin().ok()) else { continue };
+        let _ = journal.write(&about, text);
+        journals.insert(path.clone(), (journal, text.clone()));
+    }
+}
+
+/// A text that an earlier window left.
+#[derive(Debug)]
+pub struct KeptText {
+    /// The file that it belongs to.
+    pub path: PathBuf,
+    /// The text.
+    pub text: String,
+    /// Its age: "5 minutes ago".
+    pub when: String,
+    copy: Abandoned,
+}
+
+impl KeptText {
+    /// Removes the copy.
+    pub fn remove(self) {
+        self.copy.journal.remove();
+    }
+
+    /// True for the copy of the text of this file.
+    #[must_use]
+    pub fn is_of(&self, path: &Path) -> bool {
+        self.path == path
+    }
+}
+
+/// The texts that earlier windows left. What cannot be read stays where it is.
+#[must_use]
+pub fn left(store: &Store) -> Vec<KeptText> {
+    let read = |copy: Abandoned| {
+        let path = copy.about.path.clone()?;
+        let text = String::from_utf8(files::read(&copy.journal.file(), MOST).ok()?).ok()?;
+        let age = SystemTime::now().duration_since(copy.when).unwrap_or_default();
+        Some(KeptText { path, text, when: ago(age), copy })
+    };
+    store.abandoned().into_iter().filter_map(read).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    fn texts(all: &[(&str, &str)]) -> Texts {
+        all.iter().map(|(path, text)| (PathBuf::from(path), Arc::from(*text))).collect()
+    }
+
+    #[test]
+    fn unsaved_texts_outlive_the_window_and_saved_ones_leave_nothing() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let store = Store::new(folder.path().join("a"));
+        let mut keeper = TextKeeper::start(Some(store.clone()));
+        keeper.keep(texts(&[("/models/a.wgsl", "a"), ("/models/b.wgsl", "b")]));
+        keeper.keep(texts(&[("/models/a.wgsl", "a 2"), ("/models/b.wgsl", "b")]));
+        // The end of the window does not wait for the delay.
+        drop(keeper);
+        let mut found: Vec<_> = left(&store).into_iter().map(|kept| (kept.path, kept.text)).collect();
+        found.sort();
+        let expected = [("/models/a.wgsl", "a 2"), ("/models/b.wgsl", "b")];
+        assert_eq!(found, expected.map(|(path, text)| (PathBuf::from(path), text.to_owned())));
+        // The user continues with one of them, and saves it.
+        let kept = left(&store);
+        for kept in kept {
+            if kept.is_of(Path::new("/models/a.wgsl")) {
+                kept.remove();
+            }
+        }
+        assert_eq!(left(&store).len(), 1);
+        let mut keeper = TextKeeper::start(Some(store.clone()));
+        keeper.keep(texts(&[("/models/c.wgsl", "c")]));
+        keeper.keep(Texts::new());
+        drop(keeper);
+        assert_eq!(left(&store).len(), 1, "what was saved needs no copy");
+    }
+
+    #[test]
+    fn a_copy_that_is_no_text_is_not_offered_and_stays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let store = Store::new(folder.path().join("a"));
+        let mut keeper = TextKeeper::start(Some(store.clone()));
+        keeper.keep(texts(&[("/models/a.wgsl", "a")]));
+        drop(keeper);
+        let file = left(&store).remove(0).copy.journal.file();
+        fs::write(&file, b"\xff").expect("writable");
+        assert!(left(&store).is_empty());
+        assert!(file.exists());
+    }
+}

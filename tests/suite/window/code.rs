@@ -1,0 +1,83 @@
+//! The editor in the window, by keyboard alone.
+
+use bevy_egui::egui::{Event, Key, Modifiers};
+use lights_camera_models::panel::state::{Action, CodeCommand, CodeOf, OpenCode, Session};
+
+use crate::window::panels::Bench;
+
+/// The modifiers that Ctrl has.
+const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
+
+fn open(bench: &Bench) -> &OpenCode {
+    bench.session.code.visible().expect("a text is open")
+}
+
+fn types(bench: &mut Bench, text: &str) {
+    bench.frame(vec![Event::Text(text.to_owned())]);
+    bench.settle();
+}
+
+/// A window with the scene as JSON, and the cursor at its start.
+fn with_scene() -> Bench {
+    let mut bench = Bench::new(Session::default());
+    bench.key(Key::J, CTRL | Modifiers::SHIFT);
+    bench.key(Key::Home, CTRL);
+    bench
+}
+
+#[test]
+fn keys_in_the_text_are_those_of_the_editor() {
+    let mut bench = with_scene();
+    assert_eq!((bench.session.view.bottom_tab.as_str(), &open(&bench).of), ("code", &CodeOf::Scene));
+    let (before, scene) = (open(&bench).text.clone(), bench.session.document.scene().clone());
+    types(&mut bench, "x");
+    assert_eq!(*open(&bench).text, *format!("x{before}"));
+    // An error is applied nowhere, and the document is not saved.
+    bench.effects.clear();
+    bench.key(Key::S, CTRL);
+    assert!(bench.effects.is_empty(), "{:?}", bench.effects);
+    assert_eq!(*bench.session.document.scene(), scene);
+    assert!(open(&bench).is_unsaved());
+    bench.key(Key::Z, CTRL);
+    assert_eq!(open(&bench).text, before);
+    assert!(!open(&bench).is_unsaved());
+    // Tab indents; letters of commands are text.
+    bench.key(Key::Tab, Modifiers::NONE);
+    bench.letter(Key::H, "h");
+    assert!(open(&bench).text.contains("    ") && open(&bench).text.contains('h'));
+    assert_ne!(open(&bench).text, before);
+}
+
+#[test]
+fn what_is_typed_is_applied_as_one_step_that_the_scene_undoes() {
+    let mut bench = with_scene();
+    let (number, text) = (open(&bench).number, open(&bench).text.to_string());
+    let name = bench.session.document.scene().name.clone().expect("the default scene has one");
+    let edited = text.replacen(&name, "Typed", 1);
+    assert_ne!(edited, text);
+    bench.apply(Action::Code(CodeCommand::Type(number, edited.as_str().into())));
+    bench.key(Key::Enter, CTRL);
+    assert_eq!(bench.session.document.scene().name.as_deref(), Some("Typed"));
+    assert_eq!(bench.session.document.done(), 1);
+    bench.apply(Action::Undo);
+    assert_eq!(bench.session.document.scene().name, Some(name));
+}
+
+#[test]
+fn places_are_found_and_replaced_from_the_keyboard() {
+    let mut bench = with_scene();
+    bench.key(Key::H, CTRL);
+    types(&mut bench, "position");
+    let count = open(&bench).text.matches("position").count();
+    let before = open(&bench).text.matches("place").count();
+    assert!(count > 1);
+    assert!(bench.says(&format!("{count} places")), "{:?}", bench.words());
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(bench.says(&format!("1 of {count}")));
+    bench.type_into("Replace by", "place");
+    bench.click("Replace all");
+    assert!(!open(&bench).text.contains("position"));
+    assert_eq!(open(&bench).text.matches("place").count(), before + count);
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(bench.session.has_unsaved_code());
+}
