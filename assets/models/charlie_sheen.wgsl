@@ -12,16 +12,16 @@
     "parameters": [
         "base_colour",
         {
-            "name": "fibre_colour", "symbol": "C_f", "label": "fibre colour", "type": "colour",
+            "name": "fibre_colour", "symbol": "C_f", "label": "fibre colour", "type": "colour", "stands_for": "sheen_colour",
             "help": "The colour of the light scattered sideways by the fibres.",
         },
         {
-            "name": "sheen_weight", "symbol": "w", "label": "sheen", "type": "number", "default": 0.7,
+            "name": "sheen_weight", "symbol": "w", "label": "sheen", "type": "number", "default": 0.7, "stands_for": "sheen",
             "help": "The fraction of the surface covered with fibres; the rest is matte.",
         },
         {
             "name": "sheen_roughness", "symbol": "r", "label": "sheen roughness", "type": "number",
-            "min": 0.1, "max": 1, "default": 0.3,
+            "min": 0.1, "max": 1, "default": 0.3, "stands_for": "sheen_roughness",
             "help": "The tilt of the fibres: small for velvet, with its narrow rim; large for wool.",
         },
     ],

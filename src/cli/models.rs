@@ -186,6 +186,10 @@ fn parameter(p: &Parameter) -> Json {
     if let Some(UsedWhen { parameter, choices }) = p.used_when {
         json["used_when"] = json!({ parameter: choices });
     }
+    if let Some(meaning) = p.stands_for {
+        json["stands_for"] =
+            json!({ "id": meaning.id, "quantity": meaning.quantity, "formula": meaning.formula });
+    }
     json["type"] = p.kind.name().into();
     for (key, value) in p.kind.keys() {
         if key != "slider_max" {

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     parameter::{
-        Parameter, ParameterKind,
+        Meaning, Parameter, ParameterKind,
         kind::{Declarations, Header, Type},
     },
     text::{
@@ -19,7 +19,8 @@ use crate::{
 };
 
 /// The keys of an entry of `parameters`, before and after those of its type.
-const KEYS: [&[&str]; 2] = [&["name", "symbol", "label", "unit", "help", "type"], &["default", "used_when"]];
+const KEYS: [&[&str]; 2] =
+    [&["name", "symbol", "label", "unit", "help", "type"], &["default", "used_when", "stands_for"]];
 
 /// The default symbol of a parameter: a Greek letter if the parameter's name begins with that letter's name.
 fn symbol_of(name: &str) -> String {
@@ -75,6 +76,7 @@ impl Reader<'_> {
             .or(shared.map(|s| s.label))
             .unwrap_or_else(|| intern::text(&name.replace('_', " ")));
         let usual_unit = kind.as_ref().map_or("", |kind| kind.unit());
+        let stands_for = self.meaning(&fields, kind.as_ref()).or(shared.and_then(|s| s.stands_for));
         let parameter = Parameter {
             name,
             symbol: given(self, "symbol", LONGEST_NAME)
@@ -87,9 +89,26 @@ impl Reader<'_> {
                 .unwrap_or_else(|| intern::text(&format!("The {label}."))),
             kind: kind?,
             used_when: self.used_when(&fields),
+            stands_for,
         };
         self.same_unit_elsewhere(named, &parameter);
         (self.mistakes.len() == before).then_some(parameter)
+    }
+
+    /// What the parameter stands for: a built-in meaning, or one of a registered model.
+    fn meaning(&mut self, fields: &Fields, kind: Option<&ParameterKind>) -> Option<&'static Meaning> {
+        let value = fields.get("stands_for")?;
+        if kind.is_some_and(|kind| Meaning::ALL[0].value_of([1.0; 3], kind).is_none()) {
+            self.wrong(value, "only numbers, triples and colours stand for a quantity");
+            return None;
+        }
+        let mut known: Vec<_> = Meaning::ALL.iter().map(|one| (one.id, *one)).collect();
+        for meaning in self.registry.material_users().flat_map(|(_, all)| all).filter_map(|p| p.stands_for) {
+            if known.iter().all(|(id, _)| *id != meaning.id) {
+                known.push((meaning.id, meaning));
+            }
+        }
+        self.word(value, "a quantity", &known)
     }
 
     /// Reports a unit that differs from that of the same parameter elsewhere: a material keeps its numbers

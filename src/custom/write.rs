@@ -225,6 +225,9 @@ fn declare(out: &mut String, p: &Parameter) {
         let choices = spaced(&json!(condition.choices));
         let _ = writeln!(out, "            \"used_when\": {{ \"{}\": {choices} }},", condition.parameter);
     }
+    if let Some(meaning) = p.stands_for {
+        let _ = writeln!(out, "            \"stands_for\": \"{}\",", meaning.id);
+    }
     let _ = writeln!(out, "            {range}\"default\": {},", spaced(&json_of(&p.default_value())));
     let _ = writeln!(out, "            \"help\": {},\n        }},", text(p.help));
 }

@@ -1,14 +1,14 @@
 //! Builder methods for declarations of parameters: adding a field to [`Parameter`] does not break existing
 //! declarations. They begin with that of a [kind](super::kind).
 
-use super::{Parameter, ParameterKind};
+use super::{Meaning, Parameter, ParameterKind};
 use crate::declared::setters;
 
 impl Parameter {
     /// A parameter whose symbol and label are its name, without unit and help.
     #[must_use]
     pub const fn new(name: &'static str, kind: ParameterKind) -> Self {
-        Self { name, symbol: name, label: name, unit: "", help: "", kind, used_when: None }
+        Self { name, symbol: name, label: name, unit: "", help: "", kind, used_when: None, stands_for: None }
     }
 
     setters! {
@@ -23,6 +23,9 @@ impl Parameter {
 
         /// Sets a sentence about the parameter's effect.
         help(help: &'static str) { help }
+
+        /// Sets what the parameter stands for, so that its value goes along to other models.
+        stands_for(meaning: &'static Meaning) { stands_for: Some(meaning) }
     }
 }
 

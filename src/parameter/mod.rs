@@ -1,8 +1,8 @@
 //! Parameters of models and lights: one declaration drives JSON, checks, the window's controls, the layout in
 //! shaders and `lcm models`.
 //!
-//! Models share parameters **by name**, so changing the model keeps the user's settings. Parameters of several models
-//! are declared here once.
+//! Models share parameters **by name**, so changing the model keeps the user's settings. What has another name goes along
+//! by its [meaning](meaning). Parameters of several models are declared here once.
 
 mod builder;
 mod component;
@@ -11,6 +11,7 @@ mod file;
 pub mod kind;
 mod layout;
 pub mod limits;
+pub mod meaning;
 mod outside;
 mod parse;
 mod reflect;
@@ -26,6 +27,7 @@ pub use file::{
 pub use kind::{ParameterKind, Value, json, lanes};
 pub use layout::{BLOCK_BYTES, layout, pack, stride, words};
 pub use limits::ABOVE_ZERO;
+pub use meaning::{Meaning, Side};
 pub use outside::Outside;
 pub use parse::ParseError;
 pub use set::ParameterSet;
@@ -53,6 +55,8 @@ pub struct Parameter {
     pub kind: ParameterKind,
     /// The condition under which the parameter is used; `None` if always. See [`Parameter::used_when`].
     pub used_when: Option<UsedWhen>,
+    /// The quantity that it stands for, by which its value goes along to a model that has it under another name.
+    pub stands_for: Option<&'static Meaning>,
 }
 
 /// A condition for the use of a parameter: another parameter of the model has one of these choices.

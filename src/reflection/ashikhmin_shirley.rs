@@ -8,7 +8,7 @@ use crate::{
         geometry::half_slope,
         lobes::{self, Lobe, Lobes},
     },
-    parameter::{BASE_COLOUR, K_S, Parameter, SPECULAR_COLOUR, Value},
+    parameter::{BASE_COLOUR, K_S, Parameter, SPECULAR_COLOUR, Value, meaning},
     parameters,
 };
 
@@ -16,13 +16,15 @@ use crate::{
 const EXPONENT_U: Parameter = Parameter::integer_from("exponent_u", 0, 10_000, 10)
     .symbol("n_u")
     .label("exponent along the tangent")
-    .help("The sharpness of the highlight along the brushing: larger values narrow it in that direction.");
+    .help("The sharpness of the highlight along the brushing: larger values narrow it in that direction.")
+    .stands_for(&meaning::EXPONENT_ALONG);
 
 /// The exponent of the highlight along the bitangent.
 const EXPONENT_V: Parameter = Parameter::integer_from("exponent_v", 0, 10_000, 200)
     .symbol("n_v")
     .label("exponent across the tangent")
-    .help("The sharpness of the highlight across the brushing. If it equals the exponent along the brushing, the surface is isotropic.");
+    .help("The sharpness of the highlight across the brushing. If it equals the exponent along the brushing, the surface is isotropic.")
+    .stands_for(&meaning::EXPONENT_ACROSS);
 
 parameters! {
     /// **Ashikhmin–Shirley** — an anisotropic Phong highlight over a diffuse base that dims beneath it.

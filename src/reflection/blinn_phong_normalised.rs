@@ -7,7 +7,7 @@ use crate::{
         lobe::{half_tangent_squared, power_of_cosine},
         lobes::{Lobe, Lobes},
     },
-    parameter::{ALPHA, BASE_COLOUR, K_S, SPECULAR_COLOUR},
+    parameter::{ALPHA, BASE_COLOUR, K_S, SPECULAR_COLOUR, meaning},
     parameters,
 };
 
@@ -45,7 +45,7 @@ parameters! {
         /// `k_s`.
         k_s: number = K_S,
         /// `α`.
-        alpha: number = ALPHA,
+        alpha: number = ALPHA.stands_for(&meaning::BLINN_PHONG_EXPONENT),
     }
 }
 

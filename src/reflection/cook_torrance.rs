@@ -12,7 +12,7 @@ use crate::{
         lobes::{self, Lobe, Lobes},
         masking::v_cavity,
     },
-    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, Value},
+    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, Value, meaning},
     parameters,
 };
 
@@ -25,7 +25,8 @@ pub(super) const SPECULAR_WEIGHT: Parameter = Parameter::number("specular_weight
 const SLOPE: Parameter = Parameter::number("slope", 0.001..=1.0, 0.2)
     .symbol("m")
     .label("slope of the facets")
-    .help("Root mean square slope of the microfacets: smaller values sharpen the highlight. 0.2 is shiny, 0.6 nearly matte.");
+    .help("Root mean square slope of the microfacets: smaller values sharpen the highlight. 0.2 is shiny, 0.6 nearly matte.")
+    .stands_for(&meaning::ALPHA_OF_FACETS);
 
 parameters! {
     /// **Cook–Torrance** — microfacets with Beckmann's distribution, and the exact Fresnel equations, which give metals

@@ -14,7 +14,7 @@ use crate::{
         lobes::{self, Lobe, Lobes},
         masking::{separable, smith_ggx},
     },
-    parameter::{BASE_COLOUR, METALLIC, Parameter, ROUGHNESS, Value},
+    parameter::{BASE_COLOUR, METALLIC, Parameter, ROUGHNESS, Value, meaning},
     parameters,
 };
 
@@ -23,17 +23,20 @@ const SUBSURFACE: Parameter = Parameter::number("subsurface", 0.0..=1.0, 0.0)
     .help("From 0, light scattered at the surface, to 1, an approximation of subsurface scattering: flatter shading, like skin, wax or marble seen from afar.");
 const SPECULAR: Parameter = Parameter::number("specular", 0.0..=1.0, 0.5)
     .symbol("s")
-    .help("The reflectance of the non-metallic part at normal incidence: 0.08 s. 0.5 gives 4 %, typical of plastic and glass.");
+    .help("The reflectance of the non-metallic part at normal incidence: 0.08 s. 0.5 gives 4 %, typical of plastic and glass.")
+    .stands_for(&meaning::DISNEY_SPECULAR);
 const SPECULAR_TINT: Parameter = Parameter::number("specular_tint", 0.0..=1.0, 0.0)
     .symbol("s_t")
     .label("specular tint")
     .help("The amount by which non-metallic reflection takes the hue of the base colour. Not physical; for effect.");
 const ANISOTROPIC: Parameter = Parameter::number("anisotropic", 0.0..=1.0, 0.0)
     .symbol("a")
-    .help("From 0, isotropic, to 1, highlights stretched along the tangent, as on brushed metal: ten times as long as across.");
+    .help("From 0, isotropic, to 1, highlights stretched along the tangent, as on brushed metal: ten times as long as across.")
+    .stands_for(&meaning::DISNEY_ANISOTROPY);
 const SHEEN: Parameter = Parameter::number("sheen", 0.0..=1.0, 0.0)
     .symbol("h")
-    .help("A bright rim at grazing angles, as from the fibres of cloth. Adds light.");
+    .help("A bright rim at grazing angles, as from the fibres of cloth. Adds light.")
+    .stands_for(&meaning::SHEEN);
 const SHEEN_TINT: Parameter = Parameter::number("sheen_tint", 0.0..=1.0, 0.5)
     .symbol("h_t")
     .label("sheen tint")
@@ -41,11 +44,13 @@ const SHEEN_TINT: Parameter = Parameter::number("sheen_tint", 0.0..=1.0, 0.5)
 const CLEARCOAT: Parameter = Parameter::number("clearcoat", 0.0..=1.0, 0.0)
     .symbol("c")
     .label("clear coat")
-    .help("The strength of a second, colourless layer of lacquer (refractive index 1.5, at most a quarter of its full reflection). Adds light.");
+    .help("The strength of a second, colourless layer of lacquer (refractive index 1.5, at most a quarter of its full reflection). Adds light.")
+    .stands_for(&meaning::CLEAR_COAT);
 const CLEARCOAT_GLOSS: Parameter = Parameter::number("clearcoat_gloss", 0.0..=1.0, 1.0)
     .symbol("c_g")
     .label("gloss of the coat")
-    .help("From 0, a satin coat, to 1, a glossy one: its width is 0.1 to 0.001.");
+    .help("From 0, a satin coat, to 1, a glossy one: its width is 0.1 to 0.001.")
+    .stands_for(&meaning::GLOSS_OF_COAT);
 
 parameters! {
     /// **Disney** — B. Burley's "principled" model: few intuitive parameters, all from 0 to 1, every combination

@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::{Declaration, ReflectionModel, built_in};
 use crate::{
     optics::{Frame, Terms, diffuse::eon},
-    parameter::{BASE_COLOUR, Parameter, ROUGHNESS},
+    parameter::{BASE_COLOUR, Parameter, ROUGHNESS, meaning},
     parameters,
 };
 
@@ -37,6 +37,7 @@ parameters! {
         /// `r`.
         roughness: number = Parameter {
             help: "From 0, matte and smooth as in Lambert's law, to 1, matte and very rough: flatter shading, darker on the side facing away from the light.",
+            stands_for: Some(&meaning::BODY_ROUGHNESS),
             ..ROUGHNESS
         },
     }

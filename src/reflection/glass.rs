@@ -18,7 +18,7 @@ use crate::{
         lobes::{Lobe, Lobes},
         sharp::{Sharp, Sharps},
     },
-    parameter::{Parameter, REFRACTIVE_INDEX, TRANSMITTANCE_COLOUR, Value},
+    parameter::{Parameter, REFRACTIVE_INDEX, TRANSMITTANCE_COLOUR, Value, meaning},
     parameters,
 };
 
@@ -29,7 +29,8 @@ const DISTANCE: Parameter = Parameter::number("distance", 0.001..=100.0, 1.0)
     .symbol("d")
     .unit("m")
     .label("distance of the colour")
-    .help("The path length in the body after which white light has the transmittance colour. Short for strongly coloured glass.");
+    .help("The path length in the body after which white light has the transmittance colour. Short for strongly coloured glass.")
+    .stands_for(&meaning::DEPTH_OF_TRANSMISSION);
 
 const DISPERSION: Parameter = Parameter::number("dispersion", 0.0..=STRONGEST, 0.0)
     .symbol("1/V_d")

@@ -5,6 +5,7 @@
 //! controls, hot-swap, laws, parity, CPU renderer, row in docs/reflection-models.md) follows from the
 //! declaration.
 
+pub mod carry;
 pub mod ends;
 pub mod law_report;
 pub mod laws;

@@ -7,7 +7,7 @@ use crate::{
         geometry::mirror,
         lobes::{Lobe, Lobes},
     },
-    parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR},
+    parameter::{ALPHA, BASE_COLOUR, K_A, K_D, K_S, SPECULAR_COLOUR, meaning},
     parameters,
 };
 
@@ -43,7 +43,7 @@ parameters! {
         /// `k_s`.
         k_s: number = K_S,
         /// `α`.
-        alpha: number = ALPHA,
+        alpha: number = ALPHA.stands_for(&meaning::PHONG_EXPONENT),
     }
 }
 

@@ -9,19 +9,21 @@ use crate::{
         lobe::{mirror_tangent_squared, power_of_cosine},
         lobes::{Lobe, Lobes},
     },
-    parameter::{BASE_COLOUR, METALLIC, Parameter, Value},
+    parameter::{BASE_COLOUR, METALLIC, Parameter, Value, meaning},
     parameters,
 };
 
 /// Strauss's smoothness.
 const SMOOTHNESS: Parameter = Parameter::number("smoothness", 0.0..=1.0, 0.6)
     .symbol("s")
-    .help("0 is dull, 1 is a mirror. One number sharpens the highlight and darkens the diffuse part.");
+    .help("0 is dull, 1 is a mirror. One number sharpens the highlight and darkens the diffuse part.")
+    .stands_for(&meaning::SMOOTHNESS);
 
 /// Strauss's transparency.
 const TRANSPARENCY: Parameter = Parameter::number("transparency", 0.0..=1.0, 0.0).symbol("t").help(
     "The fraction of light that would pass through and is lost here: nothing is visible behind the surface.",
-);
+)
+    .stands_for(&meaning::TRANSMISSION);
 
 /// Shape of F, which replaces Fresnel's equations, as published.
 const K_F: f32 = 1.12;

@@ -14,7 +14,7 @@ use crate::{
         lobes::{self, Lobe, Lobes},
         masking::v_cavity,
     },
-    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, Value},
+    parameter::{BASE_COLOUR, EXTINCTION, IOR, Parameter, Value, meaning},
     parameters,
 };
 
@@ -22,7 +22,8 @@ const FACET_SPREAD: Parameter = Parameter::number("facet_spread", 0.1..=60.0, 12
     .symbol("β")
     .label("spread of the facets")
     .unit("°")
-    .help("The angle from the normal at which facets are rarer by the factor e: smaller values sharpen the highlight. 5° is shiny, 30° nearly matte.");
+    .help("The angle from the normal at which facets are rarer by the factor e: smaller values sharpen the highlight. 5° is shiny, 30° nearly matte.")
+    .stands_for(&meaning::FACET_ANGLE);
 
 parameters! {
     /// **Torrance–Sparrow** — the first microfacet model: facets with Gaussian angles, in V-shaped cavities, with the

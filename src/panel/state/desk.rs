@@ -1,6 +1,6 @@
 //! The state of the open document besides its scene and file; a lesson sets it aside with the document.
 
-use super::{ModelSlots, OnDisk, Plots, StashedValues};
+use super::{ModelSlots, OnDisk, Plots, StashedValues, Travels};
 
 /// The state of the open document besides its scene and file.
 #[derive(Clone, Debug, Default)]
@@ -9,6 +9,8 @@ pub struct Desk {
     pub disk: OnDisk,
     /// Values of the document that no model accepts at present.
     pub(in crate::panel) stashed: StashedValues,
+    /// The ways of objects through models, on which their materials go along.
+    pub(in crate::panel) travels: Travels,
     /// Display options of the plots.
     pub plots: Plots,
     /// The models that keys 1–9 choose.

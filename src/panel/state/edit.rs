@@ -43,6 +43,7 @@ impl Session {
             _ => None,
         }));
         let before = self.document.revision();
+        let departure = self.departure(&edit);
         let row = match edit {
             Edit::Row { object, .. } => Some(self.document.row(object).map_or(object, |row| row.first)),
             _ => None,
@@ -60,6 +61,9 @@ impl Session {
         row.into_iter().for_each(|first| self.stay_in_row(selected, first));
         if let Some(id) = model {
             self.model_slots.take(&id);
+        }
+        if let Some(departure) = departure.filter(|_| self.document.revision() != before) {
+            self.carry(departure, registry);
         }
         if other_model && self.document.revision() != before {
             // Models may allow different values of a parameter that they share.

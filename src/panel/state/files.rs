@@ -245,6 +245,7 @@ impl Session {
         self.view.pin(self.view.pinned);
         self.path = path;
         self.stashed.clear();
+        self.travels.clear();
         self.renaming = None;
         self.questions.not_saved();
         self.questions.not_opened();

@@ -192,6 +192,7 @@ impl Session {
         }
         self.document = Document::new(scene);
         self.stashed.clear();
+        self.travels.clear();
         self.renaming = None;
         self.messages.another_document();
         if !self.exists(self.selection) {

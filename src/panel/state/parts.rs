@@ -106,6 +106,7 @@ impl Session {
                 self.document.insert_object(at, copy, "Duplicate", self.selection, registry);
                 if let Some((from, to)) = from.zip(self.document.object_id(at)) {
                     self.stashed.copied(from, to);
+                    self.travels.copied(from, to);
                 }
                 self.select_new(Selection::Object(at));
             }

@@ -1,6 +1,6 @@
 //! The parameters of OpenPBR.
 
-use crate::parameter::{BASE_COLOUR, Parameter, ROUGHNESS};
+use crate::parameter::{BASE_COLOUR, Parameter, ROUGHNESS, meaning};
 
 const fn fraction(name: &'static str, default: f32) -> Parameter {
     Parameter::number(name, 0.0..=1.0, default)
@@ -20,7 +20,8 @@ pub(super) const BASE_WEIGHT: Parameter = fraction("base_weight", 1.0)
 pub(super) const BASE_DIFFUSE_ROUGHNESS: Parameter = fraction("base_diffuse_roughness", 0.0)
     .symbol("σ")
     .label("roughness of the body")
-    .help("The roughness of the body that scatters light, as in EON: 0 is Lambert's law, 1 flat and chalky.");
+    .help("The roughness of the body that scatters light, as in EON: 0 is Lambert's law, 1 flat and chalky.")
+    .stands_for(&meaning::BODY_ROUGHNESS);
 pub(super) const SPECULAR_STRENGTH: Parameter = Parameter::number("specular_strength", 0.0..=10.0, 1.0)
     .symbol("ξ")
     .label("specular strength")
@@ -28,15 +29,18 @@ pub(super) const SPECULAR_STRENGTH: Parameter = Parameter::number("specular_stre
 pub(super) const SPECULAR_ANISOTROPY: Parameter = fraction("specular_roughness_anisotropy", 0.0)
     .symbol("a")
     .label("anisotropy")
-    .help("From 0, isotropic, to 1, highlights stretched along the tangent, as on brushed metal.");
+    .help("From 0, isotropic, to 1, highlights stretched along the tangent, as on brushed metal.")
+    .stands_for(&meaning::OPENPBR_ANISOTROPY);
 pub(super) const SPECULAR_IOR: Parameter = index("specular_ior", 1.5)
     .symbol("n_s")
     .label("refractive index")
-    .help("The refractive index of the non-metallic base: water 1.33, plastic and glass 1.5, diamond 2.4.");
+    .help("The refractive index of the non-metallic base: water 1.33, plastic and glass 1.5, diamond 2.4.")
+    .stands_for(&meaning::INDEX);
 pub(super) const COAT_WEIGHT: Parameter = fraction("coat_weight", 0.0)
     .symbol("C")
     .label("coat")
-    .help("The fraction of the surface under a clear coat, such as lacquer.");
+    .help("The fraction of the surface under a clear coat, such as lacquer.")
+    .stands_for(&meaning::COAT);
 pub(super) const COAT_COLOUR: Parameter = Parameter::colour("coat_colour", [255; 3])
     .symbol("C_c")
     .label("colour of the coat")
@@ -44,7 +48,8 @@ pub(super) const COAT_COLOUR: Parameter = Parameter::colour("coat_colour", [255;
 pub(super) const COAT_ROUGHNESS: Parameter = fraction("coat_roughness", 0.0)
     .symbol("r_c")
     .label("roughness of the coat")
-    .help("From 0, a mirror, to 1, a matte coat, which also blurs the reflection of the base.");
+    .help("From 0, a mirror, to 1, a matte coat, which also blurs the reflection of the base.")
+    .stands_for(&meaning::ROUGHNESS_OF_COAT);
 pub(super) const COAT_ANISOTROPY: Parameter = fraction("coat_roughness_anisotropy", 0.0)
     .symbol("a_c")
     .label("anisotropy of the coat")
@@ -60,15 +65,18 @@ pub(super) const COAT_DARKENING: Parameter = fraction("coat_darkening", 1.0)
 pub(super) const FUZZ_WEIGHT: Parameter = fraction("fuzz_weight", 0.0)
     .symbol("F_z")
     .label("fuzz")
-    .help("The amount of fuzz, a layer of fine fibres like the nap of velvet, or of dust.");
+    .help("The amount of fuzz, a layer of fine fibres like the nap of velvet, or of dust.")
+    .stands_for(&meaning::SHEEN);
 pub(super) const FUZZ_COLOUR: Parameter = Parameter::colour("fuzz_colour", [255; 3])
     .symbol("C_f")
     .label("colour of the fuzz")
-    .help("The colour of the fibres. Black fuzz darkens what lies below.");
+    .help("The colour of the fibres. Black fuzz darkens what lies below.")
+    .stands_for(&meaning::COLOUR_OF_SHEEN);
 pub(super) const FUZZ_ROUGHNESS: Parameter = fraction("fuzz_roughness", 0.5)
     .symbol("r_f")
     .label("roughness of the fuzz")
-    .help("The disorder of the fibres: small values shine at the rim alone, as velvet does, 1 like dust everywhere. 0 is no fuzz.");
+    .help("The disorder of the fibres: small values shine at the rim alone, as velvet does, 1 like dust everywhere. 0 is no fuzz.")
+    .stands_for(&meaning::ROUGHNESS_OF_SHEEN);
 pub(super) const THIN_FILM_WEIGHT: Parameter =
     fraction("thin_film_weight", 0.0).symbol("w_t").label("thin film").help(
         "The fraction of the base that has a film so thin that light interferes in it, as on soap bubbles.",
@@ -87,17 +95,20 @@ const THIN: &str = "geometry_thin_walled";
 pub(super) const TRANSMISSION_WEIGHT: Parameter = fraction("transmission_weight", 0.0)
     .symbol("w_τ")
     .label("transmission")
-    .help("The fraction of the non-metallic base that is clear: light passes through it instead of being scattered in the body.");
+    .help("The fraction of the non-metallic base that is clear: light passes through it instead of being scattered in the body.")
+    .stands_for(&meaning::TRANSMISSION);
 pub(super) const TRANSMISSION_COLOUR: Parameter = Parameter::colour("transmission_colour", [255; 3])
     .symbol("C_τ")
     .label("colour of the transmitted light")
-    .help("The colour of white light after the depth below, inside the object. At depth 0 the surface tints, wherever light enters or leaves; a thin wall does so at its single crossing.");
+    .help("The colour of white light after the depth below, inside the object. At depth 0 the surface tints, wherever light enters or leaves; a thin wall does so at its single crossing.")
+    .stands_for(&meaning::COLOUR_OF_TRANSMISSION);
 pub(super) const TRANSMISSION_DEPTH: Parameter = Parameter::number("transmission_depth", 0.0..=100.0, 0.0)
     .symbol("d_τ")
     .label("depth of the colour")
     .unit("m")
     .help("The path length inside after which white light has the transmission colour. 0 absorbs nothing: then the colour tints at the surface.")
-    .used_when(THIN, &["false"]);
+    .used_when(THIN, &["false"])
+    .stands_for(&meaning::DEPTH_OF_TRANSMISSION);
 pub(super) const DISPERSION_SCALE: Parameter = fraction("transmission_dispersion_scale", 0.0)
     .symbol("s_τ")
     .label("dispersion")

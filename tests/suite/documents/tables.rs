@@ -15,7 +15,7 @@ use lights_camera_models::{
     matching::What,
     optics::{Frame, colour::Encoding},
     panel::{Panels, command::declared, state::Session},
-    parameter::{MAX_FILES_BYTES, MAX_FILES_NUMBERS, Outside, Parameter, Value, Values},
+    parameter::{MAX_FILES_BYTES, MAX_FILES_NUMBERS, Meaning, Outside, Parameter, Side, Value, Values},
     picture::png,
     progress::Progress,
     reference::{self, Settings, Until},
@@ -114,6 +114,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                 ("gallery", gallery(&registry)),
                 ("models", models(&registry)),
                 ("parameters", parameters(&registry)),
+                ("meanings", meanings(&registry)),
             ],
         ),
         (
@@ -376,6 +377,34 @@ fn parameters(registry: &Registry) -> String {
         ]
     });
     table(&["name", "symbol", "meaning", "values", "default"], rows)
+}
+
+/// What parameters stand for: the common quantity, the scale, its source, and the parameters that have it.
+fn meanings(registry: &Registry) -> String {
+    let rows = Meaning::ALL.iter().map(|one| {
+        let mut names: Vec<&str> = registry
+            .models()
+            .iter()
+            .flat_map(|m| m.parameters)
+            .filter(|p| p.stands_for == Some(one))
+            .map(|p| p.name)
+            .collect();
+        names.sort_unstable();
+        names.dedup();
+        let side = match one.side {
+            Side::Both => "",
+            Side::Along => ", along the tangent",
+            Side::Across => ", across the tangent",
+        };
+        vec![
+            code(one.id),
+            names.into_iter().map(code).collect::<Vec<_>>().join(", "),
+            format!("{}{side}", one.quantity),
+            one.formula.to_owned(),
+            one.source.to_owned(),
+        ]
+    });
+    table(&["id", "parameters", "quantity", "its value", "source"], rows)
 }
 
 fn shading_models(registry: &Registry) -> String {

@@ -11,7 +11,7 @@ use lights_camera_models::{
         colour::{BACKGROUND, Encoding},
         lobes::{Lobe, Lobes},
     },
-    parameter::{BASE_COLOUR, Parameter, ParameterKind, Value, Values, kind::integer::Integer},
+    parameter::{BASE_COLOUR, Parameter, ParameterKind, Value, Values, kind::integer::Integer, meaning},
     reference::{self, LightSamples},
     reflection::{
         Ambient, ModelEntry,
@@ -358,6 +358,38 @@ fn a_flag_is_declared_by_its_type_or_its_default() {
     let [on, off, _] = model.parameters else { panic!("{:?}", model.parameters) };
     assert_eq!((&on.kind, &off.kind), (&ParameterKind::flag(true), &ParameterKind::flag(false)));
     assert_eq!((on.kind.wgsl(), on.rule().as_str()), ("u32", "true or false"));
+}
+
+#[test]
+fn a_parameter_says_what_it_stands_for() {
+    let read = |parameter: &str| {
+        let text = matt(&format!("{{ \"parameters\": [{parameter}] }}"));
+        custom::read(&path("lacquer"), &text, &Registry::builtin())
+    };
+    let model =
+        read(r#"{ "name": "polish", "max": 500, "stands_for": "blinn_phong_exponent" }, "roughness""#);
+    let [polish, roughness] = model.expect("valid").entry.parameters else { panic!("two") };
+    assert_eq!(polish.stands_for, Some(&meaning::BLINN_PHONG_EXPONENT));
+    assert_eq!(roughness.stands_for, Some(&meaning::PERCEPTUAL_ROUGHNESS));
+    for (parameter, said) in [
+        (r#"{ "name": "polish", "stands_for": "roughnes" }"#, "did you mean"),
+        (r#"{ "name": "polish", "stands_for": 3 }"#, "stands_for"),
+        (r#"{ "name": "polish", "choices": ["a", "b"], "stands_for": "roughness" }"#, "only numbers"),
+    ] {
+        let problems = read(parameter).map(drop).expect_err(parameter);
+        assert!(problems.iter().any(|p| p.message.contains(said)), "{parameter}: {problems:?}");
+    }
+    // A copy of a model stands for the same.
+    let registry = Registry::builtin();
+    for id in ["phong", "blinn_phong", "disney", "openpbr"] {
+        let entry = registry.model(id).expect("built in");
+        let copy = custom::duplicate(entry, registry.sources(), "copied", "Copied").expect("an id");
+        let copy = custom::read(&path("copied"), &copy, &registry).expect("valid").entry;
+        for p in entry.parameters {
+            let there = copy.parameter(p.name).unwrap_or_else(|| panic!("{id}: {}", p.name));
+            assert_eq!(there.stands_for, p.stands_for, "{id}: {}", p.name);
+        }
+    }
 }
 
 #[test]

@@ -1,0 +1,424 @@
+//! Materials go along when objects get another model: what corresponds takes its place in the new one, and goes when
+//! that model is left, so that going back gives back what was there.
+
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, HashMap},
+};
+
+use super::{ParameterPlace, Session, Severity};
+use crate::{
+    document::{Edit, Extent, PartId, Selection},
+    parameter::{Parameter, Value, Values},
+    reflection::{
+        ModelEntry,
+        carry::{Carried, Journey, journey},
+    },
+    registry::Registry,
+    scene::{Object, Part, Repetition, Scene},
+    text::listed,
+};
+
+/// The way of each object through models, and what was carried on it. It is not part of the scene, and undo leaves it:
+/// a carried value counts as such only while the material has it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Travels {
+    /// The models that an object was taken from, the latest first.
+    ways: BTreeMap<PartId, Vec<String>>,
+    /// The values carried to a parameter, with the model for which they were.
+    carried: BTreeMap<ParameterPlace, Vec<(String, Value)>>,
+}
+
+impl Travels {
+    /// Maximum number of remembered values of one parameter; the oldest are dropped.
+    const MOST_VALUES: usize = 32;
+
+    /// Forgets all for another document.
+    pub(super) fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// A duplicate of an object has the same past.
+    pub(super) fn copied(&mut self, from: PartId, to: PartId) {
+        if let Some(way) = self.ways.get(&from).cloned() {
+            self.ways.insert(to, way);
+        }
+        let theirs = self.carried.iter().filter(|((object, _), _)| *object == from);
+        let copies: Vec<_> = theirs.map(|((_, name), all)| ((to, name.clone()), all.clone())).collect();
+        self.carried.extend(copies);
+    }
+
+    /// Notes that an object leaves a model.
+    fn leave(&mut self, object: PartId, model: &str) {
+        let way = self.ways.entry(object).or_default();
+        way.retain(|known| known != model);
+        way.insert(0, model.to_owned());
+    }
+
+    fn carry(&mut self, place: ParameterPlace, model: &str, value: &Value) {
+        let known = self.carried.entry(place).or_default();
+        if !known.iter().any(|(id, old)| id == model && old == value) {
+            if known.len() == Self::MOST_VALUES {
+                known.remove(0);
+            }
+            known.push((model.to_owned(), value.clone()));
+        }
+    }
+
+    /// True if a value was carried for a model, and not set by the user since.
+    fn was_carried(&self, place: &ParameterPlace, model: &str, value: &Value) -> bool {
+        self.carried.get(place).is_some_and(|all| all.iter().any(|(id, old)| id == model && old == value))
+    }
+}
+
+/// Objects that may get another model, before they do.
+pub(super) struct Departure {
+    model: String,
+    objects: Vec<PartId>,
+}
+
+/// An object with another model: what its material becomes.
+struct Arrival {
+    id: PartId,
+    index: usize,
+    /// The values of its material that change.
+    changes: BTreeMap<Cow<'static, str>, Option<Value>>,
+    journey: Journey,
+}
+
+impl Session {
+    /// The objects that an edit may give another reflection model.
+    pub(super) fn departure(&self, edit: &Edit) -> Option<Departure> {
+        let (part, values) = edit.values();
+        values.iter().find(|(key, _)| *key == Scene::reflection_model.into())?;
+        let (model, objects) = match part {
+            Part::Scene => {
+                let follows = |i: &usize| self.document.objects[*i].reflection_model.is_none();
+                let all = (0..self.document.objects.len()).filter(follows).collect();
+                (self.document.reflection_model.clone(), all)
+            }
+            Part::Object(i) => {
+                let object = self.document.objects.get(i)?;
+                let all = self.document.row(i).map_or(i..i + 1, |row| row.range()).collect();
+                (self.document.model_of(object).to_owned(), all)
+            }
+            _ => return None,
+        };
+        let objects: Vec<usize> = objects;
+        let objects = objects.into_iter().filter_map(|i| self.document.object_id(i)).collect();
+        Some(Departure { model, objects })
+    }
+
+    /// Carries the materials of objects that have another model now, as part of the step that gave it to them, and says
+    /// what went along and what did not.
+    pub(super) fn carry(&mut self, departure: Departure, registry: &Registry) {
+        let Departure { model: from, objects } = departure;
+        let mut arrivals: Vec<_> =
+            objects.into_iter().filter_map(|id| self.arrival(id, &from, registry)).collect();
+        let Some(to) = arrivals.first().map(|one| self.model_at(one.index)) else { return };
+        self.keep_rows_alike(&mut arrivals);
+        for Arrival { id, journey, .. } in &arrivals {
+            self.desk.travels.leave(*id, &from);
+            for one in &journey.carried {
+                self.desk.travels.carry((*id, one.to.name.into()), &to, &one.value);
+            }
+        }
+        self.put(&arrivals, registry);
+        if let [from, to] = [from, to].map(|id| registry.model(&id))
+            && let Some((from, to)) = from.zip(to)
+        {
+            let said = self.said(&arrivals, from, to, registry);
+            if !said.is_empty() {
+                self.say(Severity::Info, said);
+            }
+        }
+    }
+
+    fn model_at(&self, object: usize) -> String {
+        self.document.model_of(&self.document.objects[object]).to_owned()
+    }
+
+    /// What becomes of an object's material, if the object has another model than `from` now.
+    fn arrival(&self, id: PartId, from: &str, registry: &Registry) -> Option<Arrival> {
+        let index = self.document.object(id)?;
+        let object = &self.document.objects[index];
+        let to = Some(self.document.model_of(object)).filter(|to| *to != from)?;
+        let mut material = object.material.clone();
+        let mut changes = BTreeMap::new();
+        // What was carried to the model that is left goes first, so that its origin is carried, and not its copy.
+        material.0.retain(|name, value| {
+            let stays = !self.desk.travels.was_carried(&(id, name.clone()), from, value);
+            if !stays {
+                changes.insert(name.clone(), None);
+            }
+            stays
+        });
+        let before = self.desk.travels.ways.get(&id).into_iter().flatten().map(String::as_str);
+        let way: Vec<_> = [from]
+            .into_iter()
+            .chain(before.filter(|known| *known != from))
+            .filter(|known| *known != to)
+            .filter_map(|known| registry.model(known))
+            .collect();
+        let journey = registry.model(to).map(|to| journey(&way, to, &material)).unwrap_or_default();
+        for one in &journey.carried {
+            changes.insert(one.to.name.into(), Some(one.value.clone()));
+        }
+        changes.retain(|name, value| object.material.0.get(name) != value.as_ref());
+        Some(Arrival { id, index, changes, journey })
+    }
+
+    /// Copies of a row stay alike: what would differ from copy to copy does not go along.
+    fn keep_rows_alike(&self, arrivals: &mut [Arrival]) {
+        let places: HashMap<usize, usize> =
+            arrivals.iter().enumerate().map(|(k, one)| (one.index, k)).collect();
+        for row in self.document.rows() {
+            let all: Vec<usize> = row.range().filter_map(|i| places.get(&i).copied()).collect();
+            let Some(first) = all.first() else { continue };
+            let carried = arrivals[*first].journey.carried.clone();
+            let differs = |one: &Carried| {
+                let same = |other: &Carried| other.to.name == one.to.name && other.value == one.value;
+                !all.iter().all(|k| arrivals[*k].journey.carried.iter().any(same))
+            };
+            let stay: Vec<&'static str> =
+                carried.iter().filter(|one| differs(one)).map(|one| one.to.name).collect();
+            for k in all {
+                let Arrival { changes, journey, .. } = &mut arrivals[k];
+                changes.retain(|name, _| !stay.contains(&&**name));
+                let (gone, carried) = std::mem::take(&mut journey.carried)
+                    .into_iter()
+                    .partition(|one: &Carried| stay.contains(&one.to.name));
+                journey.carried = carried;
+                for p in gone.into_iter().flat_map(|one: Carried| one.from) {
+                    if journey.left.iter().all(|known| known.name != p.name) {
+                        journey.left.push(p);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Changes the materials, as part of the last step.
+    fn put(&mut self, arrivals: &[Arrival], registry: &Registry) {
+        let change = |Values(material): &mut Values, one: &Arrival| {
+            for (name, value) in &one.changes {
+                match value {
+                    Some(value) => drop(material.insert(name.clone(), value.clone())),
+                    None => drop(material.remove(name)),
+                }
+            }
+        };
+        let changed: Vec<_> = arrivals.iter().filter(|one| !one.changes.is_empty()).collect();
+        let is_single = |o: &Object| !matches!(o.repeat, Repetition::Copy { .. });
+        match changed[..] {
+            [] => {}
+            [one] if is_single(&self.document.objects[one.index]) => {
+                let extent = Extent::Object(one.index);
+                self.document.go_on(extent, |scene| change(&mut scene.objects[one.index].material, one));
+            }
+            _ => self.document.go_on(Extent::All, |scene| {
+                changed.iter().for_each(|one| change(&mut scene.objects[one.index].material, one));
+                scene.follow_copies(registry);
+            }),
+        }
+    }
+
+    /// The message: what went along, and what did not.
+    fn said(&self, arrivals: &[Arrival], from: &ModelEntry, to: &ModelEntry, registry: &Registry) -> String {
+        let carried: Vec<_> = arrivals.iter().filter(|one| !one.journey.carried.is_empty()).collect();
+        let of = |all: &[&Arrival]| match all {
+            [one] => self.name_of(Selection::Object(one.index), registry),
+            all => format!("{} objects", all.len()),
+        };
+        let mut said = String::new();
+        if !carried.is_empty() {
+            let mut words: Vec<String> = Vec::new();
+            for one in carried.iter().flat_map(|one| &one.journey.carried) {
+                let word = match carried[..] {
+                    [only] => with_values(one, &self.document.objects[only.index].material),
+                    _ => without_values(one),
+                };
+                if !words.contains(&word) {
+                    words.push(word);
+                }
+            }
+            let list = words.join(", ");
+            said = format!("{} for {}: {list}.", to.declaration.name, of(&carried));
+        }
+        let mut left: Vec<&'static Parameter> = Vec::new();
+        for p in arrivals.iter().flat_map(|one| &one.journey.left) {
+            if left.iter().all(|known| known.name != p.name) {
+                left.push(*p);
+            }
+        }
+        if !left.is_empty() {
+            let names: Vec<_> = left.iter().map(|p| p.label).collect();
+            let space = if said.is_empty() { "" } else { " " };
+            said += &format!(
+                "{space}{} has no place for {}; {} with {}.",
+                to.declaration.name,
+                listed(&names, "and"),
+                if names.len() == 1 { "it comes back" } else { "they come back" },
+                from.declaration.name,
+            );
+        }
+        said
+    }
+}
+
+/// "clear coat 0.5 becomes coat 0.125".
+fn with_values(one: &Carried, material: &Values) -> String {
+    let from: Vec<_> = one.from.iter().map(|p| format!("{} {}", p.label, material.get(p))).collect();
+    let limit = if one.limited { ", the nearest that it allows" } else { "" };
+    format!("{} becomes {} {}{limit}", listed(&from, "and"), one.to.label, one.value)
+}
+
+/// "clear coat becomes coat".
+fn without_values(one: &Carried) -> String {
+    let from: Vec<_> = one.from.iter().map(|p| p.label).collect();
+    format!("{} becomes {}", listed(&from, "and"), one.to.label)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        document::Document,
+        panel::state::Action,
+        scene::{Repeat, Varied, check},
+    };
+
+    fn number(v: f32) -> Value {
+        Value::Number(v)
+    }
+
+    /// A session with so many spheres of a model and these values.
+    fn begin(model: &str, count: usize, values: &[(&'static str, f32)]) -> (Session, Registry) {
+        let mut scene = Scene { reflection_model: model.to_owned(), ..Scene::default() };
+        values.iter().for_each(|(name, v)| scene.objects[0].material.set(*name, number(*v)));
+        for i in 1..count {
+            let mut copy = scene.objects[0].clone();
+            copy.position.x += 0.1 * i as f32;
+            scene.objects.push(copy);
+        }
+        let session = Session { document: Document::new(scene), ..Session::default() };
+        (session, Registry::builtin())
+    }
+
+    fn choose(session: &mut Session, registry: &Registry, id: &str) {
+        let edit = session.edit_model(id);
+        let _ = session.apply(Action::Edit(edit), registry);
+        assert_eq!(check::scene(&session.document, registry), []);
+    }
+
+    fn value(session: &Session, name: &str) -> Option<Value> {
+        session.document.objects[0].material.0.get(name).cloned()
+    }
+
+    fn last(session: &Session) -> &str {
+        session.messages.last().map_or("", |note| &note.text)
+    }
+
+    #[test]
+    fn a_material_goes_along_and_comes_back_as_it_was() {
+        let values = [("roughness", 0.3), ("clearcoat", 0.5), ("subsurface", 0.2)];
+        let (mut session, registry) = begin("disney", 1, &values);
+        let start = session.document.objects[0].material.clone();
+        choose(&mut session, &registry, "openpbr");
+        assert_eq!(value(&session, "coat_weight"), Some(number(0.125)));
+        assert_eq!(
+            last(&session),
+            "OpenPBR for Sphere 1: clear coat 0.5 becomes coat 0.125. OpenPBR has no place for subsurface; it comes \
+             back with Disney."
+        );
+        choose(&mut session, &registry, "ward");
+        assert_eq!(value(&session, "coat_weight"), None);
+        assert_eq!(value(&session, "alpha_x"), Some(number(0.3f32 * 0.3)));
+        // By way of a model without a coat, too.
+        choose(&mut session, &registry, "openpbr");
+        assert_eq!((value(&session, "coat_weight"), value(&session, "alpha_x")), (Some(number(0.125)), None));
+        choose(&mut session, &registry, "disney");
+        assert_eq!(session.document.objects[0].material, start);
+        // A change there is carried anew.
+        let edit = Edit::material(Part::Object(0), "clearcoat", number(1.0));
+        let _ = session.apply(Action::Edit(edit), &registry);
+        choose(&mut session, &registry, "openpbr");
+        assert_eq!(value(&session, "coat_weight"), Some(number(0.25)));
+    }
+
+    #[test]
+    fn what_the_user_sets_stays() {
+        let (mut session, registry) = begin("disney", 1, &[("clearcoat", 0.5), ("roughness", 0.3)]);
+        choose(&mut session, &registry, "openpbr");
+        let edit = Edit::material(Part::Object(0), "coat_weight", number(0.7));
+        let _ = session.apply(Action::Edit(edit), &registry);
+        choose(&mut session, &registry, "disney");
+        let both = |session: &Session| (value(session, "clearcoat"), value(session, "coat_weight"));
+        assert_eq!(both(&session), (Some(number(0.5)), Some(number(0.7))));
+        choose(&mut session, &registry, "openpbr");
+        assert_eq!(both(&session), (Some(number(0.5)), Some(number(0.7))));
+    }
+
+    #[test]
+    fn it_is_one_step_for_undo_and_redo() {
+        let (mut session, registry) = begin("disney", 3, &[("clearcoat", 0.5), ("roughness", 0.3)]);
+        let start = session.document.scene().clone();
+        choose(&mut session, &registry, "openpbr");
+        let there = session.document.scene().clone();
+        assert_eq!(session.document.done(), 1);
+        assert_eq!(last(&session), "OpenPBR for 3 objects: clear coat becomes coat.");
+        for _ in 0..2 {
+            let _ = session.apply(Action::Undo, &registry);
+            assert!(*session.document.scene() == start);
+            let _ = session.apply(Action::Redo, &registry);
+            assert!(*session.document.scene() == there);
+        }
+        // After undo and redo, leaving the model takes back what was carried all the same.
+        choose(&mut session, &registry, "ward");
+        assert_eq!(value(&session, "coat_weight"), None);
+        choose(&mut session, &registry, "disney");
+        assert!(session.document.objects == start.objects);
+        let _ = session.apply(Action::Undo, &registry);
+        let _ = session.apply(Action::Undo, &registry);
+        assert!(*session.document.scene() == there);
+    }
+
+    #[test]
+    fn one_object_goes_alone() {
+        let (mut session, registry) = begin("disney", 2, &[("clearcoat", 0.5)]);
+        let edit = Edit::set(Part::Object(1), Object::reflection_model, "openpbr");
+        let _ = session.apply(Action::Edit(edit), &registry);
+        let coat = |i: usize| session.document.objects[i].material.0.get("coat_weight").cloned();
+        assert_eq!((coat(0), coat(1)), (None, Some(number(0.125))));
+        // Back to the scene's.
+        let edit = Edit::put(Part::Object(1), Object::reflection_model, None::<Value>);
+        let _ = session.apply(Action::Edit(edit), &registry);
+        assert_eq!(session.document.objects[1].material, session.document.objects[0].material);
+    }
+
+    #[test]
+    fn a_row_stays_a_row() {
+        for (varied, carried) in [("size", Some(number(0.25))), ("material.roughness", None)] {
+            let (mut session, registry) = begin("disney", 1, &[("roughness", 0.5)]);
+            let mut scene = session.document.scene().clone();
+            let by =
+                Varied { parameter: varied.to_owned(), from: Some(0.5), to: Some(0.9), ..Varied::default() };
+            let repeat = Repeat { columns: 3, spacing: glam::Vec3::X, vary: vec![by], ..Repeat::default() };
+            scene.objects[0].repeat = Repetition::Entry(Box::new(repeat));
+            session.document = Document::new(scene.expanded(&registry).expect("a row"));
+            choose(&mut session, &registry, "ward");
+            assert_eq!(value(&session, "alpha_x"), carried, "{varied}");
+            assert_eq!(session.document.gathered(&registry).objects.len(), 1, "{varied}");
+        }
+    }
+
+    #[test]
+    fn another_document_knows_nothing_of_the_way() {
+        let (mut session, registry) = begin("disney", 1, &[("clearcoat", 0.5)]);
+        choose(&mut session, &registry, "openpbr");
+        assert!(session.desk.travels != Travels::default());
+        let other = session.document.scene().clone();
+        let _ = session.opened("other.json".into(), other);
+        assert!(session.desk.travels == Travels::default());
+    }
+}
