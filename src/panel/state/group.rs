@@ -204,7 +204,7 @@ impl Session {
         let (from, to) = match self.selection {
             Selection::Light(i) => {
                 let position = self.document.lights.get(i).and_then(|light| light.position);
-                (position, position.map(|p| stand.light(Some(p))))
+                (position, position.map(|p| stand.copy_of_light(p)))
             }
             Selection::Object(i) => {
                 (self.document.objects.get(i).map(|object| object.position), Some(stand.copy(i)))
