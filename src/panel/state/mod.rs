@@ -13,7 +13,6 @@ pub use area::{Cell, PictureArea};
 pub use aside::Aside;
 pub(super) use author::BUILT_IN;
 pub use author::{Authoring, LawCheck, ModelDraft, NameProblem, check_name};
-pub use carry::Travels;
 pub use compare::CompareCommand;
 pub use desk::Desk;
 pub use disk::OnDisk;
@@ -40,6 +39,8 @@ pub use slots::{MODEL_SLOTS, ModelSlots};
 pub use stash::StashedValues;
 pub(super) use stash::{Kept, ParameterPlace};
 pub use taking::{PictureOptions, PictureSize, SheetOptions, TakeCommand, TakeDraft, Taken};
+use travels::Traveller;
+pub use travels::Travels;
 pub use view::{HandleChange, HandleMode, Labels, MESSAGES_TAB, PLOTS_TAB, SHADER_TAB, View, ViewChange};
 
 use seen::Seen;
@@ -57,6 +58,7 @@ mod area;
 mod aside;
 mod author;
 mod carry;
+mod carry_view;
 mod compare;
 mod desk;
 mod disk;
@@ -94,6 +96,7 @@ mod slots;
 mod stash;
 mod taking;
 mod terms;
+mod travels;
 mod view;
 
 with_defaults! {
