@@ -265,12 +265,10 @@ mod tests {
             let other = difference(("metallic_roughness", &rough), ("microfacet", &wrong));
             assert!(r == 1.0 || other > 0.1, "{r}: {other}");
             // There and back.
-            let values: Vec<_> = faceted.0.iter().map(|(n, v)| (n.clone(), v.clone())).collect();
-            let there = Values(values.into_iter().collect());
             let registry = Registry::builtin();
             let [from, to] =
                 ["microfacet", "metallic_roughness"].map(|id| registry.model(id).expect("built in"));
-            let back = journey(&[from], to, &there).carried;
+            let back = journey(&[from], to, &faceted).carried;
             assert!(matches!(back[0].value, Value::Number(v) if (v - r).abs() < 1e-6), "{back:?}");
         }
     }

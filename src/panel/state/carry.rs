@@ -6,7 +6,7 @@ use std::{
     collections::{BTreeMap, HashMap},
 };
 
-use super::{ParameterPlace, Session, Severity};
+use super::{Session, Severity, Traveller};
 use crate::{
     document::{Edit, Extent, PartId, Selection},
     parameter::{Parameter, Value, Values},
@@ -18,58 +18,6 @@ use crate::{
     scene::{Object, Part, Repetition, Scene},
     text::listed,
 };
-
-/// The way of each object through models, and what was carried on it. It is not part of the scene, and undo leaves it:
-/// a carried value counts as such only while the material has it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Travels {
-    /// The models that an object was taken from, the latest first.
-    ways: BTreeMap<PartId, Vec<String>>,
-    /// The values carried to a parameter, with the model for which they were.
-    carried: BTreeMap<ParameterPlace, Vec<(String, Value)>>,
-}
-
-impl Travels {
-    /// Maximum number of remembered values of one parameter; the oldest are dropped.
-    const MOST_VALUES: usize = 32;
-
-    /// Forgets all for another document.
-    pub(super) fn clear(&mut self) {
-        *self = Self::default();
-    }
-
-    /// A duplicate of an object has the same past.
-    pub(super) fn copied(&mut self, from: PartId, to: PartId) {
-        if let Some(way) = self.ways.get(&from).cloned() {
-            self.ways.insert(to, way);
-        }
-        let theirs = self.carried.iter().filter(|((object, _), _)| *object == from);
-        let copies: Vec<_> = theirs.map(|((_, name), all)| ((to, name.clone()), all.clone())).collect();
-        self.carried.extend(copies);
-    }
-
-    /// Notes that an object leaves a model.
-    fn leave(&mut self, object: PartId, model: &str) {
-        let way = self.ways.entry(object).or_default();
-        way.retain(|known| known != model);
-        way.insert(0, model.to_owned());
-    }
-
-    fn carry(&mut self, place: ParameterPlace, model: &str, value: &Value) {
-        let known = self.carried.entry(place).or_default();
-        if !known.iter().any(|(id, old)| id == model && old == value) {
-            if known.len() == Self::MOST_VALUES {
-                known.remove(0);
-            }
-            known.push((model.to_owned(), value.clone()));
-        }
-    }
-
-    /// True if a value was carried for a model, and not set by the user since.
-    fn was_carried(&self, place: &ParameterPlace, model: &str, value: &Value) -> bool {
-        self.carried.get(place).is_some_and(|all| all.iter().any(|(id, old)| id == model && old == value))
-    }
-}
 
 /// Objects that may get another model, before they do.
 pub(super) struct Departure {
@@ -91,7 +39,7 @@ impl Session {
     pub(super) fn departure(&self, edit: &Edit) -> Option<Departure> {
         let (part, values) = edit.values();
         values.iter().find(|(key, _)| *key == Scene::reflection_model.into())?;
-        let (model, objects) = match part {
+        let (model, objects): (String, Vec<usize>) = match part {
             Part::Scene => {
                 let follows = |i: &usize| self.document.objects[*i].reflection_model.is_none();
                 let all = (0..self.document.objects.len()).filter(follows).collect();
@@ -104,7 +52,6 @@ impl Session {
             }
             _ => return None,
         };
-        let objects: Vec<usize> = objects;
         let objects = objects.into_iter().filter_map(|i| self.document.object_id(i)).collect();
         Some(Departure { model, objects })
     }
@@ -118,15 +65,14 @@ impl Session {
         let Some(to) = arrivals.first().map(|one| self.model_at(one.index)) else { return };
         self.keep_rows_alike(&mut arrivals);
         for Arrival { id, journey, .. } in &arrivals {
-            self.desk.travels.leave(*id, &from);
+            let who = Traveller::Object(*id);
+            self.desk.travels.leave(who, &from);
             for one in &journey.carried {
-                self.desk.travels.carry((*id, one.to.name.into()), &to, &one.value);
+                self.desk.travels.carry((who, one.to.name.into()), &to, &one.value);
             }
         }
         self.put(&arrivals, registry);
-        if let [from, to] = [from, to].map(|id| registry.model(&id))
-            && let Some((from, to)) = from.zip(to)
-        {
+        if let Some((from, to)) = registry.model(&from).zip(registry.model(&to)) {
             let said = self.said(&arrivals, from, to, registry);
             if !said.is_empty() {
                 self.say(Severity::Info, said);
@@ -141,25 +87,19 @@ impl Session {
     /// What becomes of an object's material, if the object has another model than `from` now.
     fn arrival(&self, id: PartId, from: &str, registry: &Registry) -> Option<Arrival> {
         let index = self.document.object(id)?;
-        let object = &self.document.objects[index];
+        let (object, who) = (&self.document.objects[index], Traveller::Object(id));
         let to = Some(self.document.model_of(object)).filter(|to| *to != from)?;
         let mut material = object.material.clone();
         let mut changes = BTreeMap::new();
         // What was carried to the model that is left goes first, so that its origin is carried, and not its copy.
         material.0.retain(|name, value| {
-            let stays = !self.desk.travels.was_carried(&(id, name.clone()), from, value);
+            let stays = !self.desk.travels.was_carried(&(who, name.clone()), from, value);
             if !stays {
                 changes.insert(name.clone(), None);
             }
             stays
         });
-        let before = self.desk.travels.ways.get(&id).into_iter().flatten().map(String::as_str);
-        let way: Vec<_> = [from]
-            .into_iter()
-            .chain(before.filter(|known| *known != from))
-            .filter(|known| *known != to)
-            .filter_map(|known| registry.model(known))
-            .collect();
+        let way: Vec<_> = self.desk.travels.way(who, from, to).filter_map(|id| registry.model(id)).collect();
         let journey = registry.model(to).map(|to| journey(&way, to, &material)).unwrap_or_default();
         for one in &journey.carried {
             changes.insert(one.to.name.into(), Some(one.value.clone()));
@@ -252,15 +192,8 @@ impl Session {
             }
         }
         if !left.is_empty() {
-            let names: Vec<_> = left.iter().map(|p| p.label).collect();
             let space = if said.is_empty() { "" } else { " " };
-            said += &format!(
-                "{space}{} has no place for {}; {} with {}.",
-                to.declaration.name,
-                listed(&names, "and"),
-                if names.len() == 1 { "it comes back" } else { "they come back" },
-                from.declaration.name,
-            );
+            said += &format!("{space}{}", left_behind(&left, Some(from.declaration.name), to));
         }
         said
     }
@@ -273,8 +206,16 @@ fn with_values(one: &Carried, material: &Values) -> String {
     format!("{} becomes {} {}{limit}", listed(&from, "and"), one.to.label, one.value)
 }
 
+/// "OpenPBR has no place for subsurface; it comes back with Disney."
+pub(super) fn left_behind(left: &[&Parameter], from: Option<&str>, to: &ModelEntry) -> String {
+    let names: Vec<_> = left.iter().map(|p| p.label).collect();
+    let verb = if names.len() == 1 { "it comes back" } else { "they come back" };
+    let back = from.map_or(String::new(), |from| format!("; {verb} with {from}"));
+    format!("{} has no place for {}{back}.", to.declaration.name, listed(&names, "and"))
+}
+
 /// "clear coat becomes coat".
-fn without_values(one: &Carried) -> String {
+pub(super) fn without_values(one: &Carried) -> String {
     let from: Vec<_> = one.from.iter().map(|p| p.label).collect();
     format!("{} becomes {}", listed(&from, "and"), one.to.label)
 }
@@ -284,7 +225,7 @@ mod tests {
     use super::*;
     use crate::{
         document::Document,
-        panel::state::Action,
+        panel::state::{Action, Travels},
         scene::{Repeat, Varied, check},
     };
 
@@ -306,6 +247,7 @@ mod tests {
     }
 
     fn choose(session: &mut Session, registry: &Registry, id: &str) {
+        session.document.end_gesture();
         let edit = session.edit_model(id);
         let _ = session.apply(Action::Edit(edit), registry);
         assert_eq!(check::scene(&session.document, registry), []);

@@ -44,6 +44,8 @@ impl Session {
         }));
         let before = self.document.revision();
         let departure = self.departure(&edit);
+        let of_view = self.view_departure(&edit, registry);
+        let reorders = matches!(edit, Edit::Views { .. });
         let row = match edit {
             Edit::Row { object, .. } => Some(self.document.row(object).map_or(object, |row| row.first)),
             _ => None,
@@ -64,6 +66,12 @@ impl Session {
         }
         if let Some(departure) = departure.filter(|_| self.document.revision() != before) {
             self.carry(departure, registry);
+        }
+        if let Some(departure) = of_view.filter(|_| self.document.revision() != before) {
+            self.carry_in_view(departure, registry);
+        }
+        if reorders {
+            self.desk.travels.forget_views();
         }
         if other_model && self.document.revision() != before {
             // Models may allow different values of a parameter that they share.

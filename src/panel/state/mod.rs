@@ -15,7 +15,6 @@ pub use arrange::{Arrangement, Together};
 pub use aside::Aside;
 pub(super) use author::BUILT_IN;
 pub use author::{Authoring, LawCheck, ModelDraft, NameProblem, check_name};
-pub use carry::Travels;
 pub use code::{CODE_TAB, Code, CodeCommand, CodeOf, KeptCode, MOST_CODE, OpenCode, SCENE_JSON, Theirs};
 pub use compare::CompareCommand;
 pub use desk::Desk;
@@ -44,6 +43,8 @@ pub use slots::{MODEL_SLOTS, ModelSlots};
 pub use stash::StashedValues;
 pub(super) use stash::{Kept, ParameterPlace};
 pub use taking::{PictureOptions, PictureSize, SheetOptions, TakeCommand, TakeDraft, Taken};
+use travels::Traveller;
+pub use travels::Travels;
 pub use view::{HandleChange, HandleMode, Labels, MESSAGES_TAB, PLOTS_TAB, SHADER_TAB, View, ViewChange};
 
 use seen::Seen;
@@ -63,6 +64,7 @@ mod arrange;
 mod aside;
 mod author;
 mod carry;
+mod carry_view;
 mod code;
 mod compare;
 mod desk;
@@ -103,6 +105,7 @@ mod slots;
 mod stash;
 mod taking;
 mod terms;
+mod travels;
 mod view;
 
 with_defaults! {

@@ -1,0 +1,178 @@
+//! Materials go along when a view of a comparison gets another model. A variant has one material for all objects, so only
+//! what is the same for all visible ones goes along.
+
+use super::{
+    Session, Severity, Traveller,
+    carry::{left_behind, without_values},
+};
+use crate::{
+    document::{Edit, Extent},
+    parameter::{Parameter, Values},
+    reflection::carry::{Carried, Journey, journey},
+    registry::Registry,
+    scene::{Part, Variant, variant::LETTERS},
+};
+
+/// A variant that may get another model, before it does.
+pub(super) struct ViewDeparture {
+    variant: usize,
+    /// The models that its view shows of the objects.
+    from: Vec<String>,
+}
+
+impl Session {
+    /// The variant that an edit may give another reflection model.
+    pub(super) fn view_departure(&self, edit: &Edit, registry: &Registry) -> Option<ViewDeparture> {
+        let (Part::Variant(variant), values) = edit.values() else { return None };
+        values.iter().find(|(key, _)| *key == Variant::reflection_model.into())?;
+        let (seen, _) = self.document.seen(variant + 1, registry)?;
+        let from = seen.objects.iter().map(|object| seen.model_of(object).to_owned()).collect();
+        Some(ViewDeparture { variant, from })
+    }
+
+    /// Carries what all visible objects have in common to the variant, as part of the step that gave it another model, and
+    /// says so.
+    pub(super) fn carry_in_view(&mut self, departure: ViewDeparture, registry: &Registry) {
+        let ViewDeparture { variant, from } = departure;
+        let who = Traveller::Variant(variant);
+        let Some(merged) = self.document.overrides(variant + 1) else { return };
+        let travels = &self.desk.travels;
+        // What was carried to the model that is left goes first.
+        let own = &self.document.variants[variant].material.0;
+        let gone: Vec<_> = own
+            .iter()
+            .filter(|(name, value)| {
+                from.first().is_some_and(|from| travels.was_carried(&(who, (*name).clone()), from, value))
+            })
+            .map(|(name, _)| name.clone())
+            .collect();
+        let mut kept = merged.material;
+        gone.iter().for_each(|name| drop(kept.0.remove(name)));
+        let mut common: Option<Vec<Carried>> = None;
+        let mut left: Vec<&'static Parameter> = Vec::new();
+        let mut models = None;
+        for (object, from) in self.document.objects.iter().zip(&from).filter(|(o, _)| o.visible) {
+            let to = merged.reflection_model.as_deref().unwrap_or_else(|| self.document.model_of(object));
+            let mut material = object.material.clone();
+            material.0.extend(kept.0.clone());
+            let way: Vec<_> = travels.way(who, from, to).filter_map(|id| registry.model(id)).collect();
+            let found = match registry.model(to).filter(|_| from != to) {
+                Some(to) => journey(&way, to, &material),
+                None => Journey::default(),
+            };
+            if from != to {
+                models.get_or_insert_with(|| (from.clone(), to.to_owned()));
+            }
+            let alike = |a: &Carried, b: &Carried| a.to.name == b.to.name && a.value == b.value;
+            let add = |left: &mut Vec<&'static Parameter>, p: &'static Parameter| {
+                if left.iter().all(|known| known.name != p.name) {
+                    left.push(p);
+                }
+            };
+            found.left.iter().for_each(|p| add(&mut left, p));
+            let (stays, differs) = match common.take() {
+                None => (found.carried, Vec::new()),
+                Some(all) => {
+                    let is_theirs = |one: &Carried| found.carried.iter().any(|other| alike(one, other));
+                    let (same, mut differs): (Vec<_>, Vec<_>) = all.into_iter().partition(is_theirs);
+                    let is_ours = |one: &Carried| same.iter().any(|other| alike(one, other));
+                    differs.extend(found.carried.iter().filter(|one| !is_ours(one)).cloned());
+                    (same, differs)
+                }
+            };
+            differs.iter().flat_map(|one| &one.from).for_each(|p| add(&mut left, p));
+            common = Some(stays);
+        }
+        let (Some((from, to)), carried) = (models, common.unwrap_or_default()) else { return };
+        self.desk.travels.leave(who, &from);
+        for one in &carried {
+            self.desk.travels.carry((who, one.to.name.into()), &to, &one.value);
+        }
+        if !gone.is_empty() || !carried.is_empty() {
+            self.document.go_on(Extent::Rest, |scene| {
+                let Values(material) = &mut scene.variants[variant].material;
+                gone.iter().for_each(|name| drop(material.remove(name)));
+                material.extend(carried.iter().map(|one| (one.to.name.into(), one.value.clone())));
+            });
+        }
+        let Some(to) = registry.model(&to) else { return };
+        let mut said = Vec::new();
+        if !carried.is_empty() {
+            let words: Vec<_> = carried.iter().map(without_values).collect();
+            let letter = LETTERS.get(variant + 1).copied().unwrap_or_default();
+            said.push(format!("{} in view {letter}: {}.", to.declaration.name, words.join(", ")));
+        }
+        if !left.is_empty() {
+            let from = registry.model(&from).map(|model| model.declaration.name);
+            said.push(left_behind(&left, from, to));
+        }
+        if !said.is_empty() {
+            self.say(Severity::Info, said.join(" "));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        document::Document,
+        panel::state::{Action, CompareCommand},
+        parameter::Value,
+        scene::Scene,
+    };
+
+    /// A session with a view B that is active, of spheres with these roughnesses.
+    fn begin(roughness: &[f32]) -> (Session, Registry) {
+        let mut scene = Scene { reflection_model: "disney".to_owned(), ..Scene::default() };
+        let sphere = scene.objects[0].clone();
+        scene.objects = (0..roughness.len())
+            .map(|i| {
+                let mut object = sphere.clone();
+                object.position.x += 0.1 * i as f32;
+                object.material.set("roughness", Value::Number(roughness[i]));
+                object
+            })
+            .collect();
+        let mut session = Session { document: Document::new(scene), ..Session::default() };
+        let registry = Registry::builtin();
+        let _ = session.apply(Action::Compare(CompareCommand::Add), &registry);
+        assert_eq!(session.active(), 1);
+        (session, registry)
+    }
+
+    fn choose(session: &mut Session, registry: &Registry, id: &str) {
+        session.document.end_gesture();
+        let edit = session.edit_model(id);
+        let _ = session.apply(Action::Edit(edit), registry);
+    }
+
+    fn alpha(session: &Session) -> Option<&Value> {
+        session.document.variants[0].material.0.get("alpha_x")
+    }
+
+    #[test]
+    fn a_view_gets_what_all_objects_have_and_goes_back() {
+        let (mut session, registry) = begin(&[0.5, 0.5]);
+        let start = session.document.scene().clone();
+        choose(&mut session, &registry, "ward");
+        assert_eq!(alpha(&session), Some(&Value::Number(0.25)));
+        assert!(session.document.objects == start.objects, "view A has what it had");
+        assert!(session.messages.last().is_some_and(|note| note.text.starts_with("Ward in view B: ")));
+        let there = session.document.scene().clone();
+        choose(&mut session, &registry, "disney");
+        assert_eq!(session.document.variants[0].material, Values::default());
+        let _ = session.apply(Action::Undo, &registry);
+        assert!(*session.document.scene() == there);
+        let _ = session.apply(Action::Undo, &registry);
+        assert!(*session.document.scene() == start);
+    }
+
+    #[test]
+    fn what_differs_from_object_to_object_stays() {
+        let (mut session, registry) = begin(&[0.5, 0.6]);
+        choose(&mut session, &registry, "ward");
+        assert_eq!(alpha(&session), None);
+        assert!(session.messages.last().is_some_and(|note| note.text.contains("no place for roughness")));
+    }
+}
