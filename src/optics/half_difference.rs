@@ -148,7 +148,7 @@ impl<'a> Grid<'a> {
 /// Gives missing entries the value of the nearest before them along an axis, or else of the nearest behind them. `step` is
 /// from one to the next along it.
 fn continued(entries: &mut [Option<Vec3>], count: usize, step: usize) {
-    for first in (0..entries.len()).filter(|i| i / step % count == 0) {
+    for first in (0..entries.len()).filter(|i| (i / step).is_multiple_of(count)) {
         let line = (0..count).map(|i| first + i * step);
         let Some(found) = line.clone().find_map(|i| entries[i]) else { continue };
         let mut last = found;

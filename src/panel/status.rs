@@ -34,7 +34,12 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         matching::progress(ui, context);
         taking::progress(ui, context);
         samples(ui, &session.facts.converged);
-        let mut selected = format!("{} selected", session.name_of(session.selection, context.registry()));
+        let name = if session.has_group() {
+            session.name_of_group()
+        } else {
+            session.name_of(session.selection, context.registry())
+        };
+        let mut selected = format!("{name} selected");
         if let Some(key) = keys::of(ui.ctx(), "keys") {
             selected.push_str(&format!(" · {key} keys"));
         }

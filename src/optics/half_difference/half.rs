@@ -6,7 +6,7 @@
 const LEAST: f32 = 6.103_515_6e-5;
 const MOST: f32 = 65_504.0;
 /// 2¹¹²: the difference between the biases of the exponents of 32 and 16 bits.
-const BIAS: f32 = 5.192_296_9e33;
+const BIAS: f32 = 5.192_297e33;
 
 /// The 16 bits of a number from 0 on.
 fn bits(number: f32) -> u32 {

@@ -246,9 +246,9 @@ fn field(field: Field, values: impl Iterator<Item = Option<Value>>) -> Option<Sh
 }
 
 /// Parameters, with what these parts have of them.
-fn parameters<'a, T: Copy>(
+fn parameters<T: Copy>(
     all: impl Iterator<Item = &'static Parameter>,
-    parts: &'a [T],
+    parts: &[T],
     key: fn(&'static str) -> Key,
     get: impl Fn(T, &Parameter) -> Value,
 ) -> Vec<Shared> {

@@ -20,6 +20,39 @@ pub(super) struct ViewDeparture {
     from: Vec<String>,
 }
 
+/// The values that go along with all objects, and the parameters whose values stay behind with one of them.
+#[derive(Default)]
+struct Common {
+    carried: Option<Vec<Carried>>,
+    left: Vec<&'static Parameter>,
+}
+
+impl Common {
+    /// Adds an object.
+    fn add(&mut self, found: Journey) {
+        let alike = |a: &Carried, b: &Carried| a.to.name == b.to.name && a.value == b.value;
+        found.left.into_iter().for_each(|p| self.leave(p));
+        let (stays, differs) = match self.carried.take() {
+            None => (found.carried, Vec::new()),
+            Some(all) => {
+                let is_theirs = |one: &Carried| found.carried.iter().any(|other| alike(one, other));
+                let (same, mut differs): (Vec<_>, Vec<_>) = all.into_iter().partition(is_theirs);
+                let is_ours = |one: &Carried| same.iter().any(|other| alike(one, other));
+                differs.extend(found.carried.iter().filter(|one| !is_ours(one)).cloned());
+                (same, differs)
+            }
+        };
+        differs.iter().flat_map(|one| &one.from).for_each(|p| self.leave(p));
+        self.carried = Some(stays);
+    }
+
+    fn leave(&mut self, parameter: &'static Parameter) {
+        if self.left.iter().all(|known| known.name != parameter.name) {
+            self.left.push(parameter);
+        }
+    }
+}
+
 impl Session {
     /// The variant that an edit may give another reflection model.
     pub(super) fn view_departure(&self, edit: &Edit, registry: &Registry) -> Option<ViewDeparture> {
@@ -48,8 +81,7 @@ impl Session {
             .collect();
         let mut kept = merged.material;
         gone.iter().for_each(|name| drop(kept.0.remove(name)));
-        let mut common: Option<Vec<Carried>> = None;
-        let mut left: Vec<&'static Parameter> = Vec::new();
+        let mut common = Common::default();
         let mut models = None;
         for (object, from) in self.document.objects.iter().zip(&from).filter(|(o, _)| o.visible) {
             let to = merged.reflection_model.as_deref().unwrap_or_else(|| self.document.model_of(object));
@@ -63,27 +95,10 @@ impl Session {
             if from != to {
                 models.get_or_insert_with(|| (from.clone(), to.to_owned()));
             }
-            let alike = |a: &Carried, b: &Carried| a.to.name == b.to.name && a.value == b.value;
-            let add = |left: &mut Vec<&'static Parameter>, p: &'static Parameter| {
-                if left.iter().all(|known| known.name != p.name) {
-                    left.push(p);
-                }
-            };
-            found.left.iter().for_each(|p| add(&mut left, p));
-            let (stays, differs) = match common.take() {
-                None => (found.carried, Vec::new()),
-                Some(all) => {
-                    let is_theirs = |one: &Carried| found.carried.iter().any(|other| alike(one, other));
-                    let (same, mut differs): (Vec<_>, Vec<_>) = all.into_iter().partition(is_theirs);
-                    let is_ours = |one: &Carried| same.iter().any(|other| alike(one, other));
-                    differs.extend(found.carried.iter().filter(|one| !is_ours(one)).cloned());
-                    (same, differs)
-                }
-            };
-            differs.iter().flat_map(|one| &one.from).for_each(|p| add(&mut left, p));
-            common = Some(stays);
+            common.add(found);
         }
-        let (Some((from, to)), carried) = (models, common.unwrap_or_default()) else { return };
+        let Common { carried, left } = common;
+        let (Some((from, to)), carried) = (models, carried.unwrap_or_default()) else { return };
         self.desk.travels.leave(who, &from);
         for one in &carried {
             self.desk.travels.carry((who, one.to.name.into()), &to, &one.value);

@@ -8,7 +8,7 @@ use std::{
     sync::Arc,
 };
 
-use super::{Effect, Note, Session, Severity};
+use super::{CodeCommand, Effect, Note, Session, Severity};
 use crate::{custom::source_path, files::Shown as _, registry::Registry};
 
 /// Id of the panel with the editor.
@@ -159,41 +159,6 @@ impl Code {
         self.shown = self.open.len() - 1;
         self.goto = Some((self.opened, line));
     }
-}
-
-/// A command for the editor.
-#[derive(Clone, Debug, PartialEq)]
-pub enum CodeCommand {
-    /// Open the file of the current model.
-    Model,
-    /// Open a file at a line.
-    File(PathBuf, usize),
-    /// Open the scene as JSON.
-    Scene,
-    /// Let the scene as JSON follow the document.
-    Follow,
-    /// Show the n-th open text.
-    Show(usize),
-    /// The text with this number, as typed.
-    Type(u64, Arc<str>),
-    /// The panel has gone to the line.
-    Arrived,
-    /// Write the visible text to its file, or make its scene that of the document.
-    Save,
-    /// Close the visible text, after a question about unsaved changes.
-    Close,
-    /// Close it, and lose the changes.
-    Discard,
-    /// Do not close it.
-    Stay,
-    /// Keep the text as typed; saving it replaces the other version.
-    KeepMine,
-    /// Take the other version; undoing in the editor brings back the text as typed.
-    TakeTheirs,
-    /// Show the difference from the other version, or the text.
-    Difference(bool),
-    /// Continue with the text of this file that an earlier window left.
-    Recover(PathBuf),
 }
 
 impl Session {

@@ -77,18 +77,21 @@ impl Session {
             // Models may allow different values of a parameter that they share.
             follow_model(self, registry);
         }
-        if let Some(field) = scene_choice {
-            let own = |o: &Object| o.value(field.into()).is_some();
-            if self.document.shown().next().is_some() && self.document.shown().all(own) {
-                let what = field.label();
-                let text = format!(
-                    "Every visible object overrides the {what}, so the scene’s does not show. Select an object to change its own."
-                );
-                self.say(Severity::Info, text);
-            }
-        }
+        scene_choice.into_iter().for_each(|field| self.tell_overrides(field));
         if named {
             self.renaming = None;
+        }
+    }
+
+    /// Says so if the scene's choice of a model does not show.
+    fn tell_overrides(&mut self, field: Field) {
+        let own = |o: &Object| o.value(field.into()).is_some();
+        if self.document.shown().next().is_some() && self.document.shown().all(own) {
+            let what = field.label();
+            let text = format!(
+                "Every visible object overrides the {what}, so the scene’s does not show. Select an object to change its own."
+            );
+            self.say(Severity::Info, text);
         }
     }
 

@@ -503,11 +503,11 @@ fn numbers_of_columns_that_do_not_fit_are_refused_beside_the_field() {
     let mut bench = Bench::new(Session::new(scene()));
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::Select(Selection::Object(3)));
-    // From x = 2 in steps of 1.5 m there are six places in a room of 10 m.
+    // In steps of 1.5 m, a room of 10 m has seven places.
     for (typed, rule) in [
-        ("0", "Must be a whole number between 1 and 6 (there is room for no more); the picture keeps 5"),
-        ("7", "Must be a whole number between 1 and 6 (there is room for no more); the picture keeps 5"),
-        ("99999", "Must be a whole number between 1 and 6"),
+        ("0", "Must be a whole number between 1 and 7 (there is room for no more); the picture keeps 5"),
+        ("8", "Must be a whole number between 1 and 7 (there is room for no more); the picture keeps 5"),
+        ("99999", "Must be a whole number between 1 and 7"),
     ] {
         bench.type_into("columns", typed);
         assert!(shows(&mut bench, rule), "{typed}: {:?}", bench.texts());
@@ -515,16 +515,16 @@ fn numbers_of_columns_that_do_not_fit_are_refused_beside_the_field() {
         assert!(bench.session.messages.iter().next().is_none(), "{typed}: {:?}", bench.session.messages);
         bench.key(Key::Escape, Modifiers::NONE);
     }
-    bench.type_into("columns", "6");
-    assert_eq!(bench.session.document.objects.len(), 8);
+    bench.type_into("columns", "7");
+    assert_eq!(bench.session.document.objects.len(), 9);
     // A step that leads a copy out of the room.
     bench.type_into("spacing x", "3");
-    assert!(
-        shows(&mut bench, "x must be between −0.3999 and 1.6 (all copies must be in the room)"),
-        "{:?}",
-        bench.texts()
-    );
-    assert_eq!(bench.session.document.objects.len(), 8);
+    // Six steps from x = 0.5.
+    let texts = bench.texts();
+    let rule = texts.iter().find(|text| text.contains("x must be between")).cloned().unwrap_or_default();
+    assert!(rule.contains("between −0.083") && rule.contains(" and 1.58"), "{rule:?} in {texts:?}");
+    assert!(rule.contains("(all copies must be in the room)"), "{rule}");
+    assert_eq!(bench.session.document.objects.len(), 9);
 }
 
 #[test]

@@ -71,7 +71,7 @@ fn light_with_extent_has_its_error_and_a_choice_of_samples() {
     for label in ["sum over 2 lights", "light of the pixel"] {
         assert!(after(label), "{label} has no error: {texts:?}");
     }
-    bench.click("4096");
+    bench.click("Light samples: 4096");
     bench.settle();
     assert!(bench.texts().iter().any(|text| text.contains("by 4096 samples")), "{:?}", bench.texts());
     assert!(2.0 * error(&bench) < usual, "{} of {usual}", error(&bench));
