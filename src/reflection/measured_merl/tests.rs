@@ -90,7 +90,7 @@ fn files_of_known_models_are_read_back_within_the_resolution_of_the_table() {
         grid.value([d, h, phi])
     };
     assert!(difference(exchanged, metal) > 0.5);
-    let unscaled = file(|angles| metal_at(angles), [1.0; 3]);
+    let unscaled = file(metal_at, [1.0; 3]);
     let numbers = (FORMAT.read)(&unscaled).expect("legal");
     let unscaled = Grid::new(&numbers).expect("a table");
     assert!(difference(|l, v| at(unscaled, l, v), metal) > 0.5);
