@@ -477,7 +477,8 @@ pub fn compose_interpreted(sources: &Sources, model: &ModelEntry) -> Composed {
     let Some(table) = model.table(&Values::default()) else { return compose_evaluation(sources, model) };
     // What follows the last number of the curve in its quadruple.
     let padding = if model.has_curve() { part("file_padding", &[("padding", &3)]) } else { String::new() };
-    let more = padding + &part("file_row", &[("words", &table.numbers.len())]);
+    // In two levels, since the limits of models hold for arrays here, too.
+    let more = padding + &part("file_row", &[("quadruples", &table.numbers.len().div_ceil(4))]);
     evaluation(sources, model, &more, "file_alone")
 }
 

@@ -49,7 +49,9 @@ fn parameter_words(model: &ModelEntry, values: &Values) -> Vec<u32> {
 fn row_of(model: &ModelEntry, values: &Values, uniform_light: bool) -> Vec<u32> {
     let mut row = words(&model.row(values, Encoding::Srgb, uniform_light));
     let table = model.table(values);
-    row.extend(table.iter().flat_map(|table| table.numbers.iter()).map(|number| number.to_bits()));
+    for quadruple in table.iter().flat_map(|table| table.numbers.chunks(4)) {
+        row.extend((0..4).map(|i| quadruple.get(i).map_or(0, |number| number.to_bits())));
+    }
     row
 }
 

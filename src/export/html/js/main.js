@@ -9,19 +9,15 @@ const caption = document.getElementById('renderer');
 const bare = asked.get('picture')?.match(/^(\d+)x(\d+)$/)?.slice(1).map(Number) ?? null;
 // Starts in succession without a whole picture.
 const MOST_STARTS = 6;
-// The starts after which edges are no longer smoothed, which takes a quarter of the work; and those of a browser that
-// refuses graphics from the beginning.
+// The starts after which edges are no longer smoothed, which takes a quarter of the work.
 const SMOOTH_STARTS = 3;
 // Milliseconds before another start where browsers refuse it; longer each time.
 const PAUSE = 300;
-const NO_GRAPHICS = 'This browser has neither WebGPU nor WebGL 2, and so cannot draw the scene. A newer one can.';
-const REFUSED =
-  'This browser has WebGL 2, but refuses it to this page: the graphics driver gave up before, or graphics are switched off. ' +
-  'Close the page, or start the browser anew, and load it again; switch on hardware acceleration in its settings if it is off.';
+const NO_GRAPHICS = 'This browser has neither WebGPU nor WebGL 2. A newer one can draw the scene.';
+const REFUSED = 'This browser refuses WebGL 2 to this page. Start it anew, or switch on hardware acceleration in its settings.';
 const GAVE_UP =
   'The graphics driver gave up: this scene is too much work for it, even in small steps. Switch on hardware acceleration ' +
-  'in the settings of the browser if it is off, or make the window smaller, and load the page again. Jagged edges ' +
-  '(#samples=1 at the end of the address) and fewer lights with extent in the scene take less work too.';
+  'in the settings of the browser, or make the window smaller, and load the page again. Fewer lights with extent take less work.';
 const samples = asked.get('samples') === '1' ? 1 : 4;
 
 function fail(text) {
@@ -71,7 +67,7 @@ class Page {
   // smaller steps.
   async start() {
     this.starts += 1;
-    if (this.starts > (this.gaveUp ? MOST_STARTS : SMOOTH_STARTS)) {
+    if (this.starts > MOST_STARTS) {
       fail(this.gaveUp ? GAVE_UP : REFUSED);
       return false;
     }
@@ -96,7 +92,7 @@ class Page {
         this.label = kind.label;
         caption.textContent = 'Drawing…';
         const ofLight = this.scene.lightSamples;
-        const noise = ofLight ? `; lights with extent: ${ofLight} samples per pixel, some noise remains; the lights themselves are not drawn` : '';
+        const noise = ofLight ? `; lights with extent: ${ofLight} samples, with some noise; they are not drawn` : '';
         caption.title = `Drawn with ${kind.label}, ${count} samples per pixel${noise}`;
         renderer.lost.then(() => this.renderer === renderer && this.startAgain());
         this.draw();
