@@ -48,6 +48,7 @@
 //! - [`channel`]: debug channels of scenes: their light, their scale, and their legends.
 //! - [`caption`]: pictures in words, and the strip below a picture that says them.
 //! - [`mod@reference`]: the CPU renderer, the same picture from the Rust functions.
+//! - [`materials`]: the library of materials: those of the program, and the user's own in a folder.
 //! - [`explain`]: the colour of one pixel, with the equation and every number in it.
 //! - [`compare`]: pictures compared: layouts of views, maps of differences, numbers.
 //! - [`matching`]: the parameters of one view that come nearest to another.
@@ -132,6 +133,8 @@ pub mod channel;
 pub mod caption;
 
 pub mod reference;
+
+pub mod materials;
 
 pub mod explain;
 

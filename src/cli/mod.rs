@@ -53,6 +53,7 @@ mod lesson;
 mod light_samples;
 mod linear;
 mod matching;
+mod materials;
 mod models;
 mod new;
 mod outputs;
@@ -286,6 +287,10 @@ enum Command {
     Match(OfScenes<matching::Arguments>),
     /// List reflection models, shading models, light types and object types; write and check custom models
     Models(models::Arguments),
+    /// List the library of materials, or draw each on a sphere: measured ones, presets and your own
+    ///
+    /// Your own are JSON files in the folder materials beside that of custom models.
+    Materials(materials::Arguments),
     /// Copy the built-in shaders and example models to a folder for editing
     #[command(subcommand)]
     Assets(assets::Command),
@@ -559,6 +564,7 @@ fn run(cli: Cli, known: Registry, window: Additions) -> Outcome {
         Some(Lesson(command)) => lesson::run(&command, options, places.open(options, known)?.list()),
         Some(Match(given)) => matching::run(&given.own, options, &mut places.open(options, known)?),
         Some(Models(given)) => models::run(given, options, places, known),
+        Some(Materials(given)) => materials::run(&given, options, &mut places.open(options, known)?),
         Some(Assets(command)) => assets::run(&command, options, &known),
         Some(Evaluate(given)) => evaluate::BRDF.print(&given, &mut places.open(options, known)?),
         Some(Study(given)) => study::run(&given, options, &known),

@@ -8,7 +8,7 @@ use serde_json::ser::Formatter;
 use crate::text::json::{self, Ast, STRICT};
 
 /// Compact JSON with the shortest numbers that are read back exactly, and whole numbers without `.0`.
-pub(super) struct ShortNumbers;
+pub(crate) struct ShortNumbers;
 
 impl Formatter for ShortNumbers {
     fn write_f32<W: ?Sized + io::Write>(&mut self, writer: &mut W, value: f32) -> io::Result<()> {
@@ -24,7 +24,7 @@ impl Formatter for ShortNumbers {
 const LINE_WIDTH: usize = 110;
 
 /// Formats JSON: anything that fits on a line is on one; lists of objects have at least one line per entry.
-pub(super) fn pretty(compact: &str) -> Option<String> {
+pub(crate) fn pretty(compact: &str) -> Option<String> {
     let value = json::parse(compact, &STRICT).ok()??;
     let mut out = String::with_capacity(2 * compact.len());
     lay_out(&value, compact, 0, 0, &mut out);

@@ -27,7 +27,7 @@ pub mod formats;
 pub mod held;
 mod ids;
 mod kept;
-mod layout;
+pub(crate) mod layout;
 mod light;
 pub mod limits;
 pub mod load;

@@ -38,7 +38,7 @@ fn too_much(text: &str, most: usize) -> Option<(usize, String)> {
             b'{' | b'[' => {
                 depth += 1;
                 if depth > MAX_DEPTH {
-                    let what = format!("nested more than {MAX_DEPTH} levels deep; a scene needs four");
+                    let what = format!("nested more than {MAX_DEPTH} levels deep; four are enough");
                     return Some((at, what));
                 }
                 begins = true;
@@ -204,7 +204,7 @@ mod tests {
         let error = from_text(&text, "s.json", &Registry::builtin(), Defaults::Use).expect_err("deep");
         assert_eq!(
             error.to_string(),
-            "s.json:1:65: not JSON: nested more than 64 levels deep; a scene needs four"
+            "s.json:1:65: not JSON: nested more than 64 levels deep; four are enough"
         );
     }
 

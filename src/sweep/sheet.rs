@@ -27,6 +27,13 @@ pub struct Grid {
 }
 
 impl Grid {
+    /// The grid for pictures in order, in as many columns as suit their number if not given.
+    fn row(count: usize, columns: Option<usize>) -> Self {
+        let usual = if count <= ROW { count } else { (count as f64).sqrt().ceil() as usize };
+        let columns = columns.unwrap_or(usual).clamp(1, count.max(1));
+        Self { columns, rows: count.div_ceil(columns), wrapped: columns < count }
+    }
+
     /// The grid for pictures along one axis, or two: columns and rows. `columns` breaks a single axis into rows.
     ///
     /// # Errors
@@ -34,11 +41,7 @@ impl Grid {
     pub fn of(counts: &[usize], columns: Option<usize>) -> Result<Self, String> {
         match (counts, columns) {
             ([], _) => Ok(Self { columns: 1, rows: 1, wrapped: false }),
-            ([count], columns) => {
-                let usual = if *count <= ROW { *count } else { (*count as f64).sqrt().ceil() as usize };
-                let columns = columns.unwrap_or(usual).clamp(1, *count);
-                Ok(Self { columns, rows: count.div_ceil(columns), wrapped: columns < *count })
-            }
+            ([count], columns) => Ok(Self::row(*count, columns)),
             ([columns, rows], None) => Ok(Self { columns: *columns, rows: *rows, wrapped: false }),
             ([_, _], Some(_)) => {
                 Err("the first of two varied values makes the columns; --columns is for one".to_owned())
@@ -159,6 +162,13 @@ impl<'a> Page<'a> {
             has_maps,
             ground: Ground::DARK,
         }
+    }
+
+    /// Lays out pictures of this size with a label each, in as many columns as suit their number.
+    #[must_use]
+    pub fn labelled(labels: &'a [Vec<Words>], cell: [u32; 2]) -> Self {
+        let grid = Grid::row(labels.len(), None);
+        Self { columns: labels.iter().map(Vec::as_slice).collect(), ..Self::new(&[], grid, cell, false) }
     }
 
     /// Lays the pictures on another ground.

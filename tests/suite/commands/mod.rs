@@ -4,6 +4,7 @@ mod assets;
 mod command_line;
 mod files;
 mod installed;
+mod materials;
 mod outputs;
 mod plot;
 mod sampling;

@@ -45,6 +45,7 @@ fn what_needs_no_window_is_the_same_without_it() {
         (&["lesson", "list"], ""),
         (&["lesson", "check", &lesson], ""),
         (&["models", "--json"], ""),
+        (&["materials", "gold", "-o", "materials.png"], ""),
         (&["schema"], ""),
         (&["new", "room.json"], ""),
         (&["completions", "fish"], ""),

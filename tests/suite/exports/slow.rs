@@ -151,10 +151,7 @@ fn the_page_says_truly_why_there_is_no_picture() {
     browser.visit(folder.path().to_str().expect("Unicode"));
     browser.visit(&format!("{}#renderer=webgl", file.display()));
     let none = said();
-    assert!(
-        none.starts_with("This browser refuses WebGL 2") && !none.contains("newer"),
-        "{none}"
-    );
+    assert!(none.starts_with("This browser refuses WebGL 2") && !none.contains("newer"), "{none}");
     browser.run_first("delete window.WebGL2RenderingContext;");
     browser.visit(folder.path().to_str().expect("Unicode"));
     browser.visit(&format!("{}#renderer=webgl", file.display()));

@@ -17,6 +17,7 @@ use lights_camera_models::{
     lesson::{Condition, Lesson},
     light::{ies, panorama},
     linear::{self, Limits, MAX_PIXELS, Pixels},
+    materials,
     panel::{
         code::{
             difference, find,
@@ -114,6 +115,13 @@ fn model(bytes: &[u8]) -> Result<(), String> {
     let text = String::from_utf8_lossy(bytes);
     let read = custom::declare(Path::new("somewhere/a.wgsl"), &text, &REGISTRY);
     read.map(drop).map_err(|problems| format!("{problems:?}"))
+}
+
+fn material(bytes: &[u8]) -> Result<(), String> {
+    materials::from_bytes(bytes, &REGISTRY).map(drop).map_err(|problems| {
+        assert!(problems.len() <= materials::MAX_PROBLEMS + 1, "{} problems", problems.len());
+        problems.join("\n")
+    })
 }
 
 /// A file in a folder of the user's data.
@@ -470,6 +478,20 @@ fn readers() -> Vec<Reader> {
             read: |text| sweep_of(text, |text, scene, registry| Axis::path(text, None, scene, registry)),
         },
         Reader {
+            name: "material",
+            around: ["{\"name\": \"a\", \"reflection_model\": \"phong\", ".into(), "\"material\": {\"alpha\": 20}}".into()],
+            pairs: &[("\"source\": [", "],"), ("\"source\": {\"a\":", "},")],
+            phrases: &["\"name\": \"a\",", "\"a\": 1,", "\"material\": {},"],
+            read: material,
+        },
+        Reader {
+            name: "values of a material",
+            around: ["{\"name\": \"a\", \"reflection_model\": \"phong\", \"material\": {".into(), "\"alpha\": 20}}".into()],
+            pairs: &[("\"k_d\": [", "],"), ("\"k_d\": {\"a\":", "},")],
+            phrases: &["\"k_d\": 0.5,", "\"k_d\": 9,", "\"kd\": 1,", "\"base_colour\": [1, 2, \"a\"],"],
+            read: material,
+        },
+        Reader {
             name: "settings",
             around: ["{\"recent_files\": ".into(), "}".into()],
             pairs: &[("[", "]"), ("{\"a\":", "}")],
@@ -600,7 +622,9 @@ fn what_is_put_around_hostile_text_is_read() {
             | "OBJ file"
             | "head of a photometric file"
             | "head of a picture of surroundings"
-            | "size of a picture of surroundings" => "",
+            | "size of a picture of surroundings"
+            | "material"
+            | "values of a material" => "",
             "condition" => "not ",
             "table" => "object,d,sphere,1,2 2 2\n",
             "list in a scene" => "{\"type\": \"point\", \"position\": [1, 1, 1]}, ",

@@ -366,8 +366,7 @@ fn a_parameter_says_what_it_stands_for() {
         let text = matt(&format!("{{ \"parameters\": [{parameter}] }}"));
         custom::read(&path("lacquer"), &text, &Registry::builtin())
     };
-    let model =
-        read(r#"{ "name": "polish", "max": 500, "stands_for": "blinn_phong_exponent" }, "metallic""#);
+    let model = read(r#"{ "name": "polish", "max": 500, "stands_for": "blinn_phong_exponent" }, "metallic""#);
     let [polish, metallic] = model.expect("valid").entry.parameters else { panic!("two") };
     assert_eq!(polish.stands_for, Some(&meaning::BLINN_PHONG_EXPONENT));
     assert_eq!(metallic.stands_for, Some(&meaning::METALLIC));
