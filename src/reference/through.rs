@@ -348,7 +348,7 @@ mod tests {
         // Sixteen wavelengths are white within half a code of 255.
         assert!(most < 2e-2 && mean < 0.5 / 255.0, "with dispersion: {most} {mean}");
         // So is the mean of pictures of fewer wavelengths, each of which has colours.
-        let parts: Vec<_> = (0..16)
+        let parts: Vec<_> = (0..64)
             .map(|first| part(&scene("sphere", &disperses), LightSamples { first, count: 1 }))
             .collect();
         let mut together = parts[0].clone();

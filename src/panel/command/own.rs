@@ -23,9 +23,8 @@ fn reserved(shortcut: Shortcut) -> Option<&'static str> {
     match key {
         Key::Escape => Some("closes what is open"),
         Key::Enter => Some("presses what has the focus"),
-        Key::A | Key::C | Key::V | Key::X if ctrl && !shift && !alt => {
-            Some("selects, copies, pastes or cuts text")
-        }
+        // Ctrl+A is a command's, too: in a field, it selects the text there.
+        Key::C | Key::V | Key::X if ctrl && !shift && !alt => Some("copies, pastes or cuts text"),
         _ => None,
     }
 }
@@ -256,7 +255,7 @@ mod tests {
             (r#"{ "save": "F6" }"#, "keys.save has F6, which is the key of \"next_panel\""),
             (r#"{ "save": "F10" }"#, "keys.save has F10, which is the key of \"menu_bar\""),
             (r#"{ "save": "Alt+F" }"#, "keys.save has Alt+F, which is the key of \"menu.file\""),
-            (r#"{ "save": "Ctrl+V" }"#, "since Ctrl+V selects, copies, pastes or cuts text"),
+            (r#"{ "save": "Ctrl+V" }"#, "since Ctrl+V copies, pastes or cuts text"),
             (r#"{ "save": "F4", "save": "F12" }"#, "keys.save is given twice; the first counts."),
             (
                 r#"{ "save": "Ctrl+O" }"#,

@@ -369,7 +369,7 @@ fn a_parameter_says_what_it_stands_for() {
     let model = read(r#"{ "name": "polish", "max": 500, "stands_for": "blinn_phong_exponent" }, "metallic""#);
     let [polish, metallic] = model.expect("valid").entry.parameters else { panic!("two") };
     assert_eq!(polish.stands_for, Some(&meaning::BLINN_PHONG_EXPONENT));
-    assert_eq!(metallic.stands_for, Some(&meaning::METALLIC));
+    assert_eq!(metallic.stands_for, Some(&meaning::METAL));
     for (parameter, said) in [
         (r#"{ "name": "polish", "stands_for": "roughnes" }"#, "did you mean"),
         (r#"{ "name": "polish", "stands_for": 3 }"#, "stands_for"),
