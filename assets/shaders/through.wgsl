@@ -192,15 +192,14 @@ fn from_within(position: vec3<f32>, view: vec3<f32>, frame: Frame, selection: u3
     if rough {
         count = samples;
     } else if disperses {
-        count = select(16u * clamp(samples / 16u, 1u, 4u), 4u * samples, samples < 4u);
+        count = 16u * clamp(samples / 16u, 1u, 4u);
     }
     var colour = vec3(0.0);
     for (var i = 0u; i < count; i++) {
         var ior = inside.x;
         var weight = vec3(1.0);
         if disperses {
-            // Parts of a picture begin at multiples of their number, whose points would lie close together.
-            var u = sequence_point(sample_seed, 65536u, select(first / samples, first + i, rough)).x;
+            var u = sequence_point(sample_seed, 65536u, first + select(0u, i, rough)).x;
             if !rough {
                 u = (f32(i) + u) / f32(count);
             }

@@ -130,10 +130,9 @@ impl Body {
         if self.interior.cauchy_b == 0.0 {
             return smooth(&solid, &self.interior, lights, from);
         }
-        let count = wavelengths(samples.count);
-        // Parts of a picture begin at multiples of their number, whose points would lie close together.
-        let part = samples.first / samples.count.max(1);
-        let offset = Sequence::new(from.seed, FIRST_SEQUENCE).point(part).x;
+        let count =
+            (samples.count / dispersion::PARTS).clamp(1, WAVELENGTHS / dispersion::PARTS) * dispersion::PARTS;
+        let offset = Sequence::new(from.seed, FIRST_SEQUENCE).point(samples.first).x;
         let mut sum = Through::default();
         for i in 0..count {
             let wave = spectrum((i as f32 + offset) / count as f32);
@@ -163,15 +162,6 @@ impl Body {
         let count = samples.count.max(1) as f32;
         Through { light: sum.light / count, remaining: sum.remaining / count }
     }
-}
-
-/// The number of equally spaced wavelengths for a number of samples. Fewer than 16 have a colour of their own, which parts
-/// of a picture lose in their mean: a frame of one sample takes a quarter of the time, and is nearly white.
-fn wavelengths(samples: u32) -> u32 {
-    if samples < dispersion::PARTS / 4 {
-        return 4 * samples.max(1);
-    }
-    (samples / dispersion::PARTS).clamp(1, WAVELENGTHS / dispersion::PARTS) * dispersion::PARTS
 }
 
 fn smooth(solid: &Solid, interior: &Interior, lights: &Lights, from: &Viewed) -> Through {
@@ -274,8 +264,6 @@ fn step(interface: &Interface, u: Vec3, v: Vec3) -> Option<Step> {
 mod tests {
     use std::sync::atomic::AtomicBool;
 
-    use glam::Vec4;
-
     use super::*;
     use crate::{
         parameter::Value,
@@ -317,11 +305,8 @@ mod tests {
     }
 
     fn picture(scene: &Scene, samples: u32) -> Picture {
-        part(scene, LightSamples::of(samples))
-    }
-
-    fn part(scene: &Scene, samples: LightSamples) -> Picture {
         let settings = Settings { width: SIZE, height: SIZE, samples: 1, ..Settings::default() };
+        let samples = LightSamples::of(samples);
         render_samples(scene, &Registry::builtin(), &settings, samples, &AtomicBool::default())
     }
 
@@ -347,16 +332,6 @@ mod tests {
         let [most, mean] = visible(&picture(&scene("sphere", &disperses), 16));
         // Sixteen wavelengths are white within half a code of 255.
         assert!(most < 2e-2 && mean < 0.5 / 255.0, "with dispersion: {most} {mean}");
-        // So is the mean of pictures of fewer wavelengths, each of which has colours.
-        let parts: Vec<_> = (0..64)
-            .map(|first| part(&scene("sphere", &disperses), LightSamples { first, count: 1 }))
-            .collect();
-        let mut together = parts[0].clone();
-        for (i, sum) in together.pixels.iter_mut().enumerate() {
-            *sum = parts.iter().map(|part| part.pixels[i]).sum::<Vec4>() / parts.len() as f32;
-        }
-        let ([_, one], [_, all]) = (visible(&parts[0]), visible(&together));
-        assert!(all < 0.5 / 255.0 && one > 4.0 * all, "in parts: {one} {all}");
         // The wrong twin: green glass is seen.
         let green = [("transmittance_colour", Value::Colour([200, 255, 200]))];
         assert!(visible(&picture(&scene("sphere", &green), 1))[1] > 0.02);
