@@ -478,7 +478,7 @@ pub fn compose_interpreted(sources: &Sources, model: &ModelEntry) -> Composed {
     // What follows the last number of the curve in its quadruple.
     let padding = if model.has_curve() { part("file_padding", &[("padding", &3)]) } else { String::new() };
     // In two levels, since the limits of models hold for arrays here, too.
-    let more = padding + &part("file_row", &[("quadruples", &table.numbers.len().div_ceil(4))]);
+    let more = padding + &part("file_row", &[("eights", &table.numbers.len().div_ceil(8))]);
     evaluation(sources, model, &more, "file_alone")
 }
 

@@ -58,10 +58,10 @@ fn file_word(i: u32) -> u32 {
 [[file_padding]]
     padding: array<u32, {{padding}}>,
 [[file_row]]
-    file: array<array<u32, 4>, {{quadruples}}>,
+    file: array<array<u32, 8>, {{eights}}>,
 [[file_alone]]
 fn file_word(i: u32) -> u32 {
-    return parameter_table[object_row].file[i / 4u][i % 4u];
+    return parameter_table[object_row].file[i / 8u][i % 8u];
 }
 [[light_alone]]
 struct FileRow { numbers: array<f32, {{numbers}}> }

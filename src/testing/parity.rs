@@ -49,8 +49,8 @@ fn parameter_words(model: &ModelEntry, values: &Values) -> Vec<u32> {
 fn row_of(model: &ModelEntry, values: &Values, uniform_light: bool) -> Vec<u32> {
     let mut row = words(&model.row(values, Encoding::Srgb, uniform_light));
     let table = model.table(values);
-    for quadruple in table.iter().flat_map(|table| table.numbers.chunks(4)) {
-        row.extend((0..4).map(|i| quadruple.get(i).map_or(0, |number| number.to_bits())));
+    for eight in table.iter().flat_map(|table| table.numbers.chunks(8)) {
+        row.extend((0..8).map(|i| eight.get(i).map_or(0, |number| number.to_bits())));
     }
     row
 }

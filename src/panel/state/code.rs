@@ -8,11 +8,9 @@ use std::{
     sync::Arc,
 };
 
-use super::{CodeCommand, Effect, Note, Session, Severity};
+use super::{CODE_TAB, CodeCommand, Effect, Note, Session, Severity};
 use crate::{custom::source_path, files::Shown as _, registry::Registry};
 
-/// Id of the panel with the editor.
-pub const CODE_TAB: &str = "code";
 /// Greatest size of a text in the editor, bytes.
 pub const MOST_CODE: usize = 256 << 10;
 /// Name of the scene in the editor, and in messages about it.

@@ -2,6 +2,9 @@
 
 use std::{path::PathBuf, sync::Arc};
 
+/// Id of the panel with the editor.
+pub const CODE_TAB: &str = "code";
+
 /// A command for the editor.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CodeCommand {
