@@ -61,9 +61,7 @@ const SUN_AZIMUTH: Parameter = Parameter::number("sun_azimuth", -360.0..=360.0, 
     .symbol("α_s")
     .label("sun's azimuth")
     .unit("°")
-    .help(
-        "The direction of the sun from −z, clockwise as seen from above, as on a compass with north at −z: 90° is +x, 180° is +z.",
-    )
+    .help("The direction of the sun, clockwise from −z as seen from above: 90° is +x.")
     .used_when("source", &["sky"]);
 
 const ZENITH_LUMINANCE: Parameter = Parameter::number("zenith_luminance", 0.0..=20_000.0, 0.1)

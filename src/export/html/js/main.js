@@ -9,15 +9,11 @@ const caption = document.getElementById('renderer');
 const bare = asked.get('picture')?.match(/^(\d+)x(\d+)$/)?.slice(1).map(Number) ?? null;
 // Starts in succession without a whole picture.
 const MOST_STARTS = 6;
-// The starts after which edges are no longer smoothed, which takes a quarter of the work.
-const SMOOTH_STARTS = 3;
 // Milliseconds before another start where browsers refuse it; longer each time.
 const PAUSE = 300;
-const NO_GRAPHICS = 'This browser has neither WebGPU nor WebGL 2. A newer one can draw the scene.';
-const REFUSED = 'This browser refuses WebGL 2 to this page. Start it anew, or switch on hardware acceleration in its settings.';
-const GAVE_UP =
-  'The graphics driver gave up: this scene is too much work for it, even in small steps. Switch on hardware acceleration ' +
-  'in the settings of the browser, or make the window smaller, and load the page again. Fewer lights with extent take less work.';
+const NO_GRAPHICS = 'This browser has neither WebGPU nor WebGL 2; a newer one has.';
+const REFUSED = 'This browser refuses WebGL 2. Switch on hardware acceleration, or start it anew.';
+const GAVE_UP = 'The graphics driver gave up: the scene is too much work for it. Make the window smaller, or use hardware acceleration.';
 const samples = asked.get('samples') === '1' ? 1 : 4;
 
 function fail(text) {
@@ -67,15 +63,12 @@ class Page {
   // smaller steps.
   async start() {
     this.starts += 1;
-    if (this.starts > MOST_STARTS) {
-      fail(this.gaveUp ? GAVE_UP : REFUSED);
-      return false;
-    }
-    const count = this.starts > SMOOTH_STARTS && this.gaveUp ? 1 : samples;
+    if (this.starts > MOST_STARTS) return fail(this.gaveUp ? GAVE_UP : REFUSED);
+    // Edges that are not smoothed take a quarter of the work.
+    const count = this.starts > 3 ? 1 : samples;
     const kinds = { webgpu: [WebGpu], webgl: [WebGl] }[asked.get('renderer')] ?? [WebGpu, WebGl];
     // A browser that knows WebGL 2 and does not give it refuses it, often for a while after a driver gave up.
-    const refused = kinds.includes(WebGl) && 'WebGL2RenderingContext' in window;
-    let reason = refused ? REFUSED : NO_GRAPHICS;
+    let reason = kinds.includes(WebGl) && window.WebGL2RenderingContext ? REFUSED : NO_GRAPHICS;
     for (const kind of kinds) {
       try {
         this.hasPicture = false;
@@ -92,7 +85,7 @@ class Page {
         this.label = kind.label;
         caption.textContent = 'Drawing…';
         const ofLight = this.scene.lightSamples;
-        const noise = ofLight ? `; lights with extent: ${ofLight} samples, with some noise; they are not drawn` : '';
+        const noise = ofLight ? `; lights with extent: ${ofLight} samples, some noise` : '';
         caption.title = `Drawn with ${kind.label}, ${count} samples per pixel${noise}`;
         renderer.lost.then(() => this.renderer === renderer && this.startAgain());
         this.draw();
@@ -112,8 +105,7 @@ class Page {
       await new Promise((done) => setTimeout(done, PAUSE * this.starts));
       return this.start();
     }
-    fail(reason);
-    return false;
+    return fail(reason);
   }
 
   startAgain() {
@@ -247,7 +239,7 @@ class Page {
 
 async function main() {
   if (typeof DecompressionStream === 'undefined') {
-    fail('This browser is too old to unpack the scene. A newer one can.');
+    fail('This browser is too old to unpack the scene.');
     return;
   }
   const [text, meshes] = await Promise.all([unpack('scene-data'), unpack('mesh-data')]);
