@@ -235,8 +235,8 @@ fn the_background_has_a_choice_and_its_colours_and_is_undone() {
 fn another_source_of_an_environment_keeps_its_mean_luminance_and_has_its_unit() {
     let registry = Registry::builtin();
     let entry = registry.light("environment").expect("built in");
-    let mut scene = Scene::default();
-    scene.lights = vec![Light { light_type: "environment".to_owned(), intensity: 1.0, ..Light::default() }];
+    let environment = Light { light_type: "environment".to_owned(), intensity: 1.0, ..Light::default() };
+    let scene = Scene { lights: vec![environment], ..Scene::default() };
     let mut bench = Bench::new(Session::new(scene));
     bench.size = vec2(1280.0, 900.0);
     bench.apply(Action::Select(Selection::Light(0)));
