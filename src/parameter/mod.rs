@@ -2,7 +2,7 @@
 //! shaders and `lcm models`.
 //!
 //! Models share parameters **by name**, so changing the model keeps the user's settings. What has another name goes along
-//! by its [meaning](meaning). Parameters of several models are declared here once.
+//! by its [meaning]. Parameters of several models are declared here once.
 
 mod builder;
 mod component;

@@ -2,7 +2,7 @@
 //!
 //! The longest common subsequence of the lines between the common beginning and the common end (J. W. Hunt and
 //! M. D. McIlroy 1976, *An Algorithm for Differential File Comparison*), as far as that is cheap: beyond
-//! [`MOST_PAIRS`] the middle counts as replaced.
+//! `MOST_PAIRS` the middle counts as replaced.
 
 /// Most pairs of lines that are compared.
 const MOST_PAIRS: usize = 1 << 22;

@@ -5,7 +5,7 @@
 //! frame, lays line numbers out as a second text field, colours by lists of words, so that a declaration in a comment
 //! is grey, has no place for marks at lines or for help, and brings another way to open links.
 //!
-//! A text is written as an editor of one's own would write it, and the watcher then loads it: see [`disk`]. While it is
+//! A text is written as an editor of one's own would write it, and the watcher then loads it. While it is
 //! typed, a thread checks it after a short rest.
 
 use std::{sync::Mutex, time::Duration};
