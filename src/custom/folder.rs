@@ -14,7 +14,7 @@ use std::{
 use rayon::prelude::*;
 
 use super::{EXTENSION, declare, file, id_of, is_id, is_model, named, problem, read, source_path};
-use crate::files::{Shown as _, words};
+use crate::files::{self, Shown as _, words};
 use crate::{
     registry::{CustomModel, MODELS, Registry},
     shader::{
@@ -60,21 +60,7 @@ pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
 
 /// Like [`files_in`], but includes everything with a matching name: folders, pipes, dangling links.
 fn names_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let entries = match fs::read_dir(folder) {
-        Ok(entries) => entries,
-        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(e) => return Err(e),
-    };
-    let mut names = Vec::new();
-    for entry in entries {
-        let path = entry?.path();
-        let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
-        if path.extension().is_some_and(|e| e == EXTENSION) && !hidden {
-            names.push(path);
-        }
-    }
-    names.sort();
-    Ok(names)
+    files::listed(folder, EXTENSION, usize::MAX).map(|(names, _)| names)
 }
 
 /// Reads the complete model with this id and the files that it imports, if it is in the registry's folder but

@@ -12,52 +12,45 @@ use crate::{registry::Registry, scene::Scene};
 /// The name that a part of a scene has in a new document, as [`Document::name_of`] gives it, without one.
 #[must_use]
 pub fn name_in(scene: &Scene, part: Selection, registry: &Registry) -> String {
-    fn number<'a>(types: impl Iterator<Item = &'a str>, i: usize, own: &str) -> usize {
-        types.take(i + 1).filter(|id| *id == own).count()
-    }
-    match part {
-        Selection::Room => "Room".to_owned(),
-        Selection::Observer => "Observer".to_owned(),
-        Selection::Light(i) => scene.lights.get(i).map_or_else(
-            || "light".to_owned(),
-            |light| {
-                let id = light.light_type.as_str();
-                let types = scene.lights.iter().map(|light| light.light_type.as_str());
-                name(&light.name, light_type(id, registry), number(types, i, id))
-            },
-        ),
-        Selection::Object(i) => scene.objects.get(i).map_or_else(
-            || "object".to_owned(),
-            |object| {
-                let id = object.object_type.as_str();
-                let types = scene.objects.iter().map(|object| object.object_type.as_str());
-                name(&object.name, object_type(id, registry), number(types, i, id))
-            },
-        ),
-    }
+    name(scene, part, registry, || match part {
+        Selection::Light(i) => nth(&scene.lights, i, |light| &light.light_type),
+        Selection::Object(i) => nth(&scene.objects, i, |object| &object.object_type),
+        Selection::Room | Selection::Observer => 0,
+    })
+}
+
+/// The number of a part among those of its type, from 1.
+fn nth<T>(parts: &[T], i: usize, type_of: impl Fn(&T) -> &String) -> usize {
+    parts[..=i].iter().filter(|part| type_of(part) == type_of(&parts[i])).count()
 }
 
 impl Document {
     /// The name of a part, or else its type and its number among parts of that type.
     #[must_use]
     pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
-        match part {
-            Selection::Room => "Room".to_owned(),
-            Selection::Observer => "Observer".to_owned(),
-            Selection::Light(i) => {
-                let Some(light) = self.lights.get(i) else { return "light".to_owned() };
-                name(&light.name, light_type(&light.light_type, registry), self.labels.lights[i].number)
-            }
-            Selection::Object(i) => {
-                let Some(object) = self.objects.get(i) else { return "object".to_owned() };
-                name(&object.name, object_type(&object.object_type, registry), self.labels.objects[i].number)
-            }
-        }
+        name(self, part, registry, || match part {
+            Selection::Light(i) => self.labels.lights[i].number,
+            Selection::Object(i) => self.labels.objects[i].number,
+            Selection::Room | Selection::Observer => 0,
+        })
     }
 }
 
-fn name(own: &Option<String>, type_name: &str, number: usize) -> String {
-    own.clone().unwrap_or_else(|| format!("{type_name} {number}"))
+/// The name of a part, or else its type and its number, which is asked for only if the part is there and has no name.
+fn name(scene: &Scene, part: Selection, registry: &Registry, number: impl FnOnce() -> usize) -> String {
+    let (own, type_name) = match part {
+        Selection::Room => return "Room".to_owned(),
+        Selection::Observer => return "Observer".to_owned(),
+        Selection::Light(i) => match scene.lights.get(i) {
+            Some(light) => (&light.name, light_type(&light.light_type, registry)),
+            None => return "light".to_owned(),
+        },
+        Selection::Object(i) => match scene.objects.get(i) {
+            Some(object) => (&object.name, object_type(&object.object_type, registry)),
+            None => return "object".to_owned(),
+        },
+    };
+    own.clone().unwrap_or_else(|| format!("{type_name} {}", number()))
 }
 
 /// The name of a light type, else its id.

@@ -5,6 +5,7 @@
 //!   sockets and folders are refused before they are opened, and so are files larger than the limit.
 //! - [`read_start`]: the first bytes of a file; [`read_range`]: bytes from a position on.
 //! - [`identity`]: identifies a file, whatever paths lead to it.
+//! - [`listed`]: what lies in a folder under names with an extension.
 //! - [`inside`]: checks that a path does not lead out of a folder.
 //! - [`read_input`]: a path from the command line, which may also be a stream, such as a shell's `<(…)`.
 //!
@@ -267,6 +268,33 @@ pub fn identity(path: &Path) -> Option<(Identity, u64)> {
     let metadata = fs::metadata(path).ok()?;
     regular(&metadata).ok()?;
     Some((file_id::get_file_id(path).ok()?, metadata.len()))
+}
+
+/// What lies in a folder under names with an extension, by name, at most `most`, and true if there is more: hidden names are
+/// left out; folders, pipes and dangling links are not. Nothing if the folder does not exist.
+///
+/// # Errors
+/// Returns an error if the folder cannot be read.
+pub fn listed(folder: &Path, extension: &str, most: usize) -> io::Result<(Vec<PathBuf>, bool)> {
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((Vec::new(), false)),
+        Err(error) => return Err(error),
+    };
+    let (mut names, mut more) = (Vec::new(), false);
+    for entry in entries {
+        let path = entry?.path();
+        let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        if path.extension().is_some_and(|of| of == extension) && !hidden {
+            if names.len() == most {
+                more = true;
+                break;
+            }
+            names.push(path);
+        }
+    }
+    names.sort();
+    Ok((names, more))
 }
 
 /// The end of a path, links followed; it need not exist.

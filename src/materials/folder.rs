@@ -1,7 +1,7 @@
 //! The folder of a user's materials.
 
 use std::{
-    fmt, fs, io,
+    fmt,
     path::{Path, PathBuf},
 };
 
@@ -49,7 +49,7 @@ pub fn beside(models: &Path) -> PathBuf {
 /// The materials in a folder, in no order, and its broken files by path; nothing if the folder does not exist.
 pub(super) fn read(folder: &Path, registry: &Registry) -> Library {
     let mut library = Library::default();
-    let (files, more) = match names_in(folder) {
+    let (files, more) = match files::listed(folder, EXTENSION, MAX_FILES) {
         Ok(found) => found,
         Err(error) => {
             library
@@ -69,29 +69,6 @@ pub(super) fn read(folder: &Path, registry: &Registry) -> Library {
         library.broken.push(Broken::new(folder, what));
     }
     library
-}
-
-/// The JSON files in a folder by name, at most [`MAX_FILES`], and whether there are more.
-fn names_in(folder: &Path) -> io::Result<(Vec<PathBuf>, bool)> {
-    let entries = match fs::read_dir(folder) {
-        Ok(entries) => entries,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((Vec::new(), false)),
-        Err(error) => return Err(error),
-    };
-    let mut names = Vec::new();
-    for entry in entries {
-        let path = entry?.path();
-        let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
-        if path.extension().is_some_and(|extension| extension == EXTENSION) && !hidden {
-            if names.len() == MAX_FILES {
-                names.sort();
-                return Ok((names, true));
-            }
-            names.push(path);
-        }
-    }
-    names.sort();
-    Ok((names, false))
 }
 
 /// The material in a file, which must be within the folder, also if it is a link.

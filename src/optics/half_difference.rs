@@ -15,6 +15,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use glam::{Vec3, Vec4};
 
 use super::{
+    Frame, Terms,
     colour::luminance,
     lobes::{Lobe, Lobes},
 };
@@ -142,6 +143,13 @@ impl<'a> Grid<'a> {
             |i: usize, j: usize| self.cell(i, j, k).truncate().lerp(self.cell(i, j, next).truncate(), c);
         let across = |i: usize| along(i, j).lerp(along(i, j + 1), b);
         across(i).lerp(across(i + 1), a)
+    }
+
+    /// The response of a surface with this table: π f_r (N·L), all of it as the specular term.
+    #[must_use]
+    pub fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+        let Some((cos_l, _)) = frame.cosines(l, v) else { return Terms::default() };
+        Terms::of(Vec3::ZERO, PI * cos_l * self.value(angles(l, v, frame.n)))
     }
 }
 

@@ -2,11 +2,7 @@ use glam::Vec3;
 
 use super::{Declaration, Readout, ReadoutValue, ReflectionModel, built_in};
 use crate::{
-    optics::{
-        Frame, Terms,
-        half_difference::{Grid, angles},
-        lobes::Lobes,
-    },
+    optics::{Frame, Terms, half_difference::Grid, lobes::Lobes},
     parameter::Parameter,
     parameters,
 };
@@ -63,11 +59,7 @@ impl ReflectionModel for MeasuredTable {
         built_in!("measured_table", "Measured (table)", Measured).ambient_by_albedo().measured();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (Some((cos_l, _)), Some(grid)) = (frame.cosines(l, v), self.grid()) else {
-            return Terms::default();
-        };
-        let value = grid.value(angles(l, v, frame.n));
-        Terms::of(Vec3::ZERO, std::f32::consts::PI * cos_l * value)
+        self.grid().map_or_else(Terms::default, |grid| grid.response(l, v, frame))
     }
 
     fn lobes(&self) -> Lobes {

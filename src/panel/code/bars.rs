@@ -122,10 +122,24 @@ pub(super) fn conflict(ui: &mut Ui, open: &OpenCode, context: &mut PanelContext<
     });
 }
 
-/// The difference between the text as typed and the other version.
-pub(super) fn difference(ui: &mut Ui, mine: &str, theirs: &str) {
+/// The difference between two texts.
+pub(super) struct Known {
+    of: [Arc<str>; 2],
+    all: Vec<Change<String>>,
+}
+
+/// The difference between the text as typed and the other version, which is calculated once.
+pub(super) fn difference(ui: &mut Ui, known: &mut Option<Known>, mine: &Arc<str>, theirs: &Arc<str>) {
     let palette = Palette::here(ui);
-    let all = difference::difference(mine, theirs);
+    let of = [mine, theirs].map(Arc::clone);
+    let known = match known.take().filter(|known| known.of == of) {
+        Some(same) => known.insert(same),
+        None => {
+            let all = difference::difference(mine, theirs);
+            known.insert(Known { all: all.into_iter().map(Change::owned).collect(), of })
+        }
+    };
+    let all = &known.all;
     let height = ui.text_style_height(&TextStyle::Monospace);
     let scroll = ScrollArea::both().id_salt("code difference").auto_shrink(false);
     ui.spacing_mut().item_spacing.y = 0.0;

@@ -9,32 +9,44 @@ const MOST_PAIRS: usize = 1 << 22;
 
 /// A line of a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Change<'a> {
+pub enum Change<S> {
     /// In both texts.
-    Both(&'a str),
+    Both(S),
     /// Only in the first.
-    Mine(&'a str),
+    Mine(S),
     /// Only in the second.
-    Theirs(&'a str),
+    Theirs(S),
+}
+
+impl Change<&str> {
+    /// The change with a line of its own.
+    pub(super) fn owned(self) -> Change<String> {
+        match self {
+            Self::Both(line) => Change::Both(line.to_owned()),
+            Self::Mine(line) => Change::Mine(line.to_owned()),
+            Self::Theirs(line) => Change::Theirs(line.to_owned()),
+        }
+    }
 }
 
 /// The lines of both texts in order.
 #[must_use]
-pub fn difference<'a>(mine: &'a str, theirs: &'a str) -> Vec<Change<'a>> {
+pub fn difference<'a>(mine: &'a str, theirs: &'a str) -> Vec<Change<&'a str>> {
     let (a, b): (Vec<_>, Vec<_>) = (mine.lines().collect(), theirs.lines().collect());
     let before = a.iter().zip(&b).take_while(|(a, b)| a == b).count();
     let after = a[before..].iter().rev().zip(b[before..].iter().rev()).take_while(|(a, b)| a == b).count();
     let (a_middle, b_middle) = (&a[before..a.len() - after], &b[before..b.len() - after]);
-    let mut all: Vec<_> = a[..before].iter().map(|line| Change::Both(line)).collect();
+    let mut all: Vec<_> = a[..before].iter().map(|line| Change::Both(*line)).collect();
     all.extend(middle(a_middle, b_middle));
-    all.extend(a[a.len() - after..].iter().map(|line| Change::Both(line)));
+    all.extend(a[a.len() - after..].iter().map(|line| Change::Both(*line)));
     all
 }
 
-fn middle<'a>(a: &[&'a str], b: &[&'a str]) -> Vec<Change<'a>> {
+fn middle<'a>(a: &[&'a str], b: &[&'a str]) -> Vec<Change<&'a str>> {
     let (rows, columns) = (a.len() + 1, b.len() + 1);
-    let replaced =
-        || a.iter().map(|line| Change::Mine(line)).chain(b.iter().map(|line| Change::Theirs(line))).collect();
+    let replaced = || {
+        a.iter().map(|line| Change::Mine(*line)).chain(b.iter().map(|line| Change::Theirs(*line))).collect()
+    };
     if rows.saturating_mul(columns) > MOST_PAIRS {
         return replaced();
     }
@@ -71,8 +83,8 @@ mod tests {
     use super::*;
 
     /// One side of a difference.
-    fn side<'a>(all: &[Change<'a>], mine: bool) -> Vec<&'a str> {
-        let of = |change: &Change<'a>| match *change {
+    fn side<'a>(all: &[Change<&'a str>], mine: bool) -> Vec<&'a str> {
+        let of = |change: &Change<&'a str>| match *change {
             Change::Both(line) => Some(line),
             Change::Mine(line) => mine.then_some(line),
             Change::Theirs(line) => (!mine).then_some(line),

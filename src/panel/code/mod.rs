@@ -65,6 +65,8 @@ pub(super) struct CodePanel {
     parameters: Option<(u64, &'static [Parameter])>,
     vocabulary: Option<(Option<Reloaded>, Vocabulary)>,
     offer: Option<Offering>,
+    /// The difference that was shown last.
+    difference: Option<bars::Known>,
 }
 
 impl Default for CodePanel {
@@ -84,6 +86,7 @@ impl Default for CodePanel {
             parameters: None,
             vocabulary: None,
             offer: None,
+            difference: None,
         }
     }
 }
@@ -140,7 +143,7 @@ impl CodePanel {
         if open.shows_difference
             && let Some(Theirs::Changed(theirs)) = &open.theirs
         {
-            return bars::difference(ui, &open.text, theirs);
+            return bars::difference(ui, &mut self.difference, &open.text, theirs);
         }
         self.check(ui.ctx(), open, context);
         self.field(ui, open, context);
