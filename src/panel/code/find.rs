@@ -44,6 +44,19 @@ pub fn next(places: &[Range<usize>], at: usize, backwards: bool) -> Option<usize
     }
 }
 
+/// The bytes of a line, from 1, without its end; the last one if there are fewer.
+pub(super) fn line(text: &str, number: usize) -> Range<usize> {
+    let mut start = 0;
+    for _ in 1..number {
+        match text[start..].find('\n') {
+            Some(at) => start += at + 1,
+            None => break,
+        }
+    }
+    let end = text[start..].find('\n').map_or(text.len(), |at| start + at);
+    start..end
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

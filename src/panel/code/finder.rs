@@ -4,7 +4,10 @@ use std::ops::Range;
 
 use bevy_egui::egui::TextEdit;
 
-use super::{CodePanel, OpenCode, find, surface::line};
+use super::{
+    CodePanel, OpenCode,
+    find::{self, line},
+};
 use crate::panel::prelude::*;
 
 /// Ids of its fields.

@@ -8,7 +8,7 @@ use bevy_egui::egui::{
     text_edit::TextEditState,
 };
 
-use super::{CodePanel, Mark, finder, keyboard, keyboard::Typing, language, tokens, words::Word};
+use super::{CodePanel, Mark, find::line, finder, keyboard, keyboard::Typing, language, tokens, words::Word};
 use crate::panel::{
     prelude::*,
     state::{CodeCommand, OpenCode},
@@ -32,19 +32,6 @@ pub(super) fn byte(text: &str, character: usize) -> usize {
 /// The character of a byte.
 pub(super) fn character(text: &str, byte: usize) -> usize {
     text[..text.floor_char_boundary(byte)].chars().count()
-}
-
-/// The bytes of a line, from 1, without its end; the last one if there are fewer.
-pub(super) fn line(text: &str, number: usize) -> Range<usize> {
-    let mut start = 0;
-    for _ in 1..number {
-        match text[start..].find('\n') {
-            Some(at) => start += at + 1,
-            None => break,
-        }
-    }
-    let end = text[start..].find('\n').map_or(text.len(), |at| start + at);
-    start..end
 }
 
 impl CodePanel {
