@@ -81,39 +81,34 @@ fn parts(to: &mut List) {
 
 /// Several lights and objects at once.
 fn several(to: &mut List) {
+    to.menu(Menu::new("Several parts"), |to| {
+        select(to);
+        to.line();
+        others(to);
+        to.line();
+        to.menu(Menu::new("Align and distribute"), arrange);
+        single(to);
+    });
+}
+
+fn select(to: &mut List) {
     let session = to.session;
-    to.menu(Menu::new("Select"), |to| {
-        for by in Alike::ALL {
-            let all = command(format!("select.{}", by.id()), by.name(), Action::SelectAlike(by));
-            let all = if by == Alike::Kind {
-                all.says("Select all objects, or all lights").keys("Ctrl+A")
-            } else {
-                all
-            };
-            let is_light = matches!(session.selection, Selection::Light(_)) && by == Alike::Model;
-            to.add(all.unless(is_light, "A light is selected, which has no reflection model"));
-        }
-        let one = command("select.one", "The first alone", Action::Select(session.selection));
-        to.add(one.unless(!session.has_group(), "Only one part is selected"));
-    });
-    to.menu(Menu::new("Align and distribute"), |to| {
-        let names = [
-            ["Left sides", "Middles from left to right", "Right sides", "Equal distances along x"],
-            ["Undersides", "Middles from below to above", "Tops", "Equal distances along y"],
-            ["Backs", "Middles from back to front", "Fronts", "Equal distances along z"],
-        ];
-        let ways = [Arrangement::Low, Arrangement::Middle, Arrangement::High, Arrangement::Apart];
-        for (axis, (names, letter)) in names.into_iter().zip(["x", "y", "z"]).enumerate() {
-            for (how, name) in ways.into_iter().zip(names) {
-                let id = format!("arrange.{letter}_{}", how.id());
-                let arrange = command(id, name, Action::Arrange(how, axis));
-                to.add(arrange.unless(!session.has_group(), "Only one part is selected"));
-            }
-            if letter != "z" {
-                to.line();
-            }
-        }
-    });
+    for by in Alike::ALL {
+        let all = command(format!("select.{}", by.id()), by.name(), Action::SelectAlike(by));
+        let all = if by == Alike::Kind {
+            all.says("Select all objects, or all lights").keys("Ctrl+A")
+        } else {
+            all
+        };
+        let is_light = matches!(session.selection, Selection::Light(_)) && by == Alike::Model;
+        to.add(all.unless(is_light, "A light is selected, which has no reflection model"));
+    }
+    let one = command("select.one", "The first alone", Action::Select(session.selection));
+    to.add(one.unless(!session.has_group(), "Only one part is selected"));
+}
+
+fn others(to: &mut List) {
+    let session = to.session;
     let objects = matches!(session.selection, Selection::Object(_)) || session.has_group();
     let alone = command("hide_others", "Hide the other objects", Action::HideOthers).keys("Shift+V").rank(3);
     to.add(alone.unless(!objects, "No object is selected"));
@@ -122,12 +117,45 @@ fn several(to: &mut List) {
     to.add(all.unless(!hidden, "No object is hidden"));
 }
 
-fn rows(to: &mut List) {
-    let object = match to.session.selection {
+fn arrange(to: &mut List) {
+    let none = !to.session.has_group();
+    let names = [
+        ["Left sides", "Middles from left to right", "Right sides", "Equal distances along x"],
+        ["Undersides", "Middles from below to above", "Tops", "Equal distances along y"],
+        ["Backs", "Middles from back to front", "Fronts", "Equal distances along z"],
+    ];
+    let ways = [Arrangement::Low, Arrangement::Middle, Arrangement::High, Arrangement::Apart];
+    for (axis, (names, letter)) in names.into_iter().zip(["x", "y", "z"]).enumerate() {
+        for (how, name) in ways.into_iter().zip(names) {
+            let id = format!("arrange.{letter}_{}", how.id());
+            let arrange = command(id, name, Action::Arrange(how, axis));
+            to.add(arrange.unless(none, "Only one part is selected"));
+        }
+        if letter != "z" {
+            to.line();
+        }
+    }
+}
+
+/// The object whose row is meant.
+fn object_of_row(to: &List) -> Option<usize> {
+    match to.session.selection {
         Selection::Object(i) => Some(i),
         // There is no other that could be meant.
         _ => Some(0).filter(|_| to.session.document.objects.len() == 1),
-    };
+    }
+}
+
+fn single(to: &mut List) {
+    let object = object_of_row(to);
+    let row = object.and_then(|i| to.session.document.row(i));
+    let single = Edit::Row { object: object.unwrap_or_default(), entry: None, what: "Single objects" };
+    let single = command("single_objects", "Make single objects", Action::Edit(single));
+    to.add(single.unless(row.is_none(), "The object is in no row"));
+}
+
+fn rows(to: &mut List) {
+    let object = object_of_row(to);
     let row = object.and_then(|i| to.session.document.row(i));
     let part = object.map_or(Selection::Room, Selection::Object);
     let make = command("row", "Row…", Action::MakeRow(part))
@@ -138,9 +166,6 @@ fn rows(to: &mut List) {
         .tip("Copies of the object beside each other, edited as one; values may differ from copy to copy.");
     let make = make.unless(object.is_none(), "No object is selected");
     to.add(if row.is_some() { make.unless(true, "The object is in a row already") } else { make });
-    let single = Edit::Row { object: object.unwrap_or_default(), entry: None, what: "Single objects" };
-    let single = command("single_objects", "Make single objects", Action::Edit(single));
-    to.add(single.unless(row.is_none(), "The object is in no row"));
 }
 
 fn models(to: &mut List) {
@@ -150,10 +175,15 @@ fn models(to: &mut List) {
     to.add(model("new_model", "New reflection model…", ModelCommand::New).keys("Ctrl+Shift+N"));
     let duplicate = model("duplicate_model", "Duplicate the model as a file…", ModelCommand::Duplicate);
     to.add(duplicate.keys("Ctrl+Shift+D"));
-    to.add(model("edit_model", "Open the model in an editor", ModelCommand::EditShown).keys("Ctrl+E"));
-    let code = |id, name, what| command(id, name, Action::Code(what)).group(Group::CustomModels);
-    to.add(code("code", "Edit the code of the model", CodeCommand::Model).keys("Ctrl+Shift+E").at_desk());
-    to.add(code("scene_code", "Edit the scene as JSON", CodeCommand::Scene).keys("Ctrl+Shift+J").at_desk());
+    let open = model("edit_model", "Open the model in an editor", ModelCommand::EditShown).keys("Ctrl+E");
+    to.menu(Menu::new("Code"), |to| {
+        let code = |id, name, what| command(id, name, Action::Code(what)).group(Group::CustomModels);
+        to.add(open);
+        to.add(code("code", "Edit the code of the model", CodeCommand::Model).keys("Ctrl+Shift+E").at_desk());
+        to.add(
+            code("scene_code", "Edit the scene as JSON", CodeCommand::Scene).keys("Ctrl+Shift+J").at_desk(),
+        );
+    });
     let export = Action::Do(Effect::Pick(Pick::ShaderFolder));
     to.add(command("export_shaders", "Export shaders for editing…", export).group(Group::CustomModels));
 }

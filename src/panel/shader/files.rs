@@ -135,7 +135,8 @@ fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
         if trouble.is_some() {
             icon::severity(ui.painter(), sign.center(), 5.5, Severity::Error, &palette);
         }
-        let (place, label) = ui.allocate_exact_size(vec2(names, ROW), Sense::hover());
+        let sense = if on_disk.is_some() { Sense::click() } else { Sense::hover() };
+        let (place, label) = ui.allocate_exact_size(vec2(names, ROW), sense);
         let galley = theme::elided(ui, &name, TextStyle::Body, palette.text, place.width());
         let at = pos2(place.left(), place.center().y - galley.size().y / 2.0);
         ui.painter().galley(at, galley, palette.text);
@@ -145,13 +146,14 @@ fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
             (None, false) => format!("{name}: {path}"),
         };
         theme::says(&label, WidgetType::Label, says);
+        if let Some(file) = &on_disk {
+            let command = || CodeCommand::File(file.clone(), session.line_of_trouble(path));
+            context.on_click(&label, || Action::Code(command()));
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(file) = &on_disk {
                 let open = icon::button(ui, Icon::Pencil, &format!("Open {path} in an editor"));
                 context.on_click(&open, || open_in_editor(file, session.line_of_trouble(path)));
-                let code = ui.small_button("Code").on_hover_text("Edits the file here, in the panel Code");
-                let command = || CodeCommand::File(file.clone(), session.line_of_trouble(path));
-                context.on_click(&code, || Action::Code(command()));
             }
             if let Some(t) = trouble {
                 ui.label(RichText::new(format!("line {}", t.problem.line)).small().color(palette.error));
@@ -167,12 +169,15 @@ fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
     theme::tip(row.response, 340.0, |ui| {
         ui.label(theme::strong(ui, &name));
         ui.label(help);
-        let place = on_disk.map_or_else(
+        let place = on_disk.as_ref().map_or_else(
             // The folder it belongs to may only exist on its author's machine.
             || if foreign { format!("{path}, of {}", program::name()) } else { format!("{path}, built in") },
             |f| f.shown().to_string(),
         );
         ui.label(theme::small(ui, place));
+        if on_disk.is_some() {
+            ui.label(theme::small(ui, "A click on the name edits the file in the panel Code."));
+        }
     });
 }
 

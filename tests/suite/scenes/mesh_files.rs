@@ -250,7 +250,7 @@ fn files_that_cannot_be_used_are_told_with_place_and_mistake() {
         ("missing.obj", "missing.obj: there is no such file"),
         ("folder.obj", "folder.obj: it is a folder, but it must be a file"),
         ("huge.obj", "huge.obj: it is larger than 32 MiB"),
-        ("", "it is a folder"),
+        ("", "the name is empty"),
         ("a\0b", "a\u{fffd}b"),
     ] {
         let error = read(folder.path(), name).expect_err("it cannot be used");
