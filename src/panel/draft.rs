@@ -5,14 +5,19 @@ use bevy_egui::egui::Window;
 use super::prelude::*;
 
 /// Width of such a window, in points.
-const WIDTH: f32 = 440.0;
+const WIDTH: f32 = 450.0;
+/// Width of the scroll bar beside the content, in points.
+const BAR: f32 = 10.0;
 /// Height of title, margins and buttons of such a window, in points.
 const AROUND: f32 = 132.0;
 
 /// Shows such a window around a point. Returns false if the user closes it.
 pub(super) fn window(ui: &Ui, id: &str, title: String, centre: Pos2, content: impl FnOnce(&mut Ui)) -> bool {
+    // It may have been pushed aside the last time, by the user or by a lack of room.
+    let opens = is_new(ui, &format!("{id} place"));
     let size = |window: Window<'static>| {
-        window.default_width(WIDTH).pivot(Align2::CENTER_CENTER).default_pos(centre)
+        let window = window.default_width(WIDTH).pivot(Align2::CENTER_CENTER).default_pos(centre);
+        if opens { window.current_pos(centre) } else { window }
     };
     theme::window(ui, id, title, true, size, |ui| {
         ui.set_width(WIDTH);
@@ -25,6 +30,7 @@ pub(super) fn content(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     let most = ui.ctx().content_rect().height() - AROUND;
     let scroll = ScrollArea::vertical().auto_shrink([false, true]).min_scrolled_height(most);
     scroll.max_height(most).show(ui, |ui| {
+        ui.set_max_width(ui.available_width() - BAR);
         add(ui);
         // Tab brings into sight what it reaches.
         let focused = ui.memory(|memory| memory.focused()).and_then(|id| ui.ctx().read_response(id));

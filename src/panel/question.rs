@@ -29,21 +29,26 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
                 });
             }
             ui.add_space(16.0);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| out = answered(ui, &answers));
+            // One line high: all of the rest would be the height of the question before.
+            let line = vec2(ui.available_width(), BUTTON.y);
+            let layout = Layout::right_to_left(Align::Center);
+            ui.allocate_ui_with_layout(line, layout, |ui| out = answered(ui, &answers));
         });
     });
     let escape = ui.input(|i| i.key_pressed(Key::Escape)).then_some(Answer::Cancel);
     context.actions.extend(escape.or(out).map(Action::Answer));
 }
 
+/// Smallest size of a button, in points.
+const BUTTON: Vec2 = vec2(80.0, 28.0);
+
 /// The buttons for the answers, of which the first stands out. Returns the chosen one.
 fn answered(ui: &mut Ui, answers: &[(&str, Answer)]) -> Option<Answer> {
     let mut out = None;
     for (i, (label, answer)) in answers.iter().enumerate() {
-        let size = vec2(80.0, 28.0);
         let button = match i {
-            0 => theme::action_button(ui, label, true, size),
-            _ => Button::new(*label).min_size(size),
+            0 => theme::action_button(ui, label, true, BUTTON),
+            _ => Button::new(*label).min_size(BUTTON),
         };
         let response = ui.add(button);
         // The keyboard focus starts here, not in the window below.

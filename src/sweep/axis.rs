@@ -177,13 +177,18 @@ impl Axis {
 
     /// The labels one after the other, or the first and the last of many.
     fn of_several_parts(&self) -> Vec<Words> {
+        // The parts of one label are held together, so that it is seen where the next begins.
+        let whole = |label: &Vec<Words>| -> Vec<Words> {
+            let parts = label.iter().enumerate();
+            parts.map(|(i, part)| Words { continues: i > 0 || part.continues, ..part.clone() }).collect()
+        };
         match self.labels.as_slice() {
             [first, .., last] if self.count() > NAMED => {
-                let others = [Words::new(0, "…")];
-                let count = Words::new(0, format!("{} in all", self.count()));
-                first.iter().chain(&others).chain(last).cloned().chain([count]).collect()
+                let others = vec![Words::new(0, "…")];
+                let count = vec![Words::new(0, format!("{} in all", self.count()))];
+                [whole(first), others, whole(last), count].concat()
             }
-            few => few.concat(),
+            few => few.iter().flat_map(whole).collect(),
         }
     }
 
@@ -301,6 +306,24 @@ mod tests {
         }
         let said = Axis::copies(3, &scene, &registry).expect_err("it is alone");
         assert_eq!(said, "objects[3] is in no row");
+    }
+
+    #[test]
+    fn the_values_of_one_copy_stand_together_in_a_caption() {
+        let registry = Registry::builtin();
+        let varied = |parameter: &str, from, to| Varied {
+            parameter: parameter.to_owned(),
+            from: Some(from),
+            to: Some(to),
+            ..Varied::default()
+        };
+        let vary = vec![varied("size", 0.5, 1.0), varied("material.k_s", 0.25, 0.75)];
+        let repeat = Repeat { columns: 2, spacing: Vec3::X, vary, ..Repeat::default() };
+        let entry = Object { repeat: Repetition::Entry(Box::new(repeat)), ..Object::default() };
+        let scene = Scene { reflection_model: "phong".to_owned(), objects: vec![entry], ..Scene::default() };
+        let scene = scene.expanded(&registry).expect("a row");
+        let axis = Axis::copies(0, &scene, &registry).expect("a row");
+        assert_eq!(caption::line(&axis.summary()), "copy: size 0.5 m, k_s 0.25 · size 1 m, k_s 0.75");
     }
 
     #[test]

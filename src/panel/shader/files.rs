@@ -165,8 +165,10 @@ fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
             let shown = short(ui, path, &font, palette.weak, ui.available_width());
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.label(shown));
         });
+        label
     });
-    theme::tip(row.response, 340.0, |ui| {
+    // A name that takes clicks hides the row below it from the pointer.
+    theme::tip(row.response.union(row.inner), 340.0, |ui| {
         ui.label(theme::strong(ui, &name));
         ui.label(help);
         let place = on_disk.as_ref().map_or_else(

@@ -63,7 +63,7 @@ fn what_needs_no_window_is_the_same_without_it() {
         );
     }
     let files = names(here.path());
-    assert_eq!(files.len(), 9, "{files:?}");
+    assert_eq!(files.len(), 10, "{files:?}");
     assert_eq!(names(there.path()), files);
     for name in files.iter().filter(|name| here.path().join(name).is_file()) {
         let [whole, small] =
