@@ -24,8 +24,10 @@ fn sum(
             let spread = textureLoad(squares, vec2(x, y), 0).r;
             // Lamps and surroundings in the picture have no noise, and would hide that of surfaces.
             if here.a < 1.0 {
-                let differs = luminance > 0.0 && spread > 0.0;
-                part += select(vec4(0.0, 0.0, 0.0, 1.0), vec4(spread, luminance, 1.0, 1.0), differs);
+                part.w += 1.0;
+                if luminance > 0.0 && spread > 0.0 {
+                    part += vec4(spread, luminance, 1.0, 0.0);
+                }
             }
         }
     }

@@ -68,7 +68,7 @@ fn items(ui: &mut Ui, menu: &Menu, special: Special, actions: &mut Vec<Action>) 
 }
 
 /// The name of a command, with characters that the fonts have.
-pub(in crate::panel) fn legible(ui: &Ui, command: &Command, name: &str) -> String {
+fn legible(ui: &Ui, command: &Command, name: &str) -> String {
     if !command.foreign {
         return name.to_owned();
     }
