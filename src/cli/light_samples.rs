@@ -12,7 +12,7 @@ use crate::{
 /// Maximum number of samples of lights with extent.
 const MOST: u32 = 1 << 20;
 
-/// Maximum number of samples on the GPU, where nothing shows the progress.
+/// Maximum number of samples on the GPU unless noise ends them: some pictures take all in each frame.
 const MOST_ON_GPU: u32 = 4096;
 
 /// Default maximum number of samples if the noise decides.
@@ -22,11 +22,11 @@ const MOST_FOR_NOISE: u32 = 1 << 16;
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub(super) struct Sampling {
     /// Samples of each light with extent, and as many of the directions in which objects reflect most: 1 to 1048576, on the GPU
-    /// to 4096; by default 256, with --noise 65536
+    /// to 4096 without --noise; by default 256, with --noise 65536
     #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     light_samples: Option<u32>,
-    /// Take samples of lights with extent until the noise is this low, on the CPU: the standard error of pixels over their mean
-    /// luminance, in per cent, e.g. 1 or 0.5%
+    /// Take samples of lights with extent until the noise is this low: the standard error of pixels over their mean luminance, in
+    /// per cent, e.g. 1 or 0.5%
     #[arg(long, value_name = "PERCENT", value_parser = noise, allow_hyphen_values = true)]
     noise: Option<f32>,
 }
@@ -43,16 +43,16 @@ impl Sampling {
         Until { samples: self.light_samples.unwrap_or(default), noise: self.noise }
     }
 
-    /// The reason why the GPU renderer cannot take these samples.
-    pub(super) fn fits_gpu(self) -> Result<(), String> {
-        if self.noise.is_some() {
+    /// The reason why the GPU renderer cannot take these samples for a picture, which is linear or for display.
+    pub(super) fn fits_gpu(self, linear: bool) -> Result<(), String> {
+        if self.noise.is_some() && linear {
             let way = "use --light-samples, or --renderer cpu";
             return Err(format!(
-                "--noise cannot be used with --renderer gpu, which does not measure it; {way}"
+                "--noise cannot be used with --renderer gpu for linear pictures, whose noise it does not measure; {way}"
             ));
         }
         match self.light_samples {
-            Some(many) if many > MOST_ON_GPU => Err(format!(
+            Some(many) if many > MOST_ON_GPU && self.noise.is_none() => Err(format!(
                 "--light-samples is {many}, but with --renderer gpu it must be at most {MOST_ON_GPU}; use --renderer cpu"
             )),
             _ => Ok(()),

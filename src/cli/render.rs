@@ -211,7 +211,7 @@ impl Job<'_> {
     /// A view of the picture, for the GPU.
     fn order<'a>(&'a self, part: &'a Part, registry: &'a Registry) -> Order<'a> {
         let Arguments { samples, sampling, .. } = *self.arguments;
-        Order { part, samples, light_samples: sampling.until().samples, registry, file: self.file }
+        Order { part, samples, until: sampling.until(), registry, file: self.file }
     }
 
     /// True if what is shown of a scene depends on samples of lights with extent.
@@ -232,7 +232,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     arguments.changes.check(workshop)?;
     let files = files(&sources, arguments.output.as_deref())?;
     files.iter().try_for_each(|file| fits(arguments, file))?;
-    let renderer = renderer(arguments)?;
+    let linear = files.iter().any(|file| Format::of(file).is_some());
+    let renderer = renderer(arguments, linear)?;
 
     // All scenes are read before the first is rendered, so that errors in the last one appear at once.
     let scenes = collected(sources.iter().map(|source| arguments.changes.open(source, workshop, options)))?;
@@ -388,8 +389,9 @@ fn compares(arguments: &Arguments, plan: &Plan) -> Result<(), String> {
     Err(format!("--numbers compares views, but the picture shows one; {rule}"))
 }
 
-/// The requested renderer. With a number of samples or a noise it is the CPU's, unless the GPU's is asked for.
-fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
+/// The requested renderer of pictures, linear or not. With a number of samples or a noise it is the CPU's, unless the GPU's is
+/// asked for.
+fn renderer(arguments: &Arguments, linear: bool) -> Result<Renderer, Failure> {
     let Some(given) = arguments.sampling.given() else { return Ok(arguments.renderer) };
     if let Some(channel) = arguments.channel.filter(|channel| !channel.rests_on_samples()) {
         let known = DebugChannel::ALL.into_iter().filter(|known| known.rests_on_samples());
@@ -399,7 +401,7 @@ fn renderer(arguments: &Arguments) -> Result<Renderer, Failure> {
         return Err(Failure::Usage(format!("{said}, which does not depend on light samples; {rule}")));
     }
     match arguments.renderer {
-        Renderer::Gpu => arguments.sampling.fits_gpu().map(|()| Renderer::Gpu).map_err(Failure::Usage),
+        Renderer::Gpu => arguments.sampling.fits_gpu(linear).map(|()| Renderer::Gpu).map_err(Failure::Usage),
         Renderer::Auto | Renderer::Cpu => Ok(Renderer::Cpu),
     }
 }
@@ -490,7 +492,9 @@ impl Painter {
                 letter.map_or_else(|| step.to_owned(), |letter| format!("view {letter}, {step}"))
             };
             let Drawn { shown, reached, remarks: of_part } = match gpu {
-                true => self.on_gpu(job, part, registry)?,
+                true => {
+                    progress.part((i, count), name, |progress| self.on_gpu(job, part, registry, progress))?
+                }
                 false => progress.part((i, count), name, |progress| on_cpu(job, part, registry, progress))?,
             };
             let outlined = all.is_empty() && job.plan.is_map();
@@ -527,12 +531,18 @@ impl Painter {
         Ok(Painted { remarks, light })
     }
 
-    fn on_gpu(&mut self, job: &Job, part: &Part, registry: &Registry) -> Result<Drawn, Failure> {
-        let (shown, remark) = self.pictures()?.draw(&job.order(part, registry), job.channel)?;
-        let reached = job
-            .converges(&part.scene, registry)
-            .then_some(Reached { samples: job.arguments.sampling.until().samples, noise: None });
-        Ok(Drawn { shown, reached, remarks: remark.into_iter().collect() })
+    fn on_gpu(
+        &mut self,
+        job: &Job,
+        part: &Part,
+        registry: &Registry,
+        progress: &Progress,
+    ) -> Result<Drawn, Failure> {
+        let order = job.order(part, registry);
+        let (shown, reached, odd) = self.pictures()?.draw(&order, job.channel, progress)?;
+        let reached = job.converges(&part.scene, registry).then_some(reached);
+        let noisy = reached.and_then(|reached| job.arguments.sampling.remark(reached));
+        Ok(Drawn { shown, reached, remarks: odd.into_iter().chain(noisy).collect() })
     }
 
     fn layers_on_gpu(
@@ -579,8 +589,10 @@ fn renderer_name(gpu: bool) -> &'static str {
 
 /// Fails if the CPU renderer cannot draw a part of a picture.
 fn can_draw(job: &Job, part: &Part, registry: &Registry) -> Outcome {
+    let sampling = job.arguments.sampling;
+    let fits = sampling.fits_gpu(Format::of(job.file).is_some()).is_ok();
     let without =
-        job.arguments.sampling.given().map_or_else(String::new, |given| format!(" without {given}"));
+        sampling.given().filter(|_| !fits).map_or_else(String::new, |given| format!(" without {given}"));
     cpu_can_draw_or(&part.scene, registry, &format!("--renderer gpu{without}"))
 }
 

@@ -248,3 +248,31 @@ fn menu(ui: &mut Ui, view: usize, context: &mut PanelContext<'_>) {
     });
     context.actions.extend(chosen.map(Action::Compare));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Comparison, Scene, Variant};
+
+    #[test]
+    fn the_bar_leaves_a_low_window_half_of_its_height() {
+        for layout in Layout::ALL {
+            let scene = Scene {
+                variants: vec![Variant::default()],
+                comparison: Comparison { layout: *layout, ..Comparison::default() },
+                ..Scene::default()
+            };
+            let session = Session::new(scene);
+            for (width, height) in
+                [(400.0, 40.0), (400.0, 90.0), (400.0, 400.0), (900.0, 60.0), (900.0, 500.0)]
+            {
+                let whole = Rect::from_min_size(pos2(100.0, 50.0), vec2(width, height));
+                let all = arrange(&session, whole, 0.0);
+                assert!(!all.is_single(), "{layout:?}");
+                let bar = all.bar.map_or(0.0, |bar| bar.height());
+                assert!(bar <= 0.5 * height, "{layout:?} in {width} × {height}: {bar}");
+                assert!(height < 400.0 || bar >= ROW, "{layout:?}: all of it where there is room");
+            }
+        }
+    }
+}

@@ -4,6 +4,10 @@ use std::{borrow::Cow, collections::HashSet};
 
 use super::prelude::*;
 use bevy::log::warn;
+use bevy_egui::egui::AtomExt as _;
+
+/// Width of a column of glyphs, as a multiple of the size of the text.
+const COLUMN: f32 = 1.25;
 
 /// Replaces each character that the fonts lack by letters of similar sound. `owner` names the origin of the text in the
 /// log.
@@ -30,6 +34,19 @@ pub(super) fn glyph<'a>(ui: &Ui, glyph: &'a str, name: &str) -> Cow<'a, str> {
     let shown: String = name.chars().next().unwrap_or('?').to_uppercase().collect();
     report(ui, glyph, &shown, &format!("“{name}”"));
     Cow::Owned(shown)
+}
+
+/// The entry of a type in a menu. Glyphs stand in a column, since their widths differ and names begin below each other.
+pub(super) fn entry(ui: &Ui, sign: &str, name: &str) -> Button<'static> {
+    let size = TextStyle::Body.resolve(ui.style()).size;
+    let sign = RichText::new(glyph(ui, sign, name)).atom_size(vec2(COLUMN * size, size));
+    Button::new((sign, legible(ui, name, "a type").into_owned()))
+}
+
+/// Names such an entry for screen readers.
+pub(super) fn says(ui: &Ui, entry: &Response, sign: &str, name: &str) {
+    let says = format!("{}  {}", glyph(ui, sign, name), legible(ui, name, "a type"));
+    entry.widget_info(|| WidgetInfo::labeled(WidgetType::Button, entry.enabled(), &says));
 }
 
 fn has(ui: &Ui, text: &str) -> bool {

@@ -210,6 +210,14 @@ pub fn elided(ui: &Ui, text: &str, font: impl Into<FontSelection>, ink: Color32,
     ui.painter().layout_job(job)
 }
 
+/// A title in the bold font, truncated with … if two lines of this width are not enough.
+pub(super) fn title(ui: &Ui, text: &str, width: f32) -> Arc<Galley> {
+    let ink = Palette::here(ui).text;
+    let mut job = egui::text::LayoutJob::simple(text.to_owned(), bold(ui), ink, width.max(0.0));
+    job.wrap.max_rows = 2;
+    ui.painter().layout_job(job)
+}
+
 /// A line of text, with … in the middle if it is wider than `width`: names often differ only at their ends.
 #[must_use]
 pub fn elided_within(ui: &Ui, text: &str, font: &FontId, ink: Color32, width: f32) -> (Arc<Galley>, bool) {

@@ -131,8 +131,9 @@ fn step(ui: &Ui, memory: Id, scene: &Scene) -> Option<Action> {
 }
 
 fn add_item(ui: &mut Ui, [glyph, name, summary]: [&str; 3], action: Action, context: &mut PanelContext<'_>) {
-    let glyph = glyphs::glyph(ui, glyph, name);
-    let response = ui.button(format!("{glyph}  {name}"));
+    let entry = glyphs::entry(ui, glyph, name);
+    let response = ui.add(entry);
+    glyphs::says(ui, &response, glyph, name);
     let response = if summary.is_empty() { response } else { response.on_hover_text(summary) };
     if response.clicked() {
         context.act(action);

@@ -32,18 +32,18 @@ impl Default for Until {
 }
 
 /// Number of samples in a block: a power of two, so that each block is evenly distributed.
-const AT_ONCE: u32 = 16;
+pub(crate) const BLOCK: u32 = 16;
 
 /// Minimum number of blocks for estimating noise.
-const ENOUGH: u32 = 4;
+pub(crate) const ENOUGH: u32 = 4;
 
 impl Until {
     /// Minimum number of samples for estimating noise.
-    pub const FEWEST_FOR_NOISE: u32 = AT_ONCE * ENOUGH;
+    pub const FEWEST_FOR_NOISE: u32 = BLOCK * ENOUGH;
 
     /// The fraction of the work that is done, and a description of the state. Noise falls at least with the
     /// square root of the number of samples, so the work ends no later than this predicts.
-    fn progress(self, Reached { samples, noise }: Reached) -> (f32, String) {
+    pub(crate) fn progress(self, Reached { samples, noise }: Reached) -> (f32, String) {
         let done = |all: f32| (samples as f32 / all).min(1.0);
         let all = self.samples.max(1) as f32;
         match (self.noise, noise) {
@@ -87,12 +87,12 @@ pub fn render_until(
     let mut squares = vec![0.0f64; pixels];
     let (mut taken, mut blocks, mut noise) = (0, 0u32, None);
     while taken < until.samples.max(1) {
-        let count = AT_ONCE.min(until.samples.max(1) - taken);
+        let count = BLOCK.min(until.samples.max(1) - taken);
         let samples = LightSamples { first: taken, count };
         let block = render_samples(scene, registry, settings, samples, odd);
         taken += count;
         // A last block with fewer samples is less reliable, and is left out of the estimate.
-        let is_whole = count == AT_ONCE;
+        let is_whole = count == BLOCK;
         blocks += u32::from(is_whole);
         let share = count as f32 / taken as f32;
         for ((mean, squares), pixel) in mean.iter_mut().zip(&mut squares).zip(block.pixels) {
@@ -127,7 +127,7 @@ fn noise_of(mean: &[Vec4], squares: &[f64], blocks: u32, samples: u32) -> f32 {
     for (mean, squares) in mean.iter().zip(squares) {
         let here = f64::from(luminance(mean.truncate()));
         if here > 0.0 && *squares > 0.0 {
-            let of = [f64::from(AT_ONCE) * squares, here, 1.0];
+            let of = [f64::from(BLOCK) * squares, here, 1.0];
             sums.iter_mut().zip(of).for_each(|(sum, part)| *sum += part);
         }
     }
@@ -271,9 +271,9 @@ mod tests {
         // Pixels of the mean luminance 2, four blocks with the sums of squares 12 and 3: variances of the mean 1 and 0.25. One
         // without any is a lamp, and does not count.
         let mean = [Vec4::new(2.0, 2.0, 2.0, 1.0); 3];
-        let noise = noise_of(&mean, &[12.0, 3.0, 0.0], 4, 4 * AT_ONCE);
+        let noise = noise_of(&mean, &[12.0, 3.0, 0.0], 4, 4 * BLOCK);
         assert!((noise - 0.625f32.sqrt() / 2.0).abs() < 1e-6, "{noise}");
-        assert_eq!(noise_of(&[Vec4::ZERO], &[0.0], 4, 4 * AT_ONCE), 0.0, "darkness has no noise");
+        assert_eq!(noise_of(&[Vec4::ZERO], &[0.0], 4, 4 * BLOCK), 0.0, "darkness has no noise");
     }
 
     #[test]

@@ -67,7 +67,7 @@ mod wires;
 
 pub use crate::optics::colour::BACKGROUND;
 use channel::Sight;
-pub(crate) use converge::relative_error;
+pub(crate) use converge::{BLOCK, ENOUGH, relative_error};
 pub use converge::{Reached, Until, render_until};
 use display::DisplayTransform;
 pub use display::{DisplaySteps, encode8};

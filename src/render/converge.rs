@@ -50,7 +50,7 @@ with_defaults! {
     pub struct Convergence {
         /// The target number of samples, at least 1.
         pub target: u32 = LightSamples::DEFAULT,
-        /// Number of samples in a frame, at least 1; `None` for as many as frames have time for.
+        /// Number of samples in a frame, at least 1 and at most 8; `None` for as many as frames have time for.
         pub pace: Option<u32> = None,
         /// The first sample of the next frame.
         next: u32 = 0,
@@ -77,7 +77,7 @@ impl Convergence {
             _ => {}
         }
         let aligned = if self.next == 0 { MOST } else { 1 << self.next.trailing_zeros().min(31) };
-        let wanted = if begins { 1 } else { self.pace.unwrap_or(self.most) };
+        let wanted = if begins { 1 } else { self.pace.unwrap_or(self.most).min(MOST) };
         let room = wanted.min(missing.unwrap_or(1)).min(target - self.next).max(1);
         let part = Part { first: self.next, count: aligned.min(1 << room.ilog2()) };
         self.next = (self.next + part.count) % target;
@@ -132,5 +132,7 @@ mod tests {
             assert_eq!(convergence.part(false, Some(200)), Part { first, count: 4 });
         }
         assert_eq!(convergence.part(true, Some(200)), Part { first: 12, count: 1 });
+        convergence = Convergence { pace: Some(64), next: 64, ..convergence };
+        assert_eq!(convergence.part(false, Some(190)), Part { first: 64, count: MOST });
     }
 }

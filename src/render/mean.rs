@@ -2,7 +2,7 @@
 //! frames. A pass between those of the objects and of the display adds a frame to the mean.
 //!
 //! While a view's picture converges, it has two pairs of textures of 32-bit floats, one to read and one to
-//! write: 2 × 20 bytes for each pixel. A finished view has none. Cameras without a [`View`] draw all samples
+//! write: 2 × 24 bytes for each pixel. A finished view has none. Cameras without a [`View`] draw all samples
 //! in each frame, and should not share the frames of converging views.
 
 use std::collections::{HashMap, HashSet};
@@ -27,7 +27,7 @@ use bevy::{
 use super::{
     converge::{Convergence, Part},
     illumination::{IlluminationBuffer, SAMPLES_AT, sample_bytes},
-    noise::{Frame, Grown, Measuring, Noise},
+    noise::{Blocks, Frame, Grown, Measuring, Noise},
     pass::Cover,
     stage::Stage,
     view::{Drawing, View},
@@ -36,8 +36,8 @@ use crate::shader::wgsl;
 
 /// Texture format of means.
 const MEAN: TextureFormat = TextureFormat::Rgba32Float;
-/// Texture format of the sums of squares about the mean luminance.
-const SQUARES: TextureFormat = TextureFormat::R32Float;
+/// Texture format of the sums of squares about the mean luminance, and of that before the last block of samples.
+const SQUARES: TextureFormat = TextureFormat::Rg32Float;
 /// Texture format of frames.
 const FRAME: TextureFormat = TextureFormat::Rgba16Float;
 
@@ -66,14 +66,13 @@ struct Joins {
 #[derive(Component)]
 struct Mean {
     size: Extent3d,
-    /// Number of frames in the mean.
-    frames: u32,
+    blocks: Blocks,
     /// Textures to read, and to write: the mean, and the squares about it.
     textures: [[TextureView; 2]; 2],
 }
 
 impl Mean {
-    fn new(size: Extent3d, device: &RenderDevice) -> Self {
+    fn new(size: Extent3d, blocks: Blocks, device: &RenderDevice) -> Self {
         let texture = |format| {
             let texture = device.create_texture(&TextureDescriptor {
                 label: Some("mean"),
@@ -87,7 +86,7 @@ impl Mean {
             });
             texture.create_view(&TextureViewDescriptor::default())
         };
-        Self { size, frames: 1, textures: [(); 2].map(|()| [MEAN, SQUARES].map(texture)) }
+        Self { size, blocks, textures: [(); 2].map(|()| [MEAN, SQUARES].map(texture)) }
     }
 }
 
@@ -122,7 +121,7 @@ fn extract(
         let illumination = stage.map_or(&shared.buffers, |stage| &stage.illumination).lights.id();
         samples.wanted.insert(illumination, part);
         let (number, converged) = (drawing.drawn(), drawing.converged());
-        let frame = Frame { view, number, converged, count: part.count };
+        let frame = Frame { view, number, converged, part };
         commands.entity(entity).insert(Joins { frame, illumination });
     }
     // Views that have converged, and cameras that are views no more.
@@ -161,10 +160,13 @@ fn prepare(
         match mean {
             Some(mut mean) if mean.size == size => {
                 mean.textures.reverse();
-                let Frame { converged, count, .. } = joins.frame;
-                mean.frames = if converged.done == count { 1 } else { mean.frames + 1 };
+                mean.blocks.add(&joins.frame);
             }
-            _ => _ = commands.entity(view).insert(Mean::new(size, &device)),
+            _ => {
+                let mut blocks = Blocks::default();
+                blocks.add(&joins.frame);
+                commands.entity(view).insert(Mean::new(size, blocks, &device));
+            }
         }
     }
 }
@@ -184,13 +186,11 @@ fn join(
     view: ViewQuery<(&ViewTarget, &Joins, &Mean)>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
     device: Res<RenderDevice>,
-    noise: Res<Noise>,
     mut measuring: ResMut<Measuring>,
     mut pass: Local<Option<Cover>>,
     mut context: RenderContext,
 ) {
-    let (target, joins, Mean { frames, textures: [known, next], .. }) = view.into_inner();
-    let Frame { converged, count, .. } = joins.frame;
+    let (target, joins, Mean { blocks, textures: [known, next], .. }) = view.into_inner();
     let Some(illumination) = buffers.get(joins.illumination) else { return };
     if target.main_texture_format() != FRAME {
         error_once!(
@@ -200,10 +200,9 @@ fn join(
         return;
     }
     let Cover { bindings, pipeline } = pass.get_or_insert_with(|| adding(&device));
-    let share = [count as f32 / converged.done as f32, count as f32, 0.0, 0.0];
-    let share = device.create_buffer_with_data(&BufferInitDescriptor {
+    let weights = device.create_buffer_with_data(&BufferInitDescriptor {
         label: Some("mean"),
-        contents: &share.map(f32::to_le_bytes).concat(),
+        contents: &blocks.weights(&joins.frame).map(f32::to_le_bytes).concat(),
         usage: BufferUsages::UNIFORM,
     });
     let frame = target.post_process_write();
@@ -215,7 +214,7 @@ fn join(
             &known[0],
             &known[1],
             illumination.buffer.as_entire_buffer_binding(),
-            share.as_entire_buffer_binding(),
+            weights.as_entire_buffer_binding(),
         )),
     );
     let attachment = |view| {
@@ -238,6 +237,6 @@ fn join(
     pass.set_bind_group(0, &*group, &[]);
     pass.draw(0..3, 0..1);
     drop(pass);
-    let grown = Grown { frame: joins.frame, frames: *frames };
-    measuring.measure(grown, next.each_ref(), &device, context.command_encoder(), &noise);
+    let grown = Grown { frame: joins.frame, blocks: *blocks };
+    measuring.measure(grown, next.each_ref(), &device, context.command_encoder());
 }

@@ -11,11 +11,12 @@ struct Header {
 
 @group(0) @binding(0) var frame: texture_2d<f32>;
 @group(0) @binding(1) var known: texture_2d<f32>;
-// The sum of squares about the mean luminance.
+// The sum of squares about the mean luminance, and that before the last block of samples.
 @group(0) @binding(2) var known_squares: texture_2d<f32>;
 @group(0) @binding(3) var<uniform> illumination: Header;
-// The part that the frame has in the mean, 1 in a picture that begins; and its samples.
-@group(0) @binding(4) var<uniform> share: vec4<f32>;
+// The part that the frame has in the mean, 1 in a picture that begins; the weight of the square of the change of the
+// luminance since the last block began, 0 unless the frame completes it; and 1 if the frame ends it.
+@group(0) @binding(4) var<uniform> weights: vec4<f32>;
 
 // As in display.wgsl, whose last step this is for the mean.
 const CUT_OFF: f32 = 254.0 / 255.0;
@@ -25,7 +26,7 @@ const LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 struct Drawn {
     @location(0) picture: vec4<f32>,
     @location(1) mean: vec4<f32>,
-    @location(2) squares: f32,
+    @location(2) squares: vec2<f32>,
 }
 
 @vertex
@@ -38,13 +39,18 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
 fn fragment(@builtin(position) position: vec4<f32>) -> Drawn {
     let pixel = vec2<u32>(position.xy);
     var mean = textureLoad(frame, pixel, 0);
-    var squares = 0.0;
-    if share.x < 1.0 {
+    var squares = vec2(0.0, dot(mean.rgb, LUMINANCE));
+    if weights.x < 1.0 {
         let before = textureLoad(known, pixel, 0);
-        let here = mean;
-        mean = mix(before, here, share.x);
-        squares = textureLoad(known_squares, pixel, 0).r
-            + share.y * dot(here.rgb - before.rgb, LUMINANCE) * dot(here.rgb - mean.rgb, LUMINANCE);
+        // Where frames agree, this leaves the mean as it is, to the bit.
+        mean = before + (mean - before) * weights.x;
+        let luminance = dot(mean.rgb, LUMINANCE);
+        let of_block = textureLoad(known_squares, pixel, 0).rg;
+        let change = luminance - of_block.g;
+        squares = vec2(
+            of_block.r + weights.y * change * change,
+            select(of_block.g, luminance, weights.z > 0.0),
+        );
     }
     // The opacity of the mean is 0 where something is seen, 1 where nothing is, and in a channel everywhere.
     var colour = mean.rgb;

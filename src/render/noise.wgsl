@@ -2,7 +2,8 @@
 
 @group(0) @binding(0) var mean: texture_2d<f32>;
 @group(0) @binding(1) var squares: texture_2d<f32>;
-// The sum of squares about the mean luminance, the mean luminance, and the number of pixels.
+// Of the pixels in which samples differ, the sum of squares about the mean luminance, the mean luminance, and their
+// number; and the number of those in which something is seen.
 @group(0) @binding(2) var<storage, read_write> sums: array<vec4<f32>>;
 
 var<workgroup> parts: array<vec4<f32>, 64>;
@@ -22,8 +23,11 @@ fn sum(
             // As in mean.wgsl: where nothing is seen, the opacity is 1.
             let spread = textureLoad(squares, vec2(x, y), 0).r;
             // Lamps and surroundings in the picture have no noise, and would hide that of surfaces.
-            if here.a < 1.0 && luminance > 0.0 && spread > 0.0 {
-                part += vec4(spread, luminance, 1.0, 0.0);
+            if here.a < 1.0 {
+                part.w += 1.0;
+                if luminance > 0.0 && spread > 0.0 {
+                    part += vec4(spread, luminance, 1.0, 0.0);
+                }
             }
         }
     }

@@ -12,7 +12,7 @@ use crate::{
     linear::MAX_PIXELS,
     optics::TermSelection,
     progress::{Cancelled, Progress},
-    reference::{LightSamples, Settings, Until, ignored_edits, not_on_cpu},
+    reference::{Settings, Until, ignored_edits, not_on_cpu},
     registry::Registry,
     render::capture::gpu::{GpuRenderer, Output},
     scene::Scene,
@@ -69,7 +69,7 @@ impl OffScreen<'_> {
     pub(super) fn draw(&self, progress: &Progress) -> Result<(Shown, Option<Sampled>), Undrawn> {
         progress.step(0.0, "drawing")?;
         let needs_gpu = self.needs_gpu();
-        let drawn = if needs_gpu { self.on_gpu()? } else { self.on_cpu(progress)? };
+        let drawn = if needs_gpu { self.on_gpu(progress)? } else { self.on_cpu(progress)? };
         // An endless function of a custom model is detected only when it runs.
         if let Some((_, why)) = not_on_cpu(self.seen, self.registry).filter(|_| !needs_gpu) {
             return Err(Undrawn::Failed(why));
@@ -90,7 +90,7 @@ impl OffScreen<'_> {
         Ok(view.draw(&AtomicBool::default(), progress)?)
     }
 
-    fn on_gpu(&self) -> Result<(Shown, Option<Sampled>), Undrawn> {
+    fn on_gpu(&self, progress: &Progress) -> Result<(Shown, Option<Sampled>), Undrawn> {
         let Self { seen, registry, size: [width, height], samples, terms, channel, .. } = *self;
         if width as usize * height as usize > MAX_PIXELS {
             let said = format!("{width}×{height} are too many pixels for the GPU");
@@ -104,13 +104,12 @@ impl OffScreen<'_> {
         renderer.set_scene(seen.clone());
         renderer.set_terms(terms);
         renderer.set_channel(channel);
-        renderer.settle().map_err(Undrawn::of)?;
+        let reached = renderer.settle_until(None, progress).map_err(Undrawn::of)?;
         if let Some(problem) = renderer.shader_problem() {
             return Err(Undrawn::of(problem));
         }
         let rgb8 = renderer.read_rgb8().map_err(Undrawn::of)?;
-        let extent = seen.rests_on_samples(registry);
-        let sampled = extent.then_some(Sampled { samples: LightSamples::DEFAULT, noise: None });
+        let sampled = seen.rests_on_samples(registry).then_some(reached);
         Ok((Shown::of_codes(width, height, rgb8).map_err(Undrawn::of)?, sampled))
     }
 }

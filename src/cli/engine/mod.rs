@@ -14,6 +14,7 @@ use crate::{
     parameter::Values,
     program::without_window,
     progress::Progress,
+    reference::{Reached, Until},
     reflection::ModelEntry,
     registry::Registry,
     shader::compose::Sources,
@@ -66,8 +67,8 @@ pub(super) struct Order<'a> {
     pub(super) part: &'a Part,
     /// Samples per pixel.
     pub(super) samples: u32,
-    /// Samples of each light with extent.
-    pub(super) light_samples: u32,
+    /// The samples of lights with extent.
+    pub(super) until: Until,
     pub(super) registry: &'a Registry,
     /// The picture's file, for messages.
     pub(super) file: &'a Path,
@@ -75,10 +76,16 @@ pub(super) struct Order<'a> {
 
 /// The GPU renderer.
 pub(super) trait Pictures {
-    /// A view for display, or a debug channel instead, with a remark on light that is not finite.
-    fn draw(&mut self, order: &Order, channel: Option<Setting>) -> Result<(Shown, Option<String>), Failure>;
+    /// A view for display, or a debug channel instead, with how lights with extent were sampled, if they were, and a remark on
+    /// light that is not finite.
+    fn draw(
+        &mut self,
+        order: &Order,
+        channel: Option<Setting>,
+        progress: &Progress,
+    ) -> Result<(Shown, Reached, Option<String>), Failure>;
 
-    /// The layers of a linear picture, with such a remark.
+    /// The layers of a linear picture, with such a remark. Noise does not end it.
     fn layers(
         &mut self,
         order: &Order,

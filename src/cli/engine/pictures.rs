@@ -20,6 +20,7 @@ use crate::{
     linear::Channels,
     optics::colour::Encoding,
     progress::Progress,
+    reference::Reached,
     reflection::ends::check_that_it_ends,
     registry::Registry,
     render::{
@@ -73,7 +74,7 @@ impl Gpu {
         }
         match &mut self.last {
             Some((_, renderer)) => {
-                renderer.set_light_samples(order.light_samples);
+                renderer.set_light_samples(order.until.samples);
                 Ok(renderer)
             }
             None => Err(failed(order, GpuError::NoAdapter)),
@@ -82,15 +83,32 @@ impl Gpu {
 }
 
 impl Pictures for Gpu {
-    fn draw(&mut self, order: &Order, channel: Option<Setting>) -> Result<(Shown, Option<String>), Failure> {
+    fn draw(
+        &mut self,
+        order: &Order,
+        channel: Option<Setting>,
+        progress: &Progress,
+    ) -> Result<(Shown, Reached, Option<String>), Failure> {
         let Order { part, registry, .. } = *order;
         let Cell { width, height, .. } = part.cell;
         let failed = |e: GpuError| failed(order, e);
         let renderer = self.renderer(order, Output::Display)?;
-        renderer.set_scene(part.scene.clone());
         renderer.set_terms(part.terms);
+        let mut noise = order.until.noise;
+        let mut measured = None;
+        if let Some(setting) = channel.filter(|_| noise.is_some()) {
+            // A channel takes as many samples as the picture, or as that under the light that it shows.
+            let lit = setting.channel.is_picture().then(|| setting.lit(&part.scene));
+            renderer.set_scene(lit.unwrap_or_else(|| part.scene.clone()));
+            renderer.set_channel(None);
+            let reached = renderer.settle_until(noise.take(), progress).map_err(failed)?;
+            renderer.set_light_samples(reached.samples);
+            measured = Some(reached);
+        }
+        renderer.set_scene(part.scene.clone());
         renderer.set_channel(channel);
-        renderer.settle().map_err(failed)?;
+        let drawn = renderer.settle_until(noise, progress).map_err(failed)?;
+        let reached = measured.unwrap_or(drawn);
         if let Some(problem) = renderer.shader_problem() {
             return Err(invalid(registry, &problem));
         }
@@ -99,12 +117,13 @@ impl Pictures for Gpu {
             Shown::of_codes(width, height, rgb8).map_err(|e| failed(GpuError::Copy(e.to_string())))?;
         // Everything shipped with the program is finite.
         if !has_untested(registry) {
-            return Ok((shown, None));
+            return Ok((shown, reached, None));
         }
+        renderer.set_light_samples(reached.samples);
         renderer.set_channel(Some(finite::channel(&part.scene, registry)));
         renderer.settle().map_err(failed)?;
         let channel = renderer.read_rgb8().map_err(failed)?;
-        Ok((shown, finite::remark_on_gpu(part, registry, &channel, &mut self.tried)))
+        Ok((shown, reached, finite::remark_on_gpu(part, registry, &channel, &mut self.tried)))
     }
 
     fn layers(

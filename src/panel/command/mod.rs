@@ -83,7 +83,7 @@ pub struct Command {
     pub name: Cow<'static, str>,
     says: Option<Cow<'static, str>>,
     row: Option<&'static str>,
-    /// A sign before the name in menus, if it has one.
+    /// A sign before the name in menus, for an entry without a mark.
     pub glyph: &'static str,
     /// True if the name comes from another crate, which may use any character.
     pub foreign: bool,

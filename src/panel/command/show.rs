@@ -68,15 +68,11 @@ fn items(ui: &mut Ui, menu: &Menu, special: Special, actions: &mut Vec<Action>) 
 }
 
 /// The name of a command, with characters that the fonts have.
-pub(in crate::panel) fn legible(ui: &Ui, command: &Command, name: &str) -> String {
+fn legible(ui: &Ui, command: &Command, name: &str) -> String {
     if !command.foreign {
         return name.to_owned();
     }
-    let text = glyphs::legible(ui, name, &format!("the command “{}”", command.id)).into_owned();
-    match command.glyph {
-        "" => text,
-        glyph => format!("{}  {text}", glyphs::glyph(ui, glyph, name)),
-    }
+    glyphs::legible(ui, name, &format!("the command “{}”", command.id)).into_owned()
 }
 
 fn entry(ui: &mut Ui, command: &Command, menu: &Menu, actions: &mut Vec<Action>) {
@@ -86,11 +82,18 @@ fn entry(ui: &mut Ui, command: &Command, menu: &Menu, actions: &mut Vec<Action>)
     let response = match command.mark {
         Mark::None => {
             let keys = RichText::new(keys).color(Palette::here(ui).weak);
-            let button = Button::new(name);
+            let button = match command.glyph {
+                "" => Button::new(name),
+                sign => glyphs::entry(ui, sign, &command.name),
+            };
             // In a menu of a fixed width there is room for keys.
             let has_room = menu.width > 0.0 || !keys.is_empty();
             let button = if has_room { button.shortcut_text(keys) } else { button };
-            ui.add_enabled(enabled, button)
+            let response = ui.add_enabled(enabled, button);
+            if !command.glyph.is_empty() {
+                glyphs::says(ui, &response, command.glyph, &command.name);
+            }
+            response
         }
         Mark::Check(mut on) => {
             let line = ui.horizontal(|ui| {

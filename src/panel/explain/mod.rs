@@ -50,6 +50,8 @@ const COLUMN: f32 = 272.0;
 const SENTENCE: f32 = 20.0;
 /// Gap between columns, in points.
 const GAP: f32 = 24.0;
+/// Gap between the parts of the first line, in points.
+const BETWEEN: f32 = 6.0;
 
 /// The *Explain* panel; see the module.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -96,57 +98,105 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// The pixel, its code, and the buttons.
+/// The pixel, its code, and the buttons, which have a line of their own if one is too short for both.
 fn header(ui: &mut Ui, explained: &Explained, context: &mut PanelContext<'_>) {
+    let memory = Id::new("width of the buttons of an explanation");
+    // Known from the last frame; until then they stand alone.
+    let known: f32 = ui.data(|d| d.get_temp(memory)).unwrap_or(f32::INFINITY);
+    let mut buttons = None;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = BETWEEN;
+        place(ui, explained, context);
+        let room = ui.available_width() - known;
+        let fits = room >= 0.0;
+        code(ui, explained, context.session(), if fits { room } else { ui.available_width() });
+        buttons = fits.then(|| self::buttons(ui, explained, context));
+    });
+    let width = buttons.unwrap_or_else(|| {
+        let row = ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = BETWEEN;
+            self::buttons(ui, explained, context)
+        });
+        row.inner
+    });
+    if width != known {
+        ui.data_mut(|d| d.insert_temp(memory, width));
+        ui.ctx().request_repaint();
+    }
+}
+
+/// The colour and the place of the pixel.
+fn place(ui: &mut Ui, explained: &Explained, context: &mut PanelContext<'_>) {
+    let Explanation { pixel, size, .. } = explained.explanation;
+    let fov = context.session().document.view_angle();
+    rows::chip(ui, explained.explanation.code(), vec2(40.0, 24.0));
+    ui.label(theme::strong(ui, "Pixel"));
+    for (i, name) in ["column of the pixel", "row of the pixel"].into_iter().enumerate() {
+        let limits = Limits { whole: true, ..Limits::between(0.0, f64::from(size[i].saturating_sub(1))) };
+        let id = Id::new(("explained pixel", i));
+        let field = knob::field(ui, id, name, f64::from(pixel[i]), &limits, 52.0);
+        if let Some(value) = field.value {
+            let mut other = pixel;
+            other[i] = value as u32;
+            let pin = Pin::of_pixel(explained.view, other, size, fov);
+            context.act(Action::View(ViewChange::Pin(Some(pin))));
+        }
+    }
+}
+
+/// The picture and the code of the pixel, as far as there is room. The sentence below says the code, too.
+fn code(ui: &mut Ui, explained: &Explained, session: &Session, room: f32) {
+    let [width, height] = explained.explanation.size;
+    let view = match session.document.variants.len() {
+        0 => String::new(),
+        _ => format!("view {}", LETTERS.get(explained.view).copied().unwrap_or("?")),
+    };
+    let between = if view.is_empty() { "" } else { " · " };
+    let picture = format!("of {width}×{height}{between}{view}");
+    let [r, g, b] = explained.explanation.code();
+    let code = format!("red {r}, green {g}, blue {b}");
+    let room = room - BETWEEN - theme::small_width(ui, &picture);
+    if room < 0.0 {
+        if theme::small_width(ui, &view) <= room + theme::small_width(ui, &picture) {
+            ui.label(theme::small(ui, view)).on_hover_text(picture);
+        }
+        return;
+    }
+    ui.label(theme::small(ui, picture));
+    let whole = ui.painter().layout_no_wrap(code.clone(), theme::bold(ui), Color32::WHITE);
+    if whole.size().x + BETWEEN <= room {
+        ui.label(theme::strong(ui, code));
+    }
+}
+
+/// The buttons, from the right end of the line. Returns their width.
+fn buttons(ui: &mut Ui, explained: &Explained, context: &mut PanelContext<'_>) -> f32 {
     let session = context.session();
     let Explanation { pixel, size, .. } = explained.explanation;
     let (pinned, fov) = (session.view.pinned.is_some(), session.document.view_angle());
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        let code = explained.explanation.code();
-        rows::chip(ui, code, vec2(40.0, 24.0));
-        ui.label(theme::strong(ui, "Pixel"));
-        for (i, name) in ["column of the pixel", "row of the pixel"].into_iter().enumerate() {
-            let limits = Limits { whole: true, ..Limits::between(0.0, f64::from(size[i].saturating_sub(1))) };
-            let id = Id::new(("explained pixel", i));
-            let field = knob::field(ui, id, name, f64::from(pixel[i]), &limits, 52.0);
-            if let Some(value) = field.value {
-                let mut other = pixel;
-                other[i] = value as u32;
-                let pin = Pin::of_pixel(explained.view, other, size, fov);
-                context.act(Action::View(ViewChange::Pin(Some(pin))));
-            }
-        }
-        let view = match session.document.variants.len() {
-            0 => String::new(),
-            _ => format!(" · view {}", LETTERS.get(explained.view).copied().unwrap_or("?")),
-        };
-        ui.label(theme::small(ui, format!("of {}×{}{view}", size[0], size[1])));
-        let [r, g, b] = code;
-        ui.label(theme::strong(ui, format!("red {r}, green {g}, blue {b}")));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let button = ui.button("Copy").on_hover_text("Copy the explanation as text, with all digits");
-            context.on_click(&button, || Action::Do(Effect::CopyText(explained.explanation.to_text())));
-            let key = keys::word(ui.ctx(), "explain");
-            let pin = ui.add(Button::selectable(pinned, "Pin")).on_hover_text(if pinned {
-                format!("Let go of the point ({key} or Esc): the pointer is followed again")
-            } else {
-                format!(
-                    "Keep this point explained wherever the pointer is, and where the camera and the object go. At the \
-                     pointer: {key}, or Alt and a click"
-                )
-            });
-            if pin.clicked() {
-                let this = Pin::of_pixel(explained.view, pixel, size, fov);
-                context.act(Action::View(ViewChange::Pin(Some(this).filter(|_| !pinned))));
-            }
-            lobe::button(ui, context);
-            levels(ui);
-            if !session.document.variants.is_empty() {
-                beside_button(ui, explained.view);
-            }
+    let row = ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        let button = ui.button("Copy").on_hover_text("Copy the explanation as text, with all digits");
+        context.on_click(&button, || Action::Do(Effect::CopyText(explained.explanation.to_text())));
+        let key = keys::word(ui.ctx(), "explain");
+        let pin = ui.add(Button::selectable(pinned, "Pin")).on_hover_text(if pinned {
+            format!("Let go of the point ({key} or Esc): the pointer is followed again")
+        } else {
+            format!(
+                "Keep this point explained wherever the pointer is, and where the camera and the object go. At the \
+                 pointer: {key}, or Alt and a click"
+            )
         });
+        if pin.clicked() {
+            let this = Pin::of_pixel(explained.view, pixel, size, fov);
+            context.act(Action::View(ViewChange::Pin(Some(this).filter(|_| !pinned))));
+        }
+        lobe::button(ui, context);
+        levels(ui);
+        if !session.document.variants.is_empty() {
+            beside_button(ui, explained.view);
+        }
     });
+    row.response.rect.width()
 }
 
 /// The button that explains another view beside this one.

@@ -46,7 +46,7 @@ fn entry(ui: &mut Ui, i: usize, lesson: &Lesson, session: &Session) -> bool {
     let facts = ui.painter().layout_no_wrap(facts(lesson.minutes, past), small, palette.weak);
     let width = ui.available_width() - SIGN - 12.0;
     let title = format!("{}. {}", i + 1, lesson.title);
-    let title = theme::elided(ui, &title, theme::bold(ui), palette.text, width - facts.size().x - 12.0);
+    let title = theme::title(ui, &title, width - facts.size().x - 12.0);
     let mut job = maths::prose(ui, &lesson.summary, TextStyle::Small);
     job.wrap.max_width = width;
     let summary = ui.painter().layout_job(job);
@@ -58,7 +58,8 @@ fn entry(ui: &mut Ui, i: usize, lesson: &Lesson, session: &Session) -> bool {
     if hot || current {
         ui.painter().rect_filled(rect, 4.0, if hot { palette.hovered } else { palette.chosen });
     }
-    let centre = pos2(rect.left() + 0.5 * SIGN, rect.top() + 5.0 + 0.5 * title.size().y);
+    let line = title.rows.first().map_or(0.0, |row| row.rect().bottom());
+    let centre = pos2(rect.left() + 0.5 * SIGN, rect.top() + 5.0 + 0.5 * line);
     match past {
         Some(past) if past.finished => {
             let sign = Rect::from_center_size(centre, vec2(11.0, 11.0));
@@ -68,7 +69,7 @@ fn entry(ui: &mut Ui, i: usize, lesson: &Lesson, session: &Session) -> bool {
         None => _ = ui.painter().circle_stroke(centre, 3.5, Stroke::new(1.2, palette.weak)),
     }
     let at = pos2(rect.left() + SIGN, rect.top() + 5.0);
-    let right = pos2(rect.right() - 8.0 - facts.size().x, at.y + title.size().y - facts.size().y);
+    let right = pos2(rect.right() - 8.0 - facts.size().x, at.y + line - facts.size().y);
     ui.painter().galley(right, facts, palette.weak);
     ui.painter().galley(at, title, palette.text);
     ui.painter().galley(at + vec2(0.0, below), summary, palette.text);

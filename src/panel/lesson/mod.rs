@@ -89,24 +89,24 @@ fn pages(ctx: &Context, whole: Rect) -> f32 {
 /// The title, the number of the step, and the progress.
 fn header(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<Action>) {
     let count = open.lesson.steps.len();
-    ui.horizontal(|ui| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let says = format!("Leave the lesson: “{}” comes back", session.own_title());
-            if icon::button(ui, Icon::Cross, &says).clicked() {
-                actions.push(Action::Lesson(LessonCommand::Leave));
+    let width = ui.available_width();
+    let room = width - 2.0 * (icon::SIZE + ui.spacing().item_spacing.x);
+    let title = theme::title(ui, &open.lesson.title, room);
+    let size = vec2(width, title.size().y.max(icon::SIZE));
+    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
+        let says = format!("Leave the lesson: “{}” comes back", session.own_title());
+        if icon::button(ui, Icon::Cross, &says).clicked() {
+            actions.push(Action::Lesson(LessonCommand::Leave));
+        }
+        if icon::button(ui, Icon::Reset, "Begin this step again").clicked() {
+            actions.push(Action::Lesson(LessonCommand::Again));
+        }
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            let cut = title.elided;
+            let label = ui.add(Label::new(title));
+            if cut {
+                label.on_hover_text(&open.lesson.title);
             }
-            if icon::button(ui, Icon::Reset, "Begin this step again").clicked() {
-                actions.push(Action::Lesson(LessonCommand::Again));
-            }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let (font, room) = (theme::bold(ui), ui.available_width());
-                let title = theme::elided(ui, &open.lesson.title, font, Palette::here(ui).text, room);
-                let cut = title.elided;
-                let label = ui.add(Label::new(title));
-                if cut {
-                    label.on_hover_text(&open.lesson.title);
-                }
-            });
         });
     });
     ui.horizontal(|ui| {

@@ -296,7 +296,8 @@ impl GpuRenderer {
     }
 
     /// Sets the number of samples of lights with extent, at least 1, for the pictures of scenes set from now
-    /// on. Each frame takes all of them, so large numbers need a fast GPU; where light goes through bodies, eight.
+    /// on. Each frame takes all of them if they are at most 256, otherwise eight, as always where light goes through bodies;
+    /// of linear pictures, and of those whose shapes come in batches, always all, so large numbers need a fast GPU.
     pub fn set_light_samples(&mut self, count: u32) {
         self.app.world_mut().resource_mut::<Convergence>().target = count.max(1);
     }

@@ -22,7 +22,8 @@ use bevy::{
 use super::gpu::{GpuError, GpuRenderer, PATIENCE};
 use crate::{
     channel::DebugChannel,
-    reference::LightSamples,
+    progress::Progress,
+    reference::{LightSamples, Reached, Until},
     registry::Registry,
     render::{
         camera::{ForDisplay, PictureCamera},
@@ -30,6 +31,7 @@ use crate::{
         entities::CurrentScene,
         live::LiveShaders,
         meshes::ShapeMeshes,
+        noise::Noise,
         straight::Layer,
         trial::Bench,
         view::{Drawing, View},
@@ -50,7 +52,22 @@ impl GpuRenderer {
     /// Returns [`GpuError::TimedOut`] if this does not happen, e.g. because a shader cannot be compiled;
     /// [`GpuError::Memory`] if a single shape does not fit into memory.
     pub fn settle(&mut self) -> Result<(), GpuError> {
-        let by_parts = self.takes_parts();
+        self.settle_until(None, &Progress::NONE).map(|_| ())
+    }
+
+    /// Like [`settle`](Self::settle), and takes samples of lights with extent until their noise is as requested, if one is:
+    /// [`Until::noise`], for [`Output::Display`] without a channel. Returns what was reached. The noise is known if frames take
+    /// a part of the samples each. Cannot be cancelled.
+    ///
+    /// [`Output::Display`]: super::gpu::Output::Display
+    ///
+    /// # Errors
+    /// Returns the errors of [`settle`](Self::settle); [`GpuError::Memory`] also if a noise is requested, but the shapes need
+    /// several batches.
+    pub fn settle_until(&mut self, noise: Option<f32>, progress: &Progress) -> Result<Reached, GpuError> {
+        let until = Until { samples: self.app.world().resource::<Convergence>().target, noise };
+        let all = Reached { samples: until.samples, noise: None };
+        let by_parts = self.takes_parts(noise.is_some());
         self.set_parts(by_parts);
         if let Some((background, graph)) = self.batched.take() {
             self.edit_camera(|camera| {
@@ -60,20 +77,23 @@ impl GpuRenderer {
             ShapeMeshes::restart(self.app.world_mut());
         }
         self.draw_frames()?;
-        if self.refused().is_some() {
+        if let Some(why) = self.refused() {
+            if by_parts && noise.is_some() {
+                let remedy = "so the noise cannot be measured; use a number of samples";
+                return Err(GpuError::Memory(format!("{why}, {remedy}")));
+            }
             // Each batch would begin the mean anew.
             self.set_parts(false);
-            self.draw_batches()
+            self.draw_batches()?;
         } else if by_parts {
-            self.converge()
-        } else {
-            Ok(())
+            return self.converge(until, progress);
         }
+        Ok(all)
     }
 
-    /// True if a frame cannot take all samples: there are more than usual, or each of them follows light through a mesh, and
-    /// software Vulkan ends all loops of a pixel after 65 536 turns together.
-    fn takes_parts(&self) -> bool {
+    /// True if a frame cannot take all samples: noise decides how many, there are more than usual, or each of them follows light
+    /// through a mesh, and software Vulkan ends all loops of a pixel after 65 536 turns together.
+    fn takes_parts(&self, for_noise: bool) -> bool {
         let world = self.app.world();
         let (scene, registry) = (&world.resource::<CurrentScene>().0, world.resource::<Registry>());
         let is_body = |object: &Object| {
@@ -81,7 +101,7 @@ impl GpuRenderer {
             model.is_some_and(|model| model.passage(&object.material).solid)
         };
         let at_once = self.channel.is_some_and(DebugChannel::is_of_remaining);
-        let many = world.resource::<Convergence>().target > LightSamples::DEFAULT;
+        let many = for_noise || world.resource::<Convergence>().target > LightSamples::DEFAULT;
         !at_once && (many || scene.shown().any(is_body)) && scene.rests_on_samples(registry)
     }
 
@@ -101,13 +121,37 @@ impl GpuRenderer {
         }
     }
 
-    /// Draws frames until the picture is the mean of all samples.
-    fn converge(&mut self) -> Result<(), GpuError> {
+    /// Draws frames until the picture is the mean of all samples, or has as little noise as requested.
+    fn converge(&mut self, until: Until, progress: &Progress) -> Result<Reached, GpuError> {
+        let known = self.app.world().get_resource::<Noise>().cloned().unwrap_or_default();
+        if until.noise.is_some() {
+            // How many frames were drawn so far depends on the machine, and the picture must not.
+            self.edit_camera(|camera| camera.get_mut::<Drawing>().into_iter().for_each(|mut d| d.redraw()));
+            self.step();
+            self.wait();
+        }
         let (mut last, mut since) = (None, Instant::now());
         loop {
             let mut now = None;
-            self.edit_camera(|camera| now = camera.get::<Drawing>().map(|d| (d.is_done(), d.converged())));
-            let Some((false, converged)) = now else { return Ok(()) };
+            self.edit_camera(|camera| {
+                let of = |drawing: &Drawing| {
+                    (drawing.is_done(), drawing.converged(), known.measured(camera.id(), drawing))
+                };
+                now = camera.get::<Drawing>().map(of);
+            });
+            let all = Reached { samples: until.samples, noise: None };
+            let Some((is_done, converged, measured)) = now else { return Ok(all) };
+            // A picture of nothing has none; channels are not measured.
+            let noise = measured.map(Option::unwrap_or_default).filter(|_| self.channel.is_none());
+            let is_enough = until.noise.zip(noise).is_some_and(|(enough, noise)| noise <= enough);
+            let noise = noise.filter(|noise| noise.is_finite());
+            let reached = Reached { samples: converged.done, noise };
+            let (done, said) = until.progress(reached);
+            (progress.tell)(done, &said);
+            if is_done || is_enough {
+                // Linear pictures take all samples in each frame.
+                return Ok(if converged.total > 0 { reached } else { all });
+            }
             if last.replace(converged) != Some(converged) {
                 since = Instant::now();
             } else if since.elapsed() > PATIENCE {

@@ -110,6 +110,33 @@ fn the_gpu_takes_as_many_samples_as_it_is_told() {
 }
 
 #[test]
+fn both_renderers_end_at_the_same_noise() {
+    let folder = folder();
+    let ends = |renderer: &str, more: &[&str]| {
+        let usual =
+            ["softbox.json", "--renderer", renderer, "--size", "64x36", "--samples", "1", "-o", "p.png"];
+        let (picture, said) = drawn(folder.path(), &[&usual, more].concat());
+        let told =
+            said.split_once("wrote p.png: ").and_then(|(_, told)| told.split_once(" samples of each light"));
+        let samples: f32 = told.and_then(|(count, _)| count.parse().ok()).expect("a number of samples");
+        (picture, said, samples)
+    };
+    let (picture, said, samples) = ends("gpu", &["--noise", "0.1"]);
+    assert!(said.contains(" samples of each light, noise 0.09") || said.contains(", noise 0.1 %"), "{said}");
+    let (_, _, on_cpu) = ends("cpu", &["--noise", "0.1"]);
+    assert!(on_cpu > 128.0, "else the first noise that is known would do: {on_cpu}");
+    assert!((0.7..1.4).contains(&(samples / on_cpu)), "{samples} {on_cpu}");
+    // How fast the machine is does not matter, and a channel takes as many as the picture.
+    let (again, ..) = ends("gpu", &["--noise", "0.1"]);
+    assert!(again == picture);
+    let (channel, _, of_channel) = ends("gpu", &["--noise", "0.1", "--channel", "luminance"]);
+    assert!(of_channel == samples && channel != picture);
+    // What cannot be reached is told.
+    let (_, said, _) = ends("gpu", &["--noise", "0.01", "--light-samples", "64"]);
+    assert!(said.starts_with("softbox.json: after 64 samples the noise is "), "{said}");
+}
+
+#[test]
 fn wrong_samples_and_noise_are_refused_with_what_would_be_right() {
     let folder = folder();
     let whole = "it must be a whole number from 1 to 1048576, e.g. 1000";
@@ -141,8 +168,9 @@ fn wrong_samples_and_noise_are_refused_with_what_would_be_right() {
             "--light-samples is 4097, but with --renderer gpu it must be at most 4096; use --renderer cpu",
         ),
         (
-            &["--renderer", "gpu", "--noise", "1", "--light-samples", "99"],
-            "--noise cannot be used with --renderer gpu, which does not measure it; use --light-samples, or --renderer cpu",
+            &["--renderer", "gpu", "--noise", "1", "--light-samples", "99", "-o", "p.exr"],
+            "--noise cannot be used with --renderer gpu for linear pictures, whose noise it does not measure; use --light-samples, or \
+             --renderer cpu",
         ),
         (
             &["--channel", "normals", "--noise", "1"],
@@ -210,7 +238,7 @@ fn captions_and_pictures_say_samples_and_noise_as_reached() {
         let file = fs::read(folder.path().join("p.png")).expect("readable");
         assert!(file.windows(words.len()).any(|bytes| bytes == words.as_bytes()), "the file says it, too");
     }
-    // The GPU renderer does not measure noise.
+    // The GPU renderer takes as many at once, and measures their noise only if it is asked for.
     let gpu = ["softbox.json", "--renderer", "gpu", "--size", "64x36", "-o", "p.png"];
     assert_eq!(drawn(folder.path(), &gpu).1, "wrote p.png: 256 samples of each light\n");
     // Nothing is reported where samples have no effect.

@@ -1,7 +1,7 @@
 //! The levels of an explanation: the sentence, the equation, every factor; the origin of numbers; what would
 //! change the pixel; and two views side by side.
 
-use bevy_egui::egui::{Key, accesskit::Role, vec2};
+use bevy_egui::egui::{Key, Rect, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
     document::Selection,
     panel::state::{Action, EXPLAIN_TAB, Session, ViewChange},
@@ -47,6 +47,42 @@ fn texts(bench: &mut Bench) -> String {
 /// The first widget whose name begins with this text.
 fn begins(bench: &Bench, start: &str) -> Option<String> {
     bench.tree.iter().find(|seen| seen.label.starts_with(start)).map(|seen| seen.label.clone())
+}
+
+#[test]
+fn nothing_in_the_line_above_the_sentence_lies_over_something_else() {
+    let file = root().join("scenes/compare_phong_blinn_phong.json");
+    let scene = load::file(&file, &Registry::builtin(), Defaults::Refuse).expect("legal").scene;
+    for (width, scale, shown, lines) in
+        [(1600.0, 100, "of ", 1), (1280.0, 150, "view A", 1), (1100.0, 150, "of ", 2), (1280.0, 200, "", 2)]
+    {
+        let mut bench = explaining(scene.clone());
+        bench.size = vec2(width, 1400.0);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        let field = bench.field("column of the pixel").rect;
+        let copy = bench.find("Copy").expect("a button").rect;
+        let rows = field.top().min(copy.top()) - 4.0..copy.bottom() + 4.0;
+        let case = format!("{width} points at {scale} %: {field:?} {copy:?}");
+        assert_eq!(if copy.top() > field.bottom() { 2 } else { 1 }, lines, "{case}");
+        let texts: Vec<(String, Rect)> = bench
+            .shapes()
+            .into_iter()
+            .filter_map(|shape| match shape {
+                Shape::Text(text) if rows.contains(&text.pos.y) => {
+                    Some((text.galley.text().to_owned(), text.visual_bounding_rect()))
+                }
+                _ => None,
+            })
+            .collect();
+        for known in ["Pixel", "Copy", "Pin", "Beside B", "Equation"] {
+            assert!(texts.iter().any(|(text, _)| text == known), "{case}: {known} of {texts:?}");
+        }
+        assert!(texts.iter().any(|(text, _)| text.starts_with(shown)), "{case}: {texts:?}");
+        for (i, (a, here)) in texts.iter().enumerate() {
+            let over = texts[..i].iter().find(|(_, there)| here.shrink(1.0).intersects(*there));
+            assert!(over.is_none(), "{case}: “{a}” lies over {over:?}");
+        }
+    }
 }
 
 #[test]

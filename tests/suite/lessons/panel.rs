@@ -845,6 +845,35 @@ fn the_picture_keeps_its_room_and_no_text_leaves_the_panel() {
 }
 
 #[test]
+fn titles_of_lessons_are_shown_whole() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    let mut lines = BTreeSet::new();
+    for (i, lesson) in LESSONS.iter().enumerate() {
+        go(&mut bench, LessonCommand::Open(LessonSource::Shipped(i)));
+        let titles: Vec<_> = bench
+            .shapes()
+            .into_iter()
+            .filter_map(|shape| match shape {
+                Shape::Text(text) if text.galley.job.text == lesson.title && text.pos.y > 36.0 => Some(text),
+                _ => None,
+            })
+            .collect();
+        let [title] = titles.as_slice() else { panic!("{}: {}", lesson.title, titles.len()) };
+        assert!(!title.galley.elided, "{}", lesson.title);
+        lines.insert(title.galley.rows.len());
+        let place = title.galley.rect.translate(title.pos.to_vec2());
+        let (step, again) =
+            (format!("Step 1 of {} ▾", lesson.steps.len()), "Begin this step again".to_owned());
+        for other in [step, again] {
+            let other = bench.find(&other).expect("it is beside or below").rect;
+            assert!(!place.shrink(1.0).intersects(other), "{}: {place:?} {other:?}", lesson.title);
+        }
+    }
+    assert_eq!(lines, BTreeSet::from([1, 2]), "else this would prove nothing");
+}
+
+#[test]
 fn the_scene_list_is_below_the_lesson_and_unfolds() {
     let desk = Desk::new();
     let mut bench = desk.bench(Session::default());

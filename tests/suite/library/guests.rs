@@ -1,7 +1,7 @@
 //! Panels from other crates: their places, their state, and their abilities.
 
 use bevy::ecs::{resource::Resource, world::World};
-use bevy_egui::egui::{Rect, Shape, Ui, vec2};
+use bevy_egui::egui::{Key, Modifiers, Rect, Shape, Ui, vec2};
 use glam::Vec3;
 use lights_camera_models::{
     document::{Edit, Selection},
@@ -238,6 +238,41 @@ fn the_built_in_glyphs_are_shown_as_they_are() {
     for shape in bench.registry.clone().shapes() {
         let entry = format!("{}  {}", shape.declaration.glyph, shape.declaration.name);
         assert!(bench.find(&entry).is_some(), "{entry}");
+    }
+}
+
+#[test]
+fn the_names_in_a_menu_of_types_begin_below_each_other() {
+    let mut bench = bench(100, Vec::new());
+    let registry = bench.registry.clone();
+    let lights = registry.lights().iter().map(|light| (light.declaration.glyph, light.declaration.name));
+    let shapes = registry.shapes().iter().map(|shape| (shape.declaration.glyph, shape.declaration.name));
+    let [lights, shapes]: [Vec<_>; 2] = [lights.collect(), shapes.collect()];
+    for (path, types) in [
+        (&["Edit", "Add a light ⏵"][..], &lights),
+        (&["Edit", "Add an object ⏵"], &shapes),
+        (&["Add a light"], &lights),
+        (&["Add an object"], &shapes),
+    ] {
+        path.iter().for_each(|button| bench.click(button));
+        let (mut starts, shapes) = (Vec::new(), bench.shapes());
+        for (glyph, name) in types {
+            let entry = bench.find(&format!("{glyph}  {name}")).expect("an entry").rect;
+            let span = |words: &str| {
+                shapes.iter().find_map(|shape| match shape {
+                    Shape::Text(text) if text.galley.text() == words && entry.contains(text.pos) => {
+                        Some((text.pos.x, text.pos.x + text.galley.size().x))
+                    }
+                    _ => None,
+                })
+            };
+            let (sign, text) = (span(glyph).expect("the glyph"), span(name).expect("the name"));
+            assert!(sign.1 < text.0, "{name}: {sign:?} {text:?}");
+            starts.push(text.0);
+        }
+        assert!(starts.iter().all(|x| (x - starts[0]).abs() < 0.5), "{path:?}: {starts:?}");
+        bench.key(Key::Escape, Modifiers::NONE);
+        bench.key(Key::Escape, Modifiers::NONE);
     }
 }
 
