@@ -86,6 +86,8 @@ pub enum Action {
     Redo,
     /// Undo or redo until this number of steps is applied.
     GoToStep(usize),
+    /// Select the reflection model with this id, as at the top of the window.
+    ChooseModel(String),
     /// Select the n-th recent model, from 0.
     RecentModel(usize),
     /// Change the exposure by this many EV.
@@ -180,6 +182,8 @@ pub enum ModelCommand {
     New,
     /// Start a copy of the current model: ask for its name.
     Duplicate,
+    /// Start a copy of the model with this id: ask for its name.
+    DuplicateOf(String),
     /// The name of the model, as typed.
     Type(String),
     /// Create the file of the model.
@@ -260,6 +264,7 @@ impl Session {
             Action::Undo => self.undo(registry),
             Action::Redo => self.redo(registry),
             Action::GoToStep(done) => self.go_to_step(done, registry),
+            Action::ChooseModel(id) => self.edit(self.edit_model(&id), registry),
             Action::RecentModel(slot) => self.choose_recent(slot, registry),
             Action::Expose(ev) => self.expose(ev, registry),
             Action::NextTerms => self.next_terms(registry),
