@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use glam::Vec3;
 
 use super::{
-    Alike, Arrangement, CodeCommand, CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand,
-    Session, Severity, TakeCommand, ViewChange,
+    Alike, Arrangement, CodeCommand, CompareCommand, Effect, LessonCommand, MatchCommand, MaterialCommand,
+    PlotCommand, Session, Severity, TakeCommand, ViewChange,
 };
 use crate::{
     document::{Edit, Selection},
@@ -105,6 +105,8 @@ pub enum Action {
     Do(Effect),
     /// A command for custom models and shaders.
     Model(ModelCommand),
+    /// A command for the library of materials.
+    Material(MaterialCommand),
     /// A command for the editor.
     Code(CodeCommand),
     /// A command for exports.
@@ -282,6 +284,7 @@ impl Session {
             Action::LookFromSide | Action::Focus(_) => {}
             Action::Do(effect) => self.request(effect),
             Action::Model(ask) => self.author(ask, registry),
+            Action::Material(command) => self.material(command, registry),
             Action::Code(command) => self.code(command, registry),
             Action::Export(command) => self.export(command),
             Action::Say(severity, text) => self.say(severity, text),
