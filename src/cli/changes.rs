@@ -6,6 +6,7 @@ use super::{Options, Outcome, scenes::Source, workshop::Workshop};
 use crate::{
     failure::Failure,
     optics::tone::ToneMapping,
+    registry::Registry,
     scene::{Display, Scene, field::Ids},
     text::{listed, quoted},
 };
@@ -77,7 +78,7 @@ impl Changes {
         workshop: &mut Workshop,
         options: Options,
     ) -> Result<Scene, Failure> {
-        let mut scene = self.apply(source.open(workshop, options)?);
+        let mut scene = self.apply(source.open(workshop, options)?, &workshop.registry);
         let mut beyond = scene.bring_into_range(&workshop.registry);
         beyond.extend(scene.beyond_the_range_of_views(&workshop.registry));
         beyond.iter().for_each(|said| options.tell(format_args!("{}: {said}", source.name())));
@@ -85,13 +86,12 @@ impl Changes {
     }
 
     /// The scene with the changes. A model from the command line also replaces the overrides of objects and
-    /// views: the purpose is to see the whole scene with it.
-    fn apply(&self, mut scene: Scene) -> Scene {
+    /// views: the purpose is to see the whole scene with it. The materials go along as in the window.
+    fn apply(&self, mut scene: Scene, registry: &Registry) -> Scene {
         let Self { reflection, shading, exposure, .. } = self;
         let tone_mapping = self.tone_mapping.as_deref().and_then(ToneMapping::from_id);
         if let Some(id) = reflection {
-            scene.reflection_model.clone_from(id);
-            scene.objects.iter_mut().for_each(|o| o.reflection_model = None);
+            scene.show_with(id, registry);
         }
         if let Some(id) = shading {
             scene.shading_model.clone_from(id);
@@ -100,7 +100,6 @@ impl Changes {
         scene.display.tone_mapping = tone_mapping.unwrap_or(scene.display.tone_mapping);
         scene.display.exposure = exposure.unwrap_or(scene.display.exposure);
         for variant in &mut scene.variants {
-            variant.reflection_model.take_if(|_| reflection.is_some());
             variant.shading_model.take_if(|_| shading.is_some());
             variant.tone_mapping.take_if(|_| tone_mapping.is_some());
             variant.exposure.take_if(|_| exposure.is_some());

@@ -40,7 +40,7 @@ mod write;
 
 pub use folder::{Broken, beside};
 pub use read::from_bytes;
-pub use write::{NotSaved, save, to_json};
+pub use write::{NotSaved, replace, save, to_json};
 
 /// The extension of files.
 pub const EXTENSION: &str = "json";

@@ -80,12 +80,30 @@ pub fn to_json(material: &Material, registry: &Registry) -> String {
     pretty(&compact).unwrap_or_else(|| compact.into_owned())
 }
 
+/// Saves a material as [`save`] does, in place of the file of that name if there is one.
+///
+/// # Errors
+/// Returns the reason why nothing was written.
+pub fn replace(material: &Material, folder: &Path, registry: &Registry) -> Result<PathBuf, NotSaved> {
+    put(material, folder, registry, files::write)
+}
+
 /// Saves a material into a folder, which is created if necessary; the name of the file follows from its name.
 /// An existing file is kept.
 ///
 /// # Errors
 /// Returns the reason why nothing was written.
 pub fn save(material: &Material, folder: &Path, registry: &Registry) -> Result<PathBuf, NotSaved> {
+    put(material, folder, registry, files::create)
+}
+
+/// Writes a material into a folder by a function.
+fn put(
+    material: &Material,
+    folder: &Path,
+    registry: &Registry,
+    write: impl FnOnce(&Path, &[u8]) -> Result<(), FileError>,
+) -> Result<PathBuf, NotSaved> {
     let id = id_of_name(&material.name)?;
     if registry.model(&material.reflection_model).is_none() {
         return Err(NotSaved::Model(material.reflection_model.clone()));
@@ -95,7 +113,7 @@ pub fn save(material: &Material, folder: &Path, registry: &Registry) -> Result<P
         return Err(NotSaved::TooLarge);
     }
     let path = folder.join(id).with_extension(EXTENSION);
-    match files::in_folder(folder, || files::create(&path, text.as_bytes())) {
+    match files::in_folder(folder, || write(&path, text.as_bytes())) {
         Ok(()) => Ok(path),
         Err(FileError::Io(error)) if error.kind() == std::io::ErrorKind::AlreadyExists => {
             Err(NotSaved::Taken(path))

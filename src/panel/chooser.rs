@@ -374,7 +374,7 @@ pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         .min_size(vec2(132.0, 24.0))
         .truncate();
     // Marks the button even where the bar has no room to say that this is the model of one object.
-    let of = session.model_override().is_some().then(|| session.name_of(session.selection, registry));
+    let of = session.model_of(registry);
     let button = if of.is_some() { button.stroke(Stroke::new(1.5, palette.accent)) } else { button };
     let response = ui.add_sized(vec2(WIDTH, 24.0), button);
     theme::says(&response, WidgetType::ComboBox, format!("Reflection model: {name}"));

@@ -34,7 +34,9 @@ use cover::is_in_sight;
 pub use cover::is_over_picture;
 pub use dialogs::Dialogs;
 pub use frame::show;
-use state::{CODE_TAB, EXPLAIN_TAB, Effect, MESSAGES_TAB, PLOTS_TAB, PictureArea, SHADER_TAB, Session};
+use state::{
+    CODE_TAB, EXPLAIN_TAB, Effect, MATERIALS_TAB, MESSAGES_TAB, PLOTS_TAB, PictureArea, SHADER_TAB, Session,
+};
 pub use state::{Over, PanelInfo, Place, follow};
 
 pub mod author;
@@ -74,6 +76,7 @@ mod linked;
 pub mod manual;
 pub mod marks;
 mod matching;
+mod materials;
 pub mod maths;
 mod menu;
 pub mod messages;
@@ -112,6 +115,8 @@ pub fn register_builtin(to: &mut Panels) {
     let plots = move |ui: &mut Ui, context: &mut PanelContext<'_>| plots.show(ui, context);
     let mut editor = code::CodePanel::default();
     let code = move |ui: &mut Ui, context: &mut PanelContext<'_>| editor.show(ui, context);
+    let mut shelf = materials::MaterialPanel::default();
+    let shelf = move |ui: &mut Ui, context: &mut PanelContext<'_>| shelf.show(ui, context);
     for panel in [
         Own::new(["top", "Top bar"], Place::Top, top::show),
         Own::new(["status", "Status line"], Place::Status, status::show),
@@ -119,6 +124,7 @@ pub fn register_builtin(to: &mut Panels) {
         Own::new([PLOTS_TAB, "Plots"], Place::Bottom, plots),
         Own::new([SHADER_TAB, "Shader"], Place::Bottom, shader::show).noted(shader::note),
         Own::new([CODE_TAB, "Code"], Place::Bottom, code).noted(code::note),
+        Own::new([MATERIALS_TAB, "Materials"], Place::Bottom, shelf),
         Own::new([history::HISTORY_TAB, "History"], Place::Bottom, history::show),
         Own::new([EXPLAIN_TAB, "Explain"], Place::Bottom, explain::show),
         Own::new(["lesson", "Lesson"], Place::Left, lesson::show),
@@ -132,6 +138,8 @@ pub fn register_builtin(to: &mut Panels) {
         Own::new(help::ABOUT, window, help::about_window).open_if(|s| s.view.about_open),
         Own::new([author::DRAFT, author::DRAFT_TITLE], window, author::show)
             .open_if(|s| s.authoring.draft.is_some()),
+        Own::new([materials::DRAFT, materials::TITLE], window, materials::ask)
+            .open_if(|s| s.materials.draft.is_some()),
         Own::new([matching::DRAFT, "Match to A"], window, matching::show)
             .open_if(|s| s.match_draft.is_some()),
         Own::new([taking::DRAFT, taking::TITLE], window, taking::show).open_if(|s| s.take_draft.is_some()),

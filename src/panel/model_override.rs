@@ -12,7 +12,9 @@ const RATE: f32 = 96.0;
 
 /// Notes that the choices at the top apply to the selected object only, if it overrides the scene's model or shading.
 pub(super) fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
+    let several = session.model_of(registry).filter(|_| session.is_in_group(session.selection));
     let what = match (session.model_override().is_some(), session.shading_override().is_some()) {
+        _ if several.is_some() => "reflection",
         (true, true) => "reflection and shading",
         (true, false) => "reflection",
         (false, true) => "shading",
@@ -20,20 +22,28 @@ pub(super) fn whose(ui: &mut Ui, session: &Session, registry: &Registry) {
     };
     let palette = Palette::here(ui);
     ui.add_space(6.0);
-    let name = session.name_of(session.selection, registry);
-    let text = format!("“{name}” overrides {what}");
+    let name = several.clone().unwrap_or_else(|| session.name_of(session.selection, registry));
+    let text = match &several {
+        Some(name) => format!("{what} of {name}"),
+        None => format!("“{name}” overrides {what}"),
+    };
     // The frame rate keeps its place if there is room for both.
     let all = ui.available_width();
     let room = if all - RATE >= 40.0 { all - RATE } else { all };
     if room < 20.0 {
         return;
     }
-    let shown = if theme::small_width(ui, &text) <= room { &text } else { "override" };
+    let short = if several.is_some() { &name } else { "override" };
+    let shown = if theme::small_width(ui, &text) <= room { &text } else { short };
     let galley = theme::elided(ui, shown, TextStyle::Small, palette.accent, room);
     let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
     ui.painter().galley(rect.min, galley, palette.accent);
     theme::says(&response, WidgetType::Label, &text);
     theme::tip(response, 320.0, |ui| {
+        if several.is_some() {
+            ui.label(format!("The choice of a reflection model here changes {name}, which are selected."));
+            return;
+        }
         ui.label(format!(
             "{name} has its own {what}, so the choice here changes that of {name} alone. At the end of the \
              panel at the right it can be made to follow the scene again."

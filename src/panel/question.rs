@@ -102,6 +102,7 @@ fn words(session: &Session, question: &Question) -> Words {
         ),
         Question::ReplaceExport { path, .. } => replace(path, "the export"),
         Question::ReplaceScene(path) => replace(path, "a copy of this scene"),
+        Question::ReplaceMaterial { path, .. } => replace(path, "the new material"),
         Question::ReplacePicture { path, .. } => replace(path, "the new picture"),
         Question::NewerOnDisk { path, .. } => (
             "Reload from disk?",

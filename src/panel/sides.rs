@@ -10,7 +10,7 @@ use super::{
     lesson::point,
     prelude::*,
     shares::shared,
-    state::{CODE_TAB, EXPLAIN_TAB, OpenLesson, PLOTS_TAB, PanelInfo, SHADER_TAB},
+    state::{CODE_TAB, EXPLAIN_TAB, MATERIALS_TAB, OpenLesson, PLOTS_TAB, PanelInfo, SHADER_TAB},
     widths::zoom_percent,
 };
 
@@ -167,6 +167,9 @@ const PLOT_STRIP: f32 = 312.0;
 /// Minimum height of the strip with the editor, in points.
 const CODE_STRIP: f32 = 240.0;
 
+/// Minimum height of the strip with the materials, in points: a row of them.
+const MATERIAL_STRIP: f32 = 196.0;
+
 /// The strip at the bottom. Tabs appear if there is more than one panel.
 pub(super) fn bottom(
     ui: &mut Ui,
@@ -185,6 +188,7 @@ pub(super) fn bottom(
         // A plot is large if there is room.
         PLOTS_TAB => (3, PLOT_STRIP, 0.36 * whole.height()),
         CODE_TAB => (4, CODE_STRIP, 0.45 * whole.height()),
+        MATERIALS_TAB => (5, MATERIAL_STRIP, 0.34 * whole.height()),
         _ => (0, 72.0, 0.0),
     };
     let strip = egui::Panel::bottom(Id::new(("bottom", zoom_percent(ui.ctx()), kind)))

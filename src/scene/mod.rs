@@ -33,6 +33,7 @@ pub mod limits;
 pub mod load;
 mod object;
 pub mod observer;
+mod other_model;
 pub mod part;
 mod problem;
 mod range;

@@ -10,9 +10,10 @@ pub use crate::library::assets::write_new;
 use crate::{
     custom,
     library::assets::{self, Exported, Folders},
+    materials::{self, Material, NotSaved},
     panel::{
         keys,
-        state::{Authoring, Effect, ModelDraft, Session, Severity},
+        state::{Authoring, Effect, ModelDraft, Question, Session, Severity},
     },
     registry::Registry,
     text::sentence,
@@ -23,6 +24,9 @@ use crate::{
 pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Option<PathBuf> {
     let (said, folder) = match effect {
         Effect::NewModel { of, id, name } => (new_model(session, registry, of, id, name), None),
+        Effect::SaveMaterial { material, overwrite } => {
+            return save_material(session, registry, material, *overwrite);
+        }
         Effect::AdoptModel(path) => (adopt(&mut session.authoring, registry, path), None),
         Effect::ExportShaders(folder) => match assets::export(folder, registry) {
             Ok(exported) => (Ok(told(&exported, folder)), Some(folder.clone())),
@@ -43,6 +47,39 @@ fn models_folder(registry: &Registry) -> Result<PathBuf, String> {
     known.or_else(|| Folders::find(None, None).ok()?.models).ok_or_else(|| {
         "There is no folder for custom models: name one with `lcm --models FOLDER`.".to_owned()
     })
+}
+
+/// Saves a material beside the folder of custom models; asks before it replaces another. Changes no folder.
+fn save_material(
+    session: &mut Session,
+    registry: &Registry,
+    material: &Material,
+    overwrite: bool,
+) -> Option<PathBuf> {
+    let save = if overwrite { materials::replace } else { materials::save };
+    let folder = match models_folder(registry) {
+        Ok(models) => materials::beside(&models),
+        Err(_) => {
+            let text = "There is no folder for materials: name one for models with `lcm --models FOLDER`.";
+            session.say(Severity::Error, text);
+            return None;
+        }
+    };
+    match save(material, &folder, registry) {
+        Ok(path) => {
+            session.materials.saved += 1;
+            session.say(Severity::Info, format!("{} was saved: {}.", material.name, path.shown()));
+        }
+        Err(NotSaved::Taken(path)) => {
+            session.questions.ask(Question::ReplaceMaterial { material: Box::new(material.clone()), path });
+        }
+        Err(why) => {
+            session.say(Severity::Error, format!("{} was not saved: {why}.", material.name));
+            // Asks again, with the typed name.
+            session.materials.draft = Some(Box::new(material.clone()));
+        }
+    }
+    None
 }
 
 /// Writes the file of a model, which is selected as soon as it is read. `taken` says what to do if there is such a file.

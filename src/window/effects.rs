@@ -132,7 +132,10 @@ pub(super) fn carry_out(
             Effect::OpenManual => show_manual(&mut session),
             Effect::Reveal(folder) => session.warn(exports::reveal(&folder)),
             dialog @ Effect::Pick(_) => session.wanted_dialog = Some(dialog),
-            model @ (Effect::NewModel { .. } | Effect::AdoptModel(_) | Effect::ExportShaders(_)) => {
+            model @ (Effect::NewModel { .. }
+            | Effect::SaveMaterial { .. }
+            | Effect::AdoptModel(_)
+            | Effect::ExportShaders(_)) => {
                 if let Some(folder) = authoring::write(&model, &mut session, &registry) {
                     commands.queue(move |world: &mut World| shaders::move_to(world, &folder));
                 }

@@ -66,6 +66,7 @@ impl Layouts {
             return galley.clone();
         }
         let font = style.font.clone();
+        let height = ui.fonts_mut(|fonts| fonts.row_height(&font)) + BELOW;
         self.style = Some(style);
         let words = tokens(text, language);
         let mut known = std::mem::take(&mut self.lines);
@@ -87,7 +88,7 @@ impl Layouts {
             let key = hasher.finish();
             let galley = self.lines.get(&key).cloned().or_else(|| known.remove(&key)).unwrap_or_else(|| {
                 self.laid += 1;
-                let job = job(content, &within, &font, &palette);
+                let job = job(content, &within, (&font, height), &palette);
                 ui.fonts_mut(|fonts| fonts.layout_job(job))
             });
             self.lines.insert(key, galley.clone());
@@ -117,13 +118,25 @@ fn lines(text: &str) -> Vec<Range<usize>> {
     }
 }
 
-fn job(text: &str, words: &[(Range<usize>, Sort)], font: &FontId, palette: &Palette) -> LayoutJob {
+/// Room below the letters of a row for the line that marks an error, in points.
+const BELOW: f32 = 3.0;
+
+/// The layout of a line in a font, in rows of a height.
+fn job(
+    text: &str,
+    words: &[(Range<usize>, Sort)],
+    (font, height): (&FontId, f32),
+    palette: &Palette,
+) -> LayoutJob {
     let mut job = LayoutJob {
         wrap: TextWrapping::no_max_width(),
         keep_trailing_whitespace: true,
         ..LayoutJob::default()
     };
-    let format = |sort| TextFormat::simple(font.clone(), colour(sort, palette));
+    let format = |sort| TextFormat {
+        line_height: Some(height),
+        ..TextFormat::simple(font.clone(), colour(sort, palette))
+    };
     let mut at = 0;
     for (range, sort) in words {
         if at < range.start {

@@ -19,6 +19,9 @@ const FOOT: f32 = 22.0;
 /// Room between line numbers and text, in points.
 const GAP: f32 = 10.0;
 
+/// Thickness of the line below a word with an error, and the distance of its middle from the end of the row, in points.
+const UNDERLINE: (f32, f32) = (1.5, 2.0);
+
 /// The id of the field of a text.
 fn id_of(open: &OpenCode) -> Id {
     Id::new(("code", open.number))
@@ -209,9 +212,10 @@ impl CodePanel {
                 _ => (from, from + word),
             };
             let x = |column: usize| at.x + row.pos.x + row.x_offset(column.into());
-            let y = at.y + row.pos.y + row.size.y - 1.0;
+            // Within the row, so that it does not touch the letters of the next one.
+            let y = at.y + row.pos.y + row.size.y - UNDERLINE.1;
             let right = x(to).max(x(from) + 4.0);
-            ui.painter().hline(x(from)..=right, y, Stroke::new(2.0, palette.error));
+            ui.painter().hline(x(from)..=right, y, Stroke::new(UNDERLINE.0, palette.error));
         }
     }
 

@@ -8,7 +8,8 @@ use crate::{
     panel::{
         export,
         state::{
-            Action, Effect, ExportCommand, Pick, Session, SheetOf, TakeCommand, Taken, Turning, ViewChange,
+            Action, Effect, ExportCommand, MaterialCommand, Pick, Session, SheetOf, TakeCommand, Taken,
+            Turning, ViewChange,
         },
     },
     scene::variant::LETTERS,
@@ -23,6 +24,11 @@ pub(super) fn file(to: &mut List) {
         to.line();
         to.add(command("save", "Save", Action::Save).keys("Ctrl+S"));
         to.add(command("save_as", "Save as…", Action::Do(Effect::Pick(Pick::Save))).keys("Ctrl+Shift+S"));
+        let material = command("save_material", "Save material…", Action::Material(MaterialCommand::Ask));
+        let tip = "Save the material of the selected object as a small file in your folder of materials";
+        let none = !matches!(to.session.selection, Selection::Object(_));
+        let material = material.says("Save the material of the object…").tip(tip).at_desk();
+        to.add(material.unless(none, "No object is selected"));
         let unsaved = to.session.path.is_none();
         let reload = command("reload", "Reload from disk", Action::Reload);
         to.add(reload.unless(unsaved, "The scene has no file yet"));

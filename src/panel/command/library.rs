@@ -29,7 +29,7 @@ pub(super) fn library(to: &mut List) {
     let (session, registry) = (to.session, to.registry);
     to.menu(Menu::new("Reflection model").group(Group::Reflection), |to| {
         for d in registry.models().iter().map(|model| model.declaration) {
-            let choose = command(format!("model.{}", d.id), d.name, Action::Edit(session.edit_model(d.id)));
+            let choose = command(format!("model.{}", d.id), d.name, Action::ChooseModel(d.id.to_owned()));
             to.add(choose.mark(Mark::Radio(session.model_shown() == d.id)).tip(d.summary));
         }
     });

@@ -6,7 +6,7 @@ use crate::{
     optics::TermSelection,
     panel::state::{
         Action, CompareCommand, Effect, HandleChange, HandleMode, Labels, LobeChoice, LobeScale,
-        MESSAGES_TAB, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, ThemeChoice, ViewChange,
+        MATERIALS_TAB, MESSAGES_TAB, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, ThemeChoice, ViewChange,
     },
     scene::comparison::Layout,
     text::capitalised,
@@ -206,6 +206,7 @@ fn tab(session: &super::Session, panel: &PanelInfo) -> Command {
             ..tab.says("Messages").keys("F8").rank(1)
         },
         PLOTS_TAB => tab.says("Plots: curves of the model").keys("F7").rank(1),
+        MATERIALS_TAB => tab.says("Materials: apply and save them").keys("Ctrl+Shift+M").rank(1),
         SHADER_TAB => tab.says("Shader: files and errors").keys("F9").rank(1),
         _ => tab,
     }

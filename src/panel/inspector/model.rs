@@ -9,7 +9,7 @@ use crate::{
         prelude::*,
         segmented::{segment_width, segmented},
         shader,
-        state::SHADER_TAB,
+        state::{CodeCommand, SHADER_TAB},
     },
     reflection::ModelEntry,
     shading::ShadingEntry,
@@ -20,6 +20,15 @@ pub(super) fn model_name(ui: &mut Ui, model: &ModelEntry) {
     let name = model.declaration.name;
     let name = theme::elided(ui, name, TextStyle::Heading, Palette::here(ui).text, ui.available_width());
     ui.label(name).on_hover_ui(|ui| about(ui, model));
+}
+
+/// The button that opens the code of a model in the panel *Code*; for a built-in one it offers to copy the model as a
+/// file.
+pub(super) fn edit_code(ui: &mut Ui, id: &str, context: &mut PanelContext<'_>) {
+    let button = ui.add(Button::new(RichText::new("Edit code").small().color(Palette::here(ui).weak)));
+    let help = "Opens the code of this model in the panel Code; a built-in one is first copied as a file.";
+    // The key is for the model at the top of the window, which need not be that of this object.
+    context.on_click(&button.on_hover_text(help), || Action::Code(CodeCommand::ModelOf(id.to_owned())));
 }
 
 /// The authors and the year, below the name.

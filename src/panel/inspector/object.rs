@@ -1,7 +1,7 @@
 //! The properties of an object.
 
 use super::{
-    model::{equation, missing_model, model_author, model_name, stage, terms},
+    model::{edit_code, equation, missing_model, model_author, model_name, stage, terms},
     part::{header, knob_of, section, type_knob, vector},
     row,
     variant::marked,
@@ -79,6 +79,7 @@ impl Shown<'_> {
                 let fixed = self.fixed(Object::reflection_model).or(self.fixed(Object::shading_model));
                 let chosen = model_override::control(ui, session, registry, object, fixed);
                 context.edits(chosen.map(|(field, id)| Edit::put(part, field, id)));
+                edit_code(ui, session.scene().model_of(object), context);
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     if let Some(model) = model {
                         model_name(ui, model);

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use glam::Vec3;
 
 use super::{
-    Alike, Arrangement, CodeCommand, CompareCommand, Effect, LessonCommand, MatchCommand, PlotCommand,
-    Session, Severity, TakeCommand, ViewChange,
+    Alike, Arrangement, CodeCommand, CompareCommand, Effect, LessonCommand, MatchCommand, MaterialCommand,
+    PlotCommand, Session, Severity, TakeCommand, ViewChange,
 };
 use crate::{
     document::{Edit, Selection},
@@ -86,6 +86,8 @@ pub enum Action {
     Redo,
     /// Undo or redo until this number of steps is applied.
     GoToStep(usize),
+    /// Select the reflection model with this id, as at the top of the window.
+    ChooseModel(String),
     /// Select the n-th recent model, from 0.
     RecentModel(usize),
     /// Change the exposure by this many EV.
@@ -103,6 +105,8 @@ pub enum Action {
     Do(Effect),
     /// A command for custom models and shaders.
     Model(ModelCommand),
+    /// A command for the library of materials.
+    Material(MaterialCommand),
     /// A command for the editor.
     Code(CodeCommand),
     /// A command for exports.
@@ -180,6 +184,8 @@ pub enum ModelCommand {
     New,
     /// Start a copy of the current model: ask for its name.
     Duplicate,
+    /// Start a copy of the model with this id: ask for its name.
+    DuplicateOf(String),
     /// The name of the model, as typed.
     Type(String),
     /// Create the file of the model.
@@ -260,6 +266,7 @@ impl Session {
             Action::Undo => self.undo(registry),
             Action::Redo => self.redo(registry),
             Action::GoToStep(done) => self.go_to_step(done, registry),
+            Action::ChooseModel(id) => self.edit(self.edit_model(&id), registry),
             Action::RecentModel(slot) => self.choose_recent(slot, registry),
             Action::Expose(ev) => self.expose(ev, registry),
             Action::NextTerms => self.next_terms(registry),
@@ -277,6 +284,7 @@ impl Session {
             Action::LookFromSide | Action::Focus(_) => {}
             Action::Do(effect) => self.request(effect),
             Action::Model(ask) => self.author(ask, registry),
+            Action::Material(command) => self.material(command, registry),
             Action::Code(command) => self.code(command, registry),
             Action::Export(command) => self.export(command),
             Action::Say(severity, text) => self.say(severity, text),

@@ -122,6 +122,9 @@ impl Session {
             }
             ModelCommand::Duplicate => {
                 let of = self.model_shown().to_owned();
+                self.author(ModelCommand::DuplicateOf(of), registry);
+            }
+            ModelCommand::DuplicateOf(of) => {
                 if registry.model(&of).is_none() {
                     return self.say(Severity::Warning, format!("There is no model “{of}” to copy."));
                 }

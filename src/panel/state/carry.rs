@@ -56,6 +56,15 @@ impl Session {
         Some(Departure { model, objects })
     }
 
+    /// The objects that several edits may give another reflection model, by the model that they have.
+    pub(super) fn departures(&self, edits: &[Edit]) -> Vec<Departure> {
+        let mut all: BTreeMap<String, Vec<PartId>> = BTreeMap::new();
+        for Departure { model, objects } in edits.iter().filter_map(|edit| self.departure(edit)) {
+            all.entry(model).or_default().extend(objects);
+        }
+        all.into_iter().map(|(model, objects)| Departure { model, objects }).collect()
+    }
+
     /// Carries the materials of objects that have another model now, as part of the step that gave it to them, and says
     /// what went along and what did not.
     pub(super) fn carry(&mut self, departure: Departure, registry: &Registry) {

@@ -163,7 +163,8 @@ impl Session {
     /// Applies a command for the editor.
     pub(super) fn code(&mut self, command: CodeCommand, registry: &Registry) {
         match command {
-            CodeCommand::Model => self.edit_model_here(registry),
+            CodeCommand::Model => self.edit_model_here(&self.model_shown().to_owned(), registry),
+            CodeCommand::ModelOf(id) => self.edit_model_here(&id, registry),
             CodeCommand::File(path, line) => self.edit_file_here(path, line),
             CodeCommand::Scene => self.edit_scene_here(registry),
             CodeCommand::Follow => self.follow_scene(registry),
@@ -219,18 +220,17 @@ impl Session {
         }
     }
 
-    fn edit_model_here(&mut self, registry: &Registry) {
-        let id = self.model_shown();
+    fn edit_model_here(&mut self, id: &str, registry: &Registry) {
         let path = registry.model(id).map_or_else(|| source_path(id), |m| m.declaration.wgsl.path.to_owned());
         match self.shaders.folders.file_of(&path) {
             Some(file) => {
                 let line = self.line_of_trouble(&path);
                 self.edit_file_here(file, line);
             }
-            None => self.note(
-                Note::new(Severity::Info, super::BUILT_IN)
-                    .offering("Duplicate as a file…", super::Action::Model(super::ModelCommand::Duplicate)),
-            ),
+            None => self.note(Note::new(Severity::Info, super::BUILT_IN).offering(
+                "Duplicate as a file…",
+                super::Action::Model(super::ModelCommand::DuplicateOf(id.to_owned())),
+            )),
         }
     }
 

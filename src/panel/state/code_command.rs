@@ -10,6 +10,8 @@ pub const CODE_TAB: &str = "code";
 pub enum CodeCommand {
     /// Open the file of the current model.
     Model,
+    /// Open the file of the model with this id; where it has none, offer to copy it as a file.
+    ModelOf(String),
     /// Open a file at a line.
     File(PathBuf, usize),
     /// Open the scene as JSON.

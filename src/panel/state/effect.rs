@@ -9,6 +9,7 @@ use super::SheetOf;
 use crate::{
     document::Selection,
     matching::What,
+    materials::Material,
     parameter::Parameter,
     scene::{Key, load::Stamp},
 };
@@ -69,6 +70,13 @@ pub enum Effect {
         id: String,
         /// Display name.
         name: String,
+    },
+    /// Save a material in the user's folder.
+    SaveMaterial {
+        /// The material.
+        material: Box<Material>,
+        /// True to overwrite an existing file, after asking the user.
+        overwrite: bool,
     },
     /// Copy a file into the folder of custom models.
     AdoptModel(PathBuf),

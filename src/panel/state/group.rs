@@ -11,6 +11,7 @@ use super::{
 };
 use crate::{
     document::{Edit, Selection, names},
+    parameter::Value,
     registry::Registry,
     scene::{Key, Light, Object, Part, Repetition, Scene},
 };
@@ -33,11 +34,21 @@ impl Session {
         let models: [Key; 2] = [Scene::reflection_model.into(), Scene::shading_model.into()];
         let chooses = here.iter().any(|edit| edit.values().1.iter().any(|(key, _)| models.contains(key)));
         let before = self.document.revision();
+        let departures = self.departures(&here);
+        let model = here.iter().find_map(|edit| match edit.one() {
+            Some((_, key, Some(Value::Choice(id)))) if key == models[0] => Some(id.clone().into_owned()),
+            _ => None,
+        });
         let edit = Edit::Each { edits: here, step };
         if let Err(why) = self.document.edit(edit, self.selection, registry) {
             return self.say(Severity::Warning, why);
         }
-        if chooses && self.document.revision() != before {
+        if self.document.revision() == before {
+            return;
+        }
+        model.iter().for_each(|id| self.model_slots.take(id));
+        departures.into_iter().for_each(|departure| self.carry(departure, registry));
+        if chooses {
             follow_model(self, registry);
         }
     }

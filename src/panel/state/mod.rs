@@ -26,6 +26,7 @@ pub use facts::{Clipping, Converging, Facts, LARGEST, Numbers, Running};
 pub use lesson::{LessonCommand, LessonSource};
 pub use lobe::{LobeChoice, LobeScale};
 pub use matching::{MatchCommand, MatchDraft};
+pub use materials::{MATERIALS_TAB, MaterialCommand, Materials};
 pub use messages::{Badge, MAX_MESSAGES, Messages, Note};
 pub use open_lesson::OpenLesson;
 pub(super) use open_lesson::problem_of;
@@ -83,6 +84,7 @@ mod learning;
 mod lesson;
 mod lobe;
 mod matching;
+mod materials;
 mod messages;
 mod nudge;
 mod open_lesson;
@@ -150,6 +152,8 @@ with_defaults! {
         pub authoring: Authoring = Authoring::default(),
         /// The texts that are open in the editor.
         pub code: Code = Code::default(),
+        /// The library of materials.
+        pub materials: Materials = Materials::default(),
         /// The match that is about to start.
         pub match_draft: Option<MatchDraft> = None,
         /// The options of a picture or a sheet that is about to be saved.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::{Action, Answer, Effect, Pick, RecoveryChoice, Session, Severity};
 use crate::files::Shown as _;
 use crate::{
+    materials::Material,
     registry::Registry,
     scene::{Scene, load::Stamp},
     text::listed,
@@ -50,6 +51,13 @@ pub enum Question {
     ReplacePicture {
         /// The single view, if any.
         view: Option<usize>,
+        /// The file.
+        path: PathBuf,
+    },
+    /// There is a material of this name, in this file.
+    ReplaceMaterial {
+        /// The new material.
+        material: Box<Material>,
         /// The file.
         path: PathBuf,
     },
@@ -211,6 +219,11 @@ impl Session {
             (Question::ReplacePicture { view, path }, Answer::Overwrite) => {
                 self.request(Effect::Picture { view, file: Some(path), overwrite: true });
             }
+            (Question::ReplaceMaterial { material, .. }, Answer::Overwrite) => {
+                self.request(Effect::SaveMaterial { material, overwrite: true });
+            }
+            // Asks for another name.
+            (Question::ReplaceMaterial { material, .. }, _) => self.materials.draft = Some(material),
             (Question::ReplaceExport { .. } | Question::ReplacePicture { .. }, _) => {}
             (Question::NewerOnDisk { path, .. }, _) => self.disk_undecided(&path),
             _ => self.questions.not_saved(),

@@ -75,9 +75,37 @@ impl Session {
         Some((i, object.shading_model.as_deref()?))
     }
 
+    /// The objects that the choice of a model at the top of the window changes together, one of each row; none unless
+    /// several parts are selected, and none in a presentation.
+    fn objects_chosen(&self) -> Vec<usize> {
+        if !self.has_group() || self.view.presenting {
+            return Vec::new();
+        }
+        let object = |part| if let Selection::Object(i) = part { Some(i) } else { None };
+        self.entries().into_iter().filter_map(object).collect()
+    }
+
+    /// The object whose model stands for those of several that are selected.
+    fn first_chosen(&self) -> Option<&Object> {
+        let (i, object) = self.object_chosen()?;
+        self.is_in_group(Selection::Object(i)).then_some(object)
+    }
+
+    /// The name of what the choice of a model at the top of the window changes, if that is not the scene.
+    #[must_use]
+    pub fn model_of(&self, registry: &Registry) -> Option<String> {
+        if self.first_chosen().is_some() {
+            return Some(self.name_of_group());
+        }
+        self.model_override().map(|_| self.name_of(self.selection, registry))
+    }
+
     /// Id of the reflection model shown at the top of the window.
     #[must_use]
     pub fn model_shown(&self) -> &str {
+        if let Some(object) = self.first_chosen() {
+            return self.scene().model_of(object);
+        }
         self.model_override().map_or(&self.scene().reflection_model, |(_, id)| id)
     }
 
@@ -87,9 +115,16 @@ impl Session {
         self.shading_override().map_or(&self.scene().shading_model, |(_, id)| id)
     }
 
-    /// The edit that selects a reflection model at the top of the window.
+    /// The edit that selects a reflection model at the top of the window. Where several objects are selected, it is one
+    /// step that changes all of them.
     #[must_use]
     pub fn edit_model(&self, id: &str) -> Edit {
+        let objects = self.objects_chosen();
+        if !objects.is_empty() {
+            let edits = objects.into_iter().map(|i| Edit::set(Part::Object(i), Object::reflection_model, id));
+            let step = format!("Reflection model of {}", self.name_of_group());
+            return Edit::Each { edits: edits.collect(), step };
+        }
         let part = self.model_override().map_or(Part::Scene, |(i, _)| Part::Object(i));
         Edit::set(part, Scene::reflection_model, id)
     }

@@ -13,6 +13,7 @@ mod knobs;
 mod law_check;
 pub(crate) mod layout;
 mod marks;
+mod materials;
 pub(crate) mod panels;
 mod plots;
 mod pointer;

@@ -1,0 +1,256 @@
+//! The panel *Materials*: the library of materials as small pictures, found by a search, given to objects by a click or by
+//! dragging.
+
+use std::{path::Path, sync::Mutex, time::Duration};
+
+use bevy_egui::egui::{LayerId, Order, TextEdit};
+
+use super::{
+    cover::is_over_picture, draft::is_new, kept::Background, marks::Lens, prelude::*, rank::rank,
+    state::MaterialCommand,
+};
+use crate::{
+    caught::lock,
+    library::status::Reloaded,
+    materials::{Broken, Library, Material, Origin, beside},
+    reference::{Settings, Shot, meshes::MeshStore, probe::towards},
+};
+use shelf::Picture;
+
+mod draft_window;
+mod shelf;
+
+pub(super) use draft_window::{DRAFT, TITLE, show as ask};
+
+/// Size of a picture, and the height of the two lines below it, in points.
+const PICTURE: f32 = 76.0;
+const WORDS: f32 = 32.0;
+/// Width of the search field, in points.
+const SEARCH: f32 = 200.0;
+/// Most broken files that are shown, and most mistakes of each.
+const MOST_BROKEN: usize = 40;
+const MOST_MISTAKES: usize = 3;
+
+/// What the list depends on.
+#[derive(Clone, Debug, PartialEq)]
+struct Question {
+    saved: u64,
+    /// Number of times that the panel came into sight.
+    opened: u64,
+    models: usize,
+    reloaded: Option<Reloaded>,
+}
+
+/// See the module.
+#[derive(Default)]
+pub(super) struct MaterialPanel {
+    library: Mutex<Background<Question, Arc<Library>>>,
+    opened: u64,
+    search: String,
+    /// The material that is being dragged.
+    dragged: Option<Material>,
+}
+
+impl MaterialPanel {
+    pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        self.opened += u64::from(is_new(ui, "materials"));
+        let library = self.library(ui.ctx(), context);
+        self.head(ui, context);
+        let Some(library) = library else {
+            ui.weak("Reading the materials…");
+            return;
+        };
+        let found = found(&library.materials, &self.search, context.registry());
+        let broken: Vec<_> = library.broken.iter().filter(|broken| is_named(broken, &self.search)).collect();
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.set_max_width(ui.available_width() - 8.0);
+            self::broken(ui, &broken);
+            if found.is_empty() {
+                ui.weak("No material has that in its name, description, source or model.");
+            }
+            let headed = self.search.trim().is_empty();
+            for group in found.chunk_by(|a, b| !headed || a.origin.heading() == b.origin.heading()) {
+                if headed && let Some(first) = group.first() {
+                    ui.label(theme::strong(ui, first.origin.heading()).small());
+                }
+                ui.horizontal_wrapped(|ui| {
+                    ui.spacing_mut().item_spacing = vec2(8.0, 6.0);
+                    group.iter().for_each(|material| self.card(ui, material, context));
+                });
+            }
+        });
+        self.drag(ui, context);
+    }
+
+    /// The materials, once they are read.
+    fn library(&self, ctx: &Context, context: &PanelContext<'_>) -> Option<Arc<Library>> {
+        let (session, registry) = (context.session(), context.registry());
+        let question = Question {
+            saved: session.materials.saved,
+            opened: self.opened,
+            models: registry.models().len(),
+            reloaded: session.shaders.last.clone(),
+        };
+        let mut library = lock(&self.library);
+        library.ask(ctx, &question, Duration::ZERO, || {
+            let (registry, folder) = (registry.clone(), registry.custom_folder().map(beside));
+            Some(move || Arc::new(Library::read(folder.as_deref(), &registry)))
+        });
+        library.shown.as_ref().map(|(_, library)| library.clone())
+    }
+
+    /// The search, and the buttons.
+    fn head(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        ui.horizontal(|ui| {
+            let before = self.search.clone();
+            let hint = "Search: gold, velvet, openpbr…";
+            let edit = TextEdit::singleline(&mut self.search).hint_text(hint).desired_width(SEARCH);
+            let edit = ui.add(edit);
+            theme::names_field(&edit, "Search materials", [&before, &self.search, hint]);
+            let save = ui.button("Save material…");
+            let help =
+                "Saves the material of the selected object as a small file in your folder of materials.";
+            context.on_click(&save.on_hover_text(help), || Action::Material(MaterialCommand::Ask));
+            let again = ui.button("Read again");
+            if again.on_hover_text("Reads your folder of materials again.").clicked() {
+                self.opened += 1;
+            }
+            let text = theme::small(ui, "click: for what is selected · drag: onto an object");
+            ui.add(Label::new(text).truncate());
+        });
+    }
+
+    /// A material: its picture, its name and its model.
+    fn card(&mut self, ui: &mut Ui, material: &Material, context: &mut PanelContext<'_>) {
+        let palette = Palette::here(ui);
+        let size = vec2(PICTURE, PICTURE + WORDS);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        theme::says(&response, WidgetType::Button, format!("Material: {}", material.name));
+        if response.gained_focus() {
+            response.scroll_to_me(None);
+        }
+        if response.drag_started() {
+            self.dragged = Some(material.clone());
+        }
+        let give = || Action::Material(MaterialCommand::Apply(Box::new(material.clone()), None));
+        context.on_click(&response, give);
+        if !ui.is_rect_visible(rect) {
+            return;
+        }
+        let (session, registry) = (context.session(), context.registry());
+        let place = Rect::from_min_size(rect.min, Vec2::splat(PICTURE));
+        let picture = shelf::picture(ui.ctx(), material, session, registry);
+        shelf::paint(ui, place, &picture);
+        let hot = theme::is_hot(&response);
+        let edge = Stroke::new(if hot { 2.0 } else { 1.0 }, if hot { palette.accent } else { palette.line });
+        ui.painter().rect_stroke(place, 2.0, edge, StrokeKind::Inside);
+        let model = model_name(material, registry);
+        let mut at = place.left_bottom() + vec2(0.0, 2.0);
+        for (text, ink) in [(material.name.as_str(), palette.text), (model, palette.weak)] {
+            let line = theme::elided(ui, text, TextStyle::Small, ink, PICTURE);
+            let height = line.size().y;
+            ui.painter().galley(at, line, ink);
+            at.y += height;
+        }
+        theme::tip(response, 320.0, |ui| {
+            ui.label(theme::strong(ui, &material.name));
+            ui.label(model);
+            for text in [&material.description, &material.source].into_iter().flatten() {
+                ui.label(theme::small(ui, text));
+            }
+            if let Origin::File(path) = &material.origin {
+                ui.label(theme::small(ui, path.shown().to_string()));
+            }
+            if let Picture::Failed(why) = &picture {
+                ui.label(theme::small(ui, &**why));
+            }
+        });
+    }
+
+    /// Paints the material that is dragged at the pointer, and gives it to the object on which it is dropped.
+    fn drag(&mut self, ui: &Ui, context: &mut PanelContext<'_>) {
+        let Some(material) = self.dragged.take() else { return };
+        let ctx = ui.ctx();
+        let (at, down, stop) =
+            ui.input(|i| (i.pointer.latest_pos(), i.pointer.primary_down(), i.key_pressed(Key::Escape)));
+        let Some(at) = at.filter(|_| !stop) else { return };
+        if down {
+            ctx.set_cursor_icon(CursorIcon::Grabbing);
+            let picture = shelf::picture(ctx, &material, context.session(), context.registry());
+            if let Picture::Ready(texture) = picture {
+                let painter = ctx.layer_painter(LayerId::new(Order::Tooltip, Id::new("dragged material")));
+                let place = Rect::from_center_size(at, Vec2::splat(0.5 * PICTURE));
+                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                painter.image(texture.id(), place, whole, Color32::WHITE);
+            }
+            self.dragged = Some(material);
+            return;
+        }
+        if !is_over_picture(ctx, context.area().frame, at) {
+            return;
+        }
+        let (session, registry) = (context.session(), context.registry());
+        let cell = context.area().cell_at(at).copied();
+        let lens = Lens::of(session, cell.map_or(context.area().frame, |cell| cell.rect));
+        let ray = lens.ray(at);
+        let settings = Settings { width: 1, height: 1, samples: 1, ..Settings::default() };
+        let shot = Shot::new(session.scene(), registry, &settings);
+        let Some((object, _)) = towards(&mut MeshStore::default(), shot, [ray.eye, ray.eye + ray.way]) else {
+            return context.say("There is no object: drop the material onto one.");
+        };
+        if let Some(cell) = cell.filter(|cell| cell.view != session.active()) {
+            context.act(Action::Compare(CompareCommand::Activate(cell.view)));
+        }
+        context.act(Action::Material(MaterialCommand::Apply(Box::new(material), Some(object))));
+    }
+}
+
+fn model_name<'a>(material: &'a Material, registry: &'a Registry) -> &'a str {
+    let id = &material.reflection_model;
+    registry.model(id).map_or(id, |model| model.declaration.name)
+}
+
+/// The materials that a search finds, the best first; without a search all in their order.
+fn found<'m>(all: &'m [Material], search: &str, registry: &Registry) -> Vec<&'m Material> {
+    if search.trim().is_empty() {
+        return all.iter().collect();
+    }
+    let more = |m: &Material| {
+        let texts = [m.description.as_deref(), m.source.as_deref(), Some(&m.reflection_model)];
+        let texts: Vec<_> = texts.into_iter().flatten().chain([model_name(m, registry)]).collect();
+        texts.join(" ")
+    };
+    let mut found: Vec<_> = all.iter().filter_map(|m| Some((rank(&m.name, &more(m), search)?, m))).collect();
+    // Letters with gaps fit by chance; they count where nothing else does.
+    if found.iter().any(|(rank, _)| *rank > 0) {
+        found.retain(|(rank, _)| *rank > 0);
+    }
+    found.sort_by_key(|(rank, _)| -rank);
+    found.into_iter().map(|(_, material)| material).collect()
+}
+
+/// True if a search may mean a file.
+fn is_named(broken: &Broken, search: &str) -> bool {
+    rank(&file_name(&broken.path), &broken.problems.join(" "), search).is_some()
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The files that are no materials, each with its mistakes.
+fn broken(ui: &mut Ui, all: &[&Broken]) {
+    for broken in all.iter().take(MOST_BROKEN) {
+        let mut text = format!("{} was not read: ", file_name(&broken.path));
+        text += &broken.problems.iter().take(MOST_MISTAKES).cloned().collect::<Vec<_>>().join("; ");
+        let more = broken.problems.len().saturating_sub(MOST_MISTAKES);
+        if more > 0 {
+            text += &format!("; and {}", plural(more, "more mistake"));
+        }
+        let text = RichText::new(text).small().color(Palette::here(ui).error);
+        icon::remark(ui, [14.0, 16.0], Severity::Error, Label::new(text).wrap());
+    }
+    if all.len() > MOST_BROKEN {
+        theme::note(ui, format!("And {} more files were not read.", all.len() - MOST_BROKEN));
+    }
+}

@@ -1,0 +1,214 @@
+//! The panel *Materials*: materials are found, given to objects and saved, with the pointer and with the keyboard.
+
+use std::{fs, thread::sleep, time::Duration};
+
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
+use glam::Vec3;
+use lights_camera_models::{
+    document::Selection,
+    materials::{self, Material, Origin},
+    panel::{
+        marks::Lens,
+        state::{
+            Action, Answer, CompareCommand, Effect, MATERIALS_TAB, MaterialCommand, Question, Session,
+            ViewChange,
+        },
+    },
+    parameter::{Value, Values},
+    registry::Registry,
+    scene::{Object, Scene, comparison::Layout},
+};
+
+use crate::window::panels::Bench;
+
+/// Three spheres beside each other, and the panel below them, with the user's folder of materials.
+fn bench() -> (Bench, tempfile::TempDir) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let object =
+        |i: usize| Object { position: Vec3::new(4.0 + i as f32, 5.0, 5.0), size: 0.6, ..Object::default() };
+    let scene = Scene { objects: (0..3).map(object).collect(), ..Scene::default() };
+    let mut session = Session::new(scene);
+    session.view.unfold(MATERIALS_TAB);
+    session.facts.eye = Vec3::new(5.0, 5.0, 11.0);
+    let mut registry = Registry::builtin();
+    registry.set_custom_folder(&folder.path().join("models"));
+    let mut bench = Bench::with_registry(session, registry);
+    bench.size = vec2(1280.0, 900.0);
+    wait_for(&mut bench, "Material: Gold");
+    (bench, folder)
+}
+
+/// Goes on until a thread has made this.
+fn wait_for(bench: &mut Bench, label: &str) {
+    for _ in 0..400 {
+        bench.settle();
+        if bench.says(label) {
+            return;
+        }
+        sleep(Duration::from_millis(10));
+    }
+    panic!("no {label}");
+}
+
+fn named(name: &str) -> Material {
+    let all = materials::built_in(&Registry::builtin());
+    all.into_iter().find(|material| material.name == name).expect("of the program")
+}
+
+/// True if an object has a material.
+fn has(bench: &Bench, i: usize, name: &str) -> bool {
+    let material = named(name);
+    let scene = bench.session.scene();
+    let object = &scene.objects[i];
+    scene.model_of(object) == material.reflection_model
+        && material.material.0.iter().all(|(name, value)| object.material.0.get(name) == Some(value))
+}
+
+fn which(bench: &Bench, name: &str) -> Vec<usize> {
+    (0..3).filter(|i| has(bench, *i, name)).collect()
+}
+
+#[test]
+fn a_click_gives_a_material_to_all_selected_objects_as_one_step() {
+    let (mut bench, _folder) = bench();
+    let before = bench.session.document.scene().clone();
+    bench.apply(Action::SelectEach(vec![Selection::Object(0), Selection::Object(2)], false));
+    let steps = bench.session.document.done();
+    bench.type_into("Search materials", "gold");
+    assert!(bench.find("Material: Car paint").is_none(), "the search leaves it out");
+    bench.click("Material: Gold");
+    assert_eq!(which(&bench, "Gold"), [0, 2]);
+    assert!(which(&bench, "Silver").is_empty());
+    assert_eq!(bench.session.document.done(), steps + 1);
+    let said = &bench.session.messages.last().expect("a message").text;
+    assert!(said.starts_with("Gold for 2 objects, which is ") && said.contains(" in place of "), "{said}");
+    bench.apply(Action::Undo);
+    assert!(*bench.session.document.scene() == before);
+    // Without an object there is nothing to change.
+    bench.apply(Action::Select(Selection::Room));
+    bench.click("Material: Gold");
+    assert!(*bench.session.document.scene() == before);
+}
+
+#[test]
+fn the_keyboard_alone_finds_and_applies_and_the_panel_fits_when_everything_is_large() {
+    let (mut bench, _folder) = bench();
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::Scale(150)));
+    bench.apply(Action::Select(Selection::Object(1)));
+    bench.type_into("Search materials", "silver");
+    // Past the buttons beside the field.
+    for _ in 0..3 {
+        bench.key(Key::Tab, Modifiers::NONE);
+    }
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert_eq!(which(&bench, "Silver"), [1]);
+    let screen = bench.size / bench.ctx.zoom_factor();
+    let card = bench.find("Material: Silver").expect("found").rect;
+    assert!(card.min.x >= 0.0 && card.max.x <= screen.x && card.min.y >= 0.0, "{card:?} in {screen:?}");
+}
+
+#[test]
+fn a_material_dropped_on_an_object_is_given_to_that_one_alone() {
+    let (mut bench, _folder) = bench();
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench.type_into("Search materials", "gold");
+    let from = bench.find("Material: Gold").expect("found").rect.center();
+    let middle = bench.session.document.objects[2].position;
+    let at = |bench: &Bench, p: Vec3| Lens::of(&bench.session, bench.area.frame).project(p).expect("seen");
+    let to = at(&bench, middle);
+    drag(&mut bench, from, to);
+    assert_eq!(which(&bench, "Gold"), [2]);
+    assert_eq!(bench.session.selection, Selection::Object(0));
+    // Beside all objects nothing changes.
+    let scene = bench.session.document.scene().clone();
+    let beside = at(&bench, middle + 1.6 * Vec3::Y);
+    drag(&mut bench, from, beside);
+    assert!(*bench.session.document.scene() == scene);
+}
+
+fn drag(bench: &mut Bench, from: Pos2, to: Pos2) {
+    let press = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    bench.frame(vec![Event::PointerMoved(from)]);
+    bench.frame(vec![press(from, true)]);
+    for k in 1..=5 {
+        bench.frame(vec![Event::PointerMoved(from + (to - from) * (k as f32 / 5.0))]);
+    }
+    bench.frame(vec![press(to, false)]);
+    bench.settle();
+}
+
+#[test]
+fn in_another_view_a_material_is_that_of_the_view() {
+    let (mut bench, _folder) = bench();
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)));
+    bench.apply(Action::Compare(CompareCommand::Activate(1)));
+    let objects = bench.session.document.objects.clone();
+    let apply = MaterialCommand::Apply(Box::new(named("Gold")), None);
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench.apply(Action::Material(apply));
+    assert!(bench.session.document.objects == objects, "view A stays");
+    assert_eq!(which(&bench, "Gold"), [0, 1, 2]);
+    let variant = &bench.session.document.variants[0];
+    assert_eq!(variant.reflection_model.as_deref(), Some(&*named("Gold").reflection_model));
+}
+
+#[test]
+fn the_material_of_an_object_is_saved_listed_at_once_and_replaces_none_unasked() {
+    let (mut bench, folder) = bench();
+    let mut values = Values::default();
+    values.set("alpha", Value::Integer(77));
+    let scene = Scene {
+        reflection_model: "phong".to_owned(),
+        objects: vec![Object { material: values.clone(), ..Object::default() }],
+        ..Scene::default()
+    };
+    bench.session = Session::new(scene);
+    bench.session.view.unfold(MATERIALS_TAB);
+    bench.apply(Action::Material(MaterialCommand::Ask));
+    bench.type_into("Name of the material", "../x");
+    assert!(bench.find("Save").is_some_and(|button| button.disabled), "no path, but a name");
+    bench.type_into("Name of the material", "Shiny red");
+    bench.effects.clear();
+    bench.click("Save");
+    let effect = bench.effects.pop().expect("an effect");
+    let Effect::SaveMaterial { material, overwrite: false } = effect else { panic!("{effect:?}") };
+    let own = folder.path().join("materials");
+    let path = materials::save(&material, &own, &bench.registry).expect("written");
+    bench.session.materials.saved += 1;
+    wait_for(&mut bench, "Material: Shiny red");
+    let library = materials::Library::read(Some(&own), &bench.registry);
+    assert_eq!(library.materials[0].material, values);
+    assert_eq!(library.materials[0].origin, Origin::File(path.clone()));
+    // Another one of this name: the file stays until the user says otherwise.
+    bench.session.questions.ask(Question::ReplaceMaterial { material: material.clone(), path: path.clone() });
+    bench.apply(Action::Answer(Answer::Cancel));
+    assert!(bench.effects.is_empty() && bench.session.materials.draft.is_some(), "asks for another name");
+    bench.apply(Action::Material(MaterialCommand::Cancel));
+    bench.session.questions.ask(Question::ReplaceMaterial { material: material.clone(), path });
+    bench.apply(Action::Answer(Answer::Overwrite));
+    assert_eq!(bench.effects, [Effect::SaveMaterial { material: material.clone(), overwrite: true }]);
+    let mut other = *material;
+    other.material.set("alpha", Value::Integer(5));
+    materials::replace(&other, &own, &bench.registry).expect("written");
+    let library = materials::Library::read(Some(&own), &bench.registry);
+    assert_eq!(library.materials[0].material, other.material);
+}
+
+#[test]
+fn files_that_are_no_materials_are_listed_with_what_is_wrong() {
+    let (mut bench, folder) = bench();
+    let own = folder.path().join("materials");
+    fs::create_dir(&own).expect("made");
+    let text = r#"{ "name": "Bad", "reflection_model": "fong", "material": {} }"#;
+    fs::write(own.join("bad.json"), text).expect("written");
+    assert!(!bench.says("bad.json"));
+    bench.click("Read again");
+    wait_for(&mut bench, "bad.json was not read: 1:38: reflection_model is \"fong\"");
+    assert!(bench.find("Material: Gold").is_some(), "it hides no other");
+}
