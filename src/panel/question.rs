@@ -8,6 +8,7 @@ use super::{
     prelude::*,
     state::{Answer, Offer, Question},
 };
+use crate::text::listed;
 
 /// The open question. Enter gives the first answer, which loses nothing; Escape the last.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -71,6 +72,16 @@ fn words(session: &Session, question: &Question) -> Words {
             format!("“{}” has unsaved changes.", session.title()),
             Vec::new(),
             vec![("Save", Answer::Save), ("Don't save", Answer::Discard), ("Cancel", Answer::Cancel)],
+        ),
+        Question::UnsavedTexts(then) => (
+            "Lose the changes?",
+            format!("The panel Code has unsaved changes in {}.", listed(&session.names_at_risk(then), "and")),
+            Vec::new(),
+            vec![
+                ("Show the text", Answer::Keep),
+                ("Don't save", Answer::Discard),
+                ("Cancel", Answer::Cancel),
+            ],
         ),
         Question::MissingParts { path, parts, .. } => {
             let what = if parts.len() == 1 { "a part" } else { "parts" };

@@ -23,7 +23,10 @@ const FOLDER: &str = "recovery of code";
 /// Greatest size of a copy that is read, bytes.
 const MOST: u64 = 1 << 20;
 
-/// The texts with unsaved changes, by their files.
+/// The place of the scene as JSON among the texts, which is no file of its own.
+pub const OF_SCENE: &str = "the scene as JSON";
+
+/// The texts with unsaved changes, by their files, or [`OF_SCENE`].
 pub type Texts = BTreeMap<PathBuf, Arc<str>>;
 
 impl Store {
@@ -101,7 +104,9 @@ fn update(store: &Store, journals: &mut BTreeMap<PathBuf, (Journal, Arc<str>)>, 
             continue;
         }
         let title = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.clone());
+        let is_file = path != Path::new(OF_SCENE);
+        let absolute = is_file.then(|| std::path::absolute(path).ok()).flatten();
+        let absolute = absolute.unwrap_or_else(|| path.clone());
         let about = About { title, path: Some(absolute), stamp: None, process: std::process::id() };
         let known = journals.remove(path).map(|(journal, _)| journal);
         // Without a place for copies, the text is in the editor all the same.
@@ -191,8 +196,11 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let store = Store::new(folder.path().join("a"));
         let mut keeper = TextKeeper::start(Some(store.clone()));
-        keeper.keep(texts(&[("/models/a.wgsl", "a")]));
+        keeper.keep(texts(&[(OF_SCENE, "{")]));
         drop(keeper);
+        let [kept] = &left(&store)[..] else { panic!("one is kept") };
+        // It is none of the files in the present folder.
+        assert!(kept.is_of(Path::new(OF_SCENE)) && kept.text == "{", "{kept:?}");
         let file = left(&store).remove(0).copy.journal.file();
         fs::write(&file, b"\xff").expect("writable");
         assert!(left(&store).is_empty());

@@ -3,7 +3,7 @@
 
 use std::{
     collections::VecDeque,
-    path::{self, PathBuf},
+    path::{self, Path, PathBuf},
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -25,11 +25,11 @@ use crate::files::Shown as _;
 use crate::{
     panel::{
         files::Files as _,
-        state::{Action, KeptCode, Offer, Question, RecoveryChoice, Session, Severity},
+        state::{Action, KeptCode, Offer, OpenCode, Question, RecoveryChoice, Session, Severity},
     },
     recovery::{
         Abandoned, About, Keeper, Store, ago,
-        texts::{self, KeptText, TextKeeper, Texts},
+        texts::{self, KeptText, OF_SCENE, TextKeeper, Texts},
     },
     registry::Registry,
     render::schedule::LabFrame,
@@ -277,8 +277,8 @@ fn keep_texts(mut copies: ResMut<CodeCopies>, mut session: ResMut<Session>) {
         return;
     }
     let unsaved = session.code.open.iter().filter(|open| open.is_unsaved());
-    let texts: Texts =
-        unsaved.filter_map(|open| Some((open.path()?.to_owned(), open.text.clone()))).collect();
+    let place = |open: &OpenCode| open.path().unwrap_or(Path::new(OF_SCENE)).to_owned();
+    let texts: Texts = unsaved.map(|open| (place(open), open.text.clone())).collect();
     let opened =
         copies.kept.extract_if(.., |kept| texts.get(&kept.path).is_some_and(|text| **text == *kept.text));
     opened.for_each(KeptText::remove);

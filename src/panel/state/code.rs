@@ -9,7 +9,7 @@ use std::{
 };
 
 use super::{CODE_TAB, CodeCommand, Effect, Note, Session, Severity};
-use crate::{custom::source_path, files::Shown as _, registry::Registry};
+use crate::{custom::source_path, files::Shown as _, recovery::texts::OF_SCENE, registry::Registry};
 
 /// Greatest size of a text in the editor, bytes.
 pub const MOST_CODE: usize = 256 << 10;
@@ -206,7 +206,7 @@ impl Session {
             CodeCommand::Difference(on) => {
                 self.code.visible_mut().into_iter().for_each(|open| open.shows_difference = on)
             }
-            CodeCommand::Recover(path) => self.recover_code(&path),
+            CodeCommand::Recover(path) => self.recover_code(&path, registry),
         }
     }
 
@@ -264,9 +264,14 @@ impl Session {
         }
     }
 
-    fn recover_code(&mut self, path: &Path) {
+    fn recover_code(&mut self, path: &Path, registry: &Registry) {
         let Some(at) = self.code.kept.iter().position(|kept| kept.path == path) else { return };
         let kept = self.code.kept.remove(at);
+        if kept.path == Path::new(OF_SCENE) {
+            self.edit_scene_here(registry);
+            self.code.of_mut(&CodeOf::Scene).into_iter().for_each(|open| open.text = kept.text.clone());
+            return;
+        }
         let of = CodeOf::File(kept.path.clone());
         self.view.unfold(CODE_TAB);
         match self.code.of_mut(&of) {
@@ -279,6 +284,39 @@ impl Session {
     #[must_use]
     pub fn has_unsaved_code(&self) -> bool {
         self.code.open.iter().any(OpenCode::is_unsaved)
+    }
+
+    /// The numbers of texts whose changes an action would lose: all when the window closes, that of the scene when another
+    /// scene takes its place.
+    fn texts_at_risk(&self, action: &super::Action) -> Vec<u64> {
+        let is_at_risk = |open: &&OpenCode| {
+            open.is_unsaved() && (*action == super::Action::Quit || open.of == CodeOf::Scene)
+        };
+        self.code.open.iter().filter(is_at_risk).map(|open| open.number).collect()
+    }
+
+    /// The names of texts whose changes an action would lose.
+    pub(in crate::panel) fn names_at_risk(&self, action: &super::Action) -> Vec<&str> {
+        let all = self.texts_at_risk(action);
+        let is_one = |open: &&OpenCode| all.contains(&open.number);
+        self.code.open.iter().filter(is_one).map(|open| &*open.name).collect()
+    }
+
+    /// Shows the first text whose changes an action would lose.
+    pub(super) fn show_at_risk(&mut self, action: &super::Action) {
+        let first = self.texts_at_risk(action).first().copied();
+        if let Some(at) = self.code.open.iter().position(|open| Some(open.number) == first) {
+            self.code.shown = at;
+            self.view.unfold(CODE_TAB);
+        }
+    }
+
+    /// Takes back the changes that an action would lose.
+    pub(super) fn forget_at_risk(&mut self, action: &super::Action) {
+        let all = self.texts_at_risk(action);
+        for open in self.code.open.iter_mut().filter(|open| all.contains(&open.number)) {
+            (open.text, open.theirs) = (open.base.clone(), None);
+        }
     }
 
     /// Offers the unsaved texts that earlier windows left.
@@ -378,6 +416,56 @@ mod tests {
         typed(&mut session, "one\nTHEIRS\n");
         session.code.open[0].found(theirs);
         assert!(!of(&session).is_unsaved() && of(&session).theirs.is_none());
+    }
+
+    #[test]
+    fn what_would_lose_changes_of_texts_asks_first() {
+        use crate::panel::state::{Answer, Question};
+        let registry = Registry::builtin();
+        let mut session = open();
+        assert_eq!(session.apply(Action::Quit, &registry), [Effect::Quit], "without changes it does not");
+        typed(&mut session, "mine");
+        // A file of a shader does not belong to the scene.
+        session.apply(Action::New, &registry);
+        assert_eq!(session.questions.open, None);
+        let asked = Some(Question::UnsavedTexts(Box::new(Action::Quit)));
+        for (answer, quits, text) in [
+            (Answer::Cancel, false, "mine"),
+            (Answer::Keep, false, "mine"),
+            (Answer::Discard, true, "one\ntwo\n"),
+        ] {
+            assert_eq!(session.apply(Action::Quit, &registry), []);
+            assert!(session.questions.open == asked && session.questions.is_quitting());
+            let effects = session.apply(Action::Answer(answer), &registry);
+            assert_eq!((effects == [Effect::Quit], &*of(&session).text), (quits, text), "{answer:?}");
+        }
+    }
+
+    #[test]
+    fn another_scene_asks_about_changes_of_the_json_of_this_one() {
+        use crate::panel::state::{Answer, Question};
+        let registry = Registry::builtin();
+        let mut session = Session::default();
+        command(&mut session, CodeCommand::Scene);
+        typed(&mut session, "{");
+        session.apply(Action::New, &registry);
+        assert_eq!(session.questions.open, Some(Question::UnsavedTexts(Box::new(Action::New))));
+        session.apply(Action::Answer(Answer::Cancel), &registry);
+        assert_eq!(&*of(&session).text, "{");
+        session.apply(Action::New, &registry);
+        session.apply(Action::Answer(Answer::Discard), &registry);
+        assert!(session.questions.open.is_none() && !of(&session).is_unsaved());
+    }
+
+    #[test]
+    fn the_json_of_a_scene_that_an_earlier_window_left_is_continued() {
+        let mut session = Session::default();
+        let kept = KeptCode { path: OF_SCENE.into(), text: "{".into(), when: "5 minutes ago".to_owned() };
+        session.offer_code(vec![kept]);
+        assert!(session.messages.last().is_some_and(|note| note.text.contains(OF_SCENE)));
+        assert_eq!(command(&mut session, CodeCommand::Recover(OF_SCENE.into())), []);
+        assert_eq!((&of(&session).of, &*of(&session).text), (&CodeOf::Scene, "{"));
+        assert!(of(&session).is_unsaved());
     }
 
     #[test]

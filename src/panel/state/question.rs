@@ -16,6 +16,8 @@ use crate::{
 pub enum Question {
     /// The requested action would lose unsaved changes.
     Unsaved(Box<Action>),
+    /// The requested action would lose unsaved changes of texts in the editor.
+    UnsavedTexts(Box<Action>),
     /// A file is missing parts that have defaults.
     MissingParts {
         /// The file.
@@ -109,7 +111,10 @@ impl Questions {
     /// True if the user is asked about unsaved changes, or is saving them, because the window closes.
     #[must_use]
     pub fn is_quitting(&self) -> bool {
-        let asked = matches!(&self.open, Some(Question::Unsaved(then)) if **then == Action::Quit);
+        let asked = matches!(
+            &self.open,
+            Some(Question::Unsaved(then) | Question::UnsavedTexts(then)) if **then == Action::Quit
+        );
         asked || self.after_save == Some(Action::Quit)
     }
 
@@ -137,6 +142,10 @@ impl Session {
             Action::Reload => self.path.is_none(),
             _ => false,
         };
+        if !is_free && !self.names_at_risk(&action).is_empty() {
+            self.questions.open = Some(Question::UnsavedTexts(Box::new(action)));
+            return;
+        }
         if self.is_dirty() && !is_free {
             // The question is about the user's own document, so show that.
             self.park_lesson();
@@ -177,6 +186,11 @@ impl Session {
     fn answer(&mut self, answer: Answer, registry: &Registry) {
         let Some(question) = self.questions.open.take() else { return };
         match (question, answer) {
+            (Question::UnsavedTexts(then), Answer::Keep) => self.show_at_risk(&then),
+            (Question::UnsavedTexts(then), Answer::Discard) => {
+                self.forget_at_risk(&then);
+                self.unless_unsaved(*then, registry);
+            }
             (Question::Unsaved(then), Answer::Discard) => self.confirmed(*then, registry),
             (Question::Unsaved(then), Answer::Save) => {
                 self.questions.after_save = Some(*then);
