@@ -67,22 +67,8 @@ type Words = (&'static str, String, Vec<(String, String)>, Vec<(&'static str, An
 fn words(session: &Session, question: &Question) -> Words {
     match question {
         Question::Recover(offer) => recovery(session, offer),
-        Question::Unsaved(_) => (
-            "Save the changes?",
-            format!("“{}” has unsaved changes.", session.title()),
-            Vec::new(),
-            vec![("Save", Answer::Save), ("Don't save", Answer::Discard), ("Cancel", Answer::Cancel)],
-        ),
-        Question::UnsavedTexts(then) => (
-            "Lose the changes?",
-            format!("The panel Code has unsaved changes in {}.", listed(&session.names_at_risk(then), "and")),
-            Vec::new(),
-            vec![
-                ("Show the text", Answer::Keep),
-                ("Don't save", Answer::Discard),
-                ("Cancel", Answer::Cancel),
-            ],
-        ),
+        Question::Unsaved(_) => unsaved(session),
+        Question::UnsavedTexts(then) => unsaved_texts(session, then),
         Question::MissingParts { path, parts, .. } => {
             let what = if parts.len() == 1 { "a part" } else { "parts" };
             (
@@ -129,6 +115,27 @@ fn words(session: &Session, question: &Question) -> Words {
             ],
         ),
     }
+}
+
+/// The question about unsaved changes of the scene.
+fn unsaved(session: &Session) -> Words {
+    (
+        "Save the changes?",
+        format!("“{}” has unsaved changes.", session.title()),
+        Vec::new(),
+        vec![("Save", Answer::Save), ("Don't save", Answer::Discard), ("Cancel", Answer::Cancel)],
+    )
+}
+
+/// The question about unsaved changes of texts in the editor.
+fn unsaved_texts(session: &Session, then: &Action) -> Words {
+    let names = session.names_at_risk(then);
+    (
+        "Lose the changes?",
+        format!("The panel Code has unsaved changes in {}.", listed(&names, "and")),
+        Vec::new(),
+        vec![("Show the text", Answer::Keep), ("Don't save", Answer::Discard), ("Cancel", Answer::Cancel)],
+    )
 }
 
 /// The question whether a file that exists is to be replaced.

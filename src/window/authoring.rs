@@ -24,9 +24,6 @@ use crate::{
 pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Option<PathBuf> {
     let (said, folder) = match effect {
         Effect::NewModel { of, id, name } => (new_model(session, registry, of, id, name), None),
-        Effect::SaveMaterial { material, overwrite } => {
-            return save_material(session, registry, material, *overwrite);
-        }
         Effect::AdoptModel(path) => (adopt(&mut session.authoring, registry, path), None),
         Effect::ExportShaders(folder) => match assets::export(folder, registry) {
             Ok(exported) => (Ok(told(&exported, folder)), Some(folder.clone())),
@@ -49,37 +46,27 @@ fn models_folder(registry: &Registry) -> Result<PathBuf, String> {
     })
 }
 
-/// Saves a material beside the folder of custom models; asks before it replaces another. Changes no folder.
-fn save_material(
-    session: &mut Session,
-    registry: &Registry,
-    material: &Material,
-    overwrite: bool,
-) -> Option<PathBuf> {
+/// Saves a material beside the folder of custom models; asks before it replaces another.
+pub(super) fn save_material(session: &mut Session, registry: &Registry, material: Material, overwrite: bool) {
     let save = if overwrite { materials::replace } else { materials::save };
-    let folder = match models_folder(registry) {
-        Ok(models) => materials::beside(&models),
-        Err(_) => {
-            let text = "There is no folder for materials: name one for models with `lcm --models FOLDER`.";
-            session.say(Severity::Error, text);
-            return None;
-        }
+    let Ok(models) = models_folder(registry) else {
+        let text = "There is no folder for materials: name one for models with `lcm --models FOLDER`.";
+        return session.say(Severity::Error, text);
     };
-    match save(material, &folder, registry) {
+    match save(&material, &materials::beside(&models), registry) {
         Ok(path) => {
             session.materials.saved += 1;
             session.say(Severity::Info, format!("{} was saved: {}.", material.name, path.shown()));
         }
         Err(NotSaved::Taken(path)) => {
-            session.questions.ask(Question::ReplaceMaterial { material: Box::new(material.clone()), path });
+            session.questions.ask(Question::ReplaceMaterial { material: Box::new(material), path });
         }
         Err(why) => {
             session.say(Severity::Error, format!("{} was not saved: {why}.", material.name));
             // Asks again, with the typed name.
-            session.materials.draft = Some(Box::new(material.clone()));
+            session.materials.draft = Some(Box::new(material));
         }
     }
-    None
 }
 
 /// Writes the file of a model, which is selected as soon as it is read. `taken` says what to do if there is such a file.

@@ -77,6 +77,9 @@ impl Work<'_> {
                 self.sheets.begin((subject, path), session, registry, wake)
             }
             Effect::CancelSheet => self.sheets.0.cancel(),
+            Effect::SaveMaterial { material, overwrite } => {
+                authoring::save_material(session, registry, *material, overwrite);
+            }
             Effect::CheckLaws(model) => self.laws.begin(&model, registry.folders(), wake),
             other => return Some(other),
         }
@@ -132,10 +135,7 @@ pub(super) fn carry_out(
             Effect::OpenManual => show_manual(&mut session),
             Effect::Reveal(folder) => session.warn(exports::reveal(&folder)),
             dialog @ Effect::Pick(_) => session.wanted_dialog = Some(dialog),
-            model @ (Effect::NewModel { .. }
-            | Effect::SaveMaterial { .. }
-            | Effect::AdoptModel(_)
-            | Effect::ExportShaders(_)) => {
+            model @ (Effect::NewModel { .. } | Effect::AdoptModel(_) | Effect::ExportShaders(_)) => {
                 if let Some(folder) = authoring::write(&model, &mut session, &registry) {
                     commands.queue(move |world: &mut World| shaders::move_to(world, &folder));
                 }

@@ -25,7 +25,7 @@ pub(super) fn model_name(ui: &mut Ui, model: &ModelEntry) {
 /// The button that opens the code of a model in the panel *Code*; for a built-in one it offers to copy the model as a
 /// file.
 pub(super) fn edit_code(ui: &mut Ui, id: &str, context: &mut PanelContext<'_>) {
-    let button = ui.add(Button::new(RichText::new("Edit code").small().color(Palette::here(ui).weak)));
+    let button = ui.small_button("Edit code");
     let help = "Opens the code of this model in the panel Code; a built-in one is first copied as a file.";
     // The key is for the model at the top of the window, which need not be that of this object.
     context.on_click(&button.on_hover_text(help), || Action::Code(CodeCommand::ModelOf(id.to_owned())));

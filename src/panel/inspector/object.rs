@@ -79,7 +79,6 @@ impl Shown<'_> {
                 let fixed = self.fixed(Object::reflection_model).or(self.fixed(Object::shading_model));
                 let chosen = model_override::control(ui, session, registry, object, fixed);
                 context.edits(chosen.map(|(field, id)| Edit::put(part, field, id)));
-                edit_code(ui, session.scene().model_of(object), context);
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     if let Some(model) = model {
                         model_name(ui, model);
@@ -89,7 +88,10 @@ impl Shown<'_> {
         });
         match model {
             Some(model) => {
-                model_author(ui, model);
+                ui.horizontal_wrapped(|ui| {
+                    model_author(ui, model);
+                    edit_code(ui, model.declaration.id, context);
+                });
                 equation(ui, model);
                 terms(ui, model, context);
             }

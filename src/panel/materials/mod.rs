@@ -41,12 +41,20 @@ struct Question {
     reloaded: Option<Reloaded>,
 }
 
+/// The places of what a search finds.
+struct Found {
+    materials: Vec<usize>,
+    broken: Vec<usize>,
+}
+
 /// See the module.
 #[derive(Default)]
 pub(super) struct MaterialPanel {
     library: Mutex<Background<Question, Arc<Library>>>,
     opened: u64,
     search: String,
+    /// What was found last, by what was typed and in which list.
+    found: Option<(String, Arc<Library>, Arc<Found>)>,
     /// The material that is being dragged.
     dragged: Option<Material>,
 }
@@ -60,8 +68,9 @@ impl MaterialPanel {
             ui.weak("Reading the materials…");
             return;
         };
-        let found = found(&library.materials, &self.search, context.registry());
-        let broken: Vec<_> = library.broken.iter().filter(|broken| is_named(broken, &self.search)).collect();
+        let all = self.found(&library, context.registry());
+        let found: Vec<_> = all.materials.iter().filter_map(|i| library.materials.get(*i)).collect();
+        let broken: Vec<_> = all.broken.iter().filter_map(|i| library.broken.get(*i)).collect();
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_max_width(ui.available_width() - 8.0);
             self::broken(ui, &broken);
@@ -97,6 +106,21 @@ impl MaterialPanel {
             Some(move || Arc::new(Library::read(folder.as_deref(), &registry)))
         });
         library.shown.as_ref().map(|(_, library)| library.clone())
+    }
+
+    /// What the search finds, sought anew for another search or another list.
+    fn found(&mut self, library: &Arc<Library>, registry: &Registry) -> Arc<Found> {
+        let known =
+            self.found.take().filter(|(search, of, _)| *search == self.search && Arc::ptr_eq(of, library));
+        let (.., found) = self.found.insert(known.unwrap_or_else(|| {
+            let broken = library.broken.iter().enumerate().filter(|(_, one)| is_named(one, &self.search));
+            let found = Found {
+                materials: found(&library.materials, &self.search, registry),
+                broken: broken.map(|(i, _)| i).collect(),
+            };
+            (self.search.clone(), library.clone(), Arc::new(found))
+        }));
+        found.clone()
     }
 
     /// The search, and the buttons.
@@ -210,23 +234,24 @@ fn model_name<'a>(material: &'a Material, registry: &'a Registry) -> &'a str {
     registry.model(id).map_or(id, |model| model.declaration.name)
 }
 
-/// The materials that a search finds, the best first; without a search all in their order.
-fn found<'m>(all: &'m [Material], search: &str, registry: &Registry) -> Vec<&'m Material> {
+/// The places of the materials that a search finds, the best first; without a search all in their order.
+fn found(all: &[Material], search: &str, registry: &Registry) -> Vec<usize> {
     if search.trim().is_empty() {
-        return all.iter().collect();
+        return (0..all.len()).collect();
     }
     let more = |m: &Material| {
         let texts = [m.description.as_deref(), m.source.as_deref(), Some(&m.reflection_model)];
         let texts: Vec<_> = texts.into_iter().flatten().chain([model_name(m, registry)]).collect();
         texts.join(" ")
     };
-    let mut found: Vec<_> = all.iter().filter_map(|m| Some((rank(&m.name, &more(m), search)?, m))).collect();
+    let fits = |(i, m): (usize, &Material)| Some((rank(&m.name, &more(m), search)?, i));
+    let mut found: Vec<_> = all.iter().enumerate().filter_map(fits).collect();
     // Letters with gaps fit by chance; they count where nothing else does.
     if found.iter().any(|(rank, _)| *rank > 0) {
         found.retain(|(rank, _)| *rank > 0);
     }
     found.sort_by_key(|(rank, _)| -rank);
-    found.into_iter().map(|(_, material)| material).collect()
+    found.into_iter().map(|(_, i)| i).collect()
 }
 
 /// True if a search may mean a file.

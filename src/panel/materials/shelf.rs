@@ -9,11 +9,7 @@ use std::{
 use bevy_egui::egui::{ColorImage, TextureHandle, TextureOptions};
 
 use super::super::{kept, prelude::*};
-use crate::{
-    caught::catch,
-    materials::{Material, to_json},
-    reference,
-};
+use crate::{caught::catch, materials::Material, reference};
 
 /// Pixels across a picture.
 const SIDE: u32 = 128;
@@ -42,7 +38,7 @@ struct Store {
 /// The picture of a material. Models whose files were reloaded are drawn again.
 pub(super) fn picture(ctx: &Context, material: &Material, session: &Session, registry: &Registry) -> Picture {
     let id = &material.reflection_model;
-    let mut key = to_json(material, registry);
+    let mut key = format!("{id} {:?}", material.material);
     if registry.custom_file(id).is_some() {
         if registry.unread_file(id).is_some() {
             return Picture::Failed("The picture is drawn once an object has had this custom model.".into());

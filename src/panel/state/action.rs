@@ -275,10 +275,7 @@ impl Session {
             Action::Take(command) => self.take(command),
             Action::Plot(command) => self.plot(command),
             Action::Lesson(command) => self.lesson(command, registry),
-            Action::View(ViewChange::Terms(terms)) if self.active() > 0 => {
-                self.override_terms(terms, registry)
-            }
-            Action::View(change) => self.change_view(change),
+            Action::View(change) => self.change_active_view(change, registry),
             Action::Pin => self.toggle_pin(),
             // The panels have made a movement of it, or a message.
             Action::LookFromSide | Action::Focus(_) => {}

@@ -9,6 +9,7 @@ use crate::{
     channel::DebugChannel,
     declared::{choice, with_defaults},
     optics::TermSelection,
+    registry::Registry,
     scene::variant::MAX_VARIANTS,
 };
 
@@ -267,6 +268,14 @@ impl Session {
             ViewChange::Bottom(false)
         } else {
             ViewChange::BottomTab(MESSAGES_TAB.to_owned())
+        }
+    }
+
+    /// Changes the view. The terms of another view than the first are its own.
+    pub(super) fn change_active_view(&mut self, change: ViewChange, registry: &Registry) {
+        match change {
+            ViewChange::Terms(terms) if self.active() > 0 => self.override_terms(terms, registry),
+            change => self.change_view(change),
         }
     }
 

@@ -290,3 +290,27 @@ fn keys_of_edits_are_those_of_each_part() {
     window.act(Action::Edit(room));
     assert_eq!(window.document().done(), 0);
 }
+
+#[test]
+fn a_model_chosen_at_the_top_is_that_of_all_selected_objects_and_materials_go_along() {
+    let mut window = Window::new(3);
+    window.act(Action::ChooseModel("disney".to_owned()));
+    for i in [0, 1] {
+        window.act(Action::Edit(Edit::material(Part::Object(i), "clearcoat", Value::Number(0.5))));
+    }
+    window.select(&[O(0), O(1)]);
+    window.one_step(Action::ChooseModel("openpbr".to_owned()));
+    let models: Vec<_> = window.document().objects.iter().map(|o| o.reflection_model.as_deref()).collect();
+    assert_eq!(models, [Some("openpbr"), Some("openpbr"), None]);
+    assert_eq!(window.document().reflection_model, "disney", "the scene keeps its model");
+    assert_eq!(window.session.model_shown(), "openpbr");
+    let coat =
+        |window: &Window, i: usize| window.document().objects[i].material.0.get("coat_weight").cloned();
+    let expected = [Some(Value::Number(0.125)), Some(Value::Number(0.125)), None];
+    assert_eq!([0, 1, 2].map(|i| coat(&window, i)), expected);
+    assert!(window.said().contains("clear coat becomes coat"), "{}", window.said());
+    // A single object without a model of its own follows the scene, which gets the model.
+    window.act(Action::Select(O(2)));
+    window.act(Action::ChooseModel("phong".to_owned()));
+    assert_eq!(window.document().reflection_model, "phong");
+}

@@ -1,7 +1,7 @@
 //! The editor in the window, by keyboard alone.
 
 use bevy_egui::egui::{Event, Key, Modifiers};
-use lights_camera_models::panel::state::{Action, CodeCommand, CodeOf, OpenCode, Session};
+use lights_camera_models::panel::state::{Action, CodeCommand, CodeOf, ModelCommand, OpenCode, Session};
 
 use crate::window::panels::Bench;
 
@@ -80,4 +80,15 @@ fn places_are_found_and_replaced_from_the_keyboard() {
     assert_eq!(open(&bench).text.matches("place").count(), before + count);
     bench.key(Key::Escape, Modifiers::NONE);
     assert!(bench.session.has_unsaved_code());
+}
+
+#[test]
+fn the_button_beside_a_model_edits_its_code_and_copies_a_built_in_one() {
+    let mut bench = Bench::with_model("phong");
+    bench.click("Edit code");
+    let said = bench.session.messages.last().map(|note| note.text.clone()).unwrap_or_default();
+    assert!(said.contains("copy the model as a file"), "{said}");
+    assert!(bench.session.authoring.draft.is_none());
+    bench.apply(Action::Model(ModelCommand::DuplicateOf("phong".to_owned())));
+    assert_eq!(bench.session.authoring.draft.as_ref().and_then(|draft| draft.of.as_deref()), Some("phong"));
 }
