@@ -1,7 +1,7 @@
 //! The levels of an explanation: the sentence, the equation, every factor; the origin of numbers; what would
 //! change the pixel; and two views side by side.
 
-use bevy_egui::egui::{Key, Rect, Shape, accesskit::Role, vec2};
+use bevy_egui::egui::{Key, accesskit::Role, vec2};
 use lights_camera_models::{
     document::Selection,
     panel::state::{Action, EXPLAIN_TAB, Session, ViewChange},
@@ -64,16 +64,8 @@ fn nothing_in_the_line_above_the_sentence_lies_over_something_else() {
         let rows = field.top().min(copy.top()) - 4.0..copy.bottom() + 4.0;
         let case = format!("{width} points at {scale} %: {field:?} {copy:?}");
         assert_eq!(if copy.top() > field.bottom() { 2 } else { 1 }, lines, "{case}");
-        let texts: Vec<(String, Rect)> = bench
-            .shapes()
-            .into_iter()
-            .filter_map(|shape| match shape {
-                Shape::Text(text) if rows.contains(&text.pos.y) => {
-                    Some((text.galley.text().to_owned(), text.visual_bounding_rect()))
-                }
-                _ => None,
-            })
-            .collect();
+        let mut texts = bench.texts_in_sight();
+        texts.retain(|(_, place)| rows.contains(&place.top()));
         for known in ["Pixel", "Copy", "Pin", "Beside B", "Equation"] {
             assert!(texts.iter().any(|(text, _)| text == known), "{case}: {known} of {texts:?}");
         }

@@ -163,6 +163,8 @@ pub struct Bench {
     /// The text last put on the clipboard.
     pub copied: Option<String>,
     shapes: Vec<egui::Shape>,
+    /// What may be seen of each of them.
+    clips: Vec<Rect>,
     painter: Painter,
 }
 
@@ -203,6 +205,7 @@ impl Bench {
             effects: Vec::new(),
             copied: None,
             shapes: Vec::new(),
+            clips: Vec::new(),
             painter: Painter::default(),
         };
         bench.settle();
@@ -253,6 +256,7 @@ impl Bench {
             }
         }
         self.shapes = output.shapes.iter().map(|clipped| clipped.shape.clone()).collect();
+        self.clips = output.shapes.iter().map(|clipped| clipped.clip_rect).collect();
         self.painter.take(&mut output.textures_delta);
         self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point)
     }
@@ -358,6 +362,18 @@ impl Bench {
     /// The texts painted by the last frame.
     pub fn texts(&mut self) -> Vec<String> {
         self.texts_within(Rect::EVERYTHING)
+    }
+
+    /// The texts of the last frame that are in sight, each with the place that it takes up.
+    pub fn texts_in_sight(&mut self) -> Vec<(String, Rect)> {
+        self.frame(Vec::new());
+        let in_sight = |(shape, clip): (&egui::Shape, &Rect)| match shape {
+            egui::Shape::Text(text) if clip.intersects(text.visual_bounding_rect()) => {
+                Some((text.galley.text().to_owned(), text.visual_bounding_rect()))
+            }
+            _ => None,
+        };
+        self.shapes.iter().zip(&self.clips).filter_map(in_sight).collect()
     }
 
     /// The texts over the picture.
