@@ -163,7 +163,10 @@ impl Session {
     /// Applies a command for the editor.
     pub(super) fn code(&mut self, command: CodeCommand, registry: &Registry) {
         match command {
-            CodeCommand::Model => self.edit_model_here(&self.model_shown().to_owned(), registry),
+            CodeCommand::Model => {
+                let id = self.model_shown().to_owned();
+                self.edit_model_here(&id, registry)
+            }
             CodeCommand::ModelOf(id) => self.edit_model_here(&id, registry),
             CodeCommand::File(path, line) => self.edit_file_here(path, line),
             CodeCommand::Scene => self.edit_scene_here(registry),
