@@ -89,7 +89,7 @@ impl Explainer {
         } else if normal.dot(eye - point) <= 0.0 {
             Sight::Away
         } else {
-            let front = towards(&mut self.meshes, shot, [eye, point])
+            let front = towards(&mut self.meshes, scene, registry, [eye, point])
                 .filter(|(_, place)| eye.distance(*place) + nearer < eye.distance(point));
             front.map_or(Sight::Clear, |(other, _)| Sight::Behind(other))
         };

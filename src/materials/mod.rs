@@ -51,6 +51,10 @@ pub const MAX_FILES: usize = 1000;
 /// Maximum number of problems named for a file.
 pub const MAX_PROBLEMS: usize = 100;
 
+/// Said where a material cannot be saved for lack of a folder.
+pub(crate) const NO_FOLDER: &str =
+    "There is no folder for materials: name one for models with `lcm --models FOLDER`.";
+
 /// The model that shows a measured metal: it calculates with n and k.
 const METAL: &str = "microfacet";
 /// The model that shows a measured dielectric: a clear body of it.

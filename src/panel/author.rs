@@ -2,8 +2,6 @@
 
 use std::ops::DerefMut;
 
-use bevy_egui::egui::TextEdit;
-
 use super::{
     draft, keys,
     prelude::*,
@@ -112,22 +110,9 @@ fn ask(ui: &mut Ui, draft: &ModelDraft, context: &mut PanelContext<'_>) {
 
 /// The field for the name. It takes the focus when the dialog opens.
 fn name_field(ui: &mut Ui, draft: &ModelDraft, is_right: bool, context: &mut PanelContext<'_>) -> Response {
-    let palette = Palette::here(ui);
-    let mut text = draft.name.clone();
-    let stroke = Stroke::new(1.5, if is_right { palette.accent } else { palette.error });
-    let frame = egui::Frame::new().fill(palette.field).stroke(stroke).corner_radius(4.0);
-    let id = Id::new("model draft id");
-    let edit = TextEdit::singleline(&mut text).id(id).desired_width(f32::INFINITY);
-    let edit = edit.frame(frame.inner_margin(egui::Margin::symmetric(6, 5))).show(ui);
-    let response = edit.response.response;
-    theme::names_field(&response, "Name of the model", [&draft.name, &text, ""]);
-    if draft::is_new(ui, DRAFT) {
-        response.request_focus();
-        // Typing replaces the suggested name.
-        theme::select_all(ui, id, &draft.name);
-    }
-    if response.changed() {
-        context.act(Action::Model(ModelCommand::Type(text)));
+    let (response, typed) = draft::name_field(ui, DRAFT, "Name of the model", &draft.name, is_right);
+    if let Some(name) = typed {
+        context.act(Action::Model(ModelCommand::Type(name)));
     }
     response
 }

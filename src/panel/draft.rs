@@ -1,6 +1,6 @@
 //! Windows that ask for something beside the picture, without blocking it.
 
-use bevy_egui::egui::Window;
+use bevy_egui::egui::{TextEdit, Window};
 
 use super::prelude::*;
 
@@ -37,6 +37,33 @@ pub(super) fn content(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
         let reached = focused.filter(|on| on.gained_focus() && ui.min_rect().contains_rect(on.rect));
         reached.inspect(|on| on.scroll_to_me(None));
     });
+}
+
+/// The field for a name in such a window, which says what it is for, and the name once it is changed. It takes the focus when
+/// the window opens.
+pub(super) fn name_field(
+    ui: &mut Ui,
+    window: &str,
+    says: &str,
+    name: &str,
+    is_right: bool,
+) -> (Response, Option<String>) {
+    let palette = Palette::here(ui);
+    let mut text = name.to_owned();
+    let stroke = Stroke::new(1.5, if is_right { palette.accent } else { palette.error });
+    let frame = egui::Frame::new().fill(palette.field).stroke(stroke).corner_radius(4.0);
+    let id = Id::new((window, "name"));
+    let edit = TextEdit::singleline(&mut text).id(id).desired_width(f32::INFINITY);
+    let edit = edit.frame(frame.inner_margin(egui::Margin::symmetric(6, 5))).show(ui);
+    let response = edit.response.response;
+    theme::names_field(&response, says, [name, &text, ""]);
+    if is_new(ui, window) {
+        response.request_focus();
+        // Typing replaces the suggested name.
+        theme::select_all(ui, id, name);
+    }
+    let changed = response.changed().then_some(text);
+    (response, changed)
 }
 
 /// The buttons of such a window: what it is for, which stands out if it is possible now, and *Cancel*.

@@ -11,7 +11,7 @@ use super::{
     explain::has_sides,
     lesson::point,
     prelude::*,
-    rank::rank,
+    rank::{leave_out_chance, rank},
 };
 use crate::{
     parameter::{Parameter, Values},
@@ -154,10 +154,7 @@ fn listed<'f>(ctx: &Context, all: &'f [Found]) -> Vec<(&'static str, &'f Found)>
 fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> {
     let fits = |found: &'f Found| Some((rank(&found.title, &found.more, search)?, found));
     let mut found: Vec<_> = all.iter().filter_map(fits).collect();
-    // Letters with gaps fit by chance; they count where nothing else does.
-    if found.iter().any(|(rank, _)| *rank > 0) {
-        found.retain(|(rank, _)| *rank > 0);
-    }
+    leave_out_chance(&mut found);
     found.sort_by_key(|(rank, found)| (-rank, found.off));
     found.into_iter().map(|(_, found)| (found.heading, found)).collect()
 }

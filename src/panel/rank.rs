@@ -53,6 +53,13 @@ fn fit(name: &[String], word: &str) -> Option<i32> {
     with_gaps(&name.join(" ").chars().collect::<Vec<_>>(), &letters)
 }
 
+/// Leaves out what is found by letters with gaps, which fit by chance: they count where nothing else does.
+pub(super) fn leave_out_chance<T>(found: &mut Vec<(i32, T)>) {
+    if found.iter().any(|(rank, _)| *rank > 0) {
+        found.retain(|(rank, _)| *rank > 0);
+    }
+}
+
 /// The score of a search against a name, or else what more there is to say; below 0 if it takes letters with gaps, `None` if a
 /// word of the search fits nothing.
 pub(super) fn rank(name: &str, more: &str, search: &str) -> Option<i32> {

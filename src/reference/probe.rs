@@ -20,7 +20,8 @@ use super::{
 use crate::{
     caught::{lock, unpoisoned},
     reflection::Surface,
-    scene::{Observer, observer::clip_from_room},
+    registry::Registry,
+    scene::{Observer, Scene, observer::clip_from_room},
     shading::{Corner, Lighting, PhongShading, Shading, Stage, Varying},
 };
 
@@ -83,7 +84,7 @@ struct Found<'a> {
 pub(crate) fn probe(store: &mut MeshStore, shot: Shot, pixel: [u32; 2]) -> Option<Probe> {
     let size = [shot.settings.width as usize, shot.settings.height as usize];
     let pixel = pixel.map(|c| c as usize);
-    let found = first(store, shot, &shot.scene.observer, size, pixel)?;
+    let found = first(store, (shot.scene, shot.registry), &shot.scene.observer, size, pixel)?;
     let screen = Screen::of_pixel(size[0], size[1], pixel);
     Some(shaded(&found, shot, &At::Pixel(&screen, pixel)))
 }
@@ -108,12 +109,17 @@ pub(crate) fn probe_point(
 }
 
 /// The object and the position that an eye sees in the direction of a point.
-pub(crate) fn towards(store: &mut MeshStore, shot: Shot, [eye, point]: [Vec3; 2]) -> Option<(usize, Vec3)> {
+pub(crate) fn towards(
+    store: &mut MeshStore,
+    scene: &Scene,
+    registry: &Registry,
+    [eye, point]: [Vec3; 2],
+) -> Option<(usize, Vec3)> {
     /// Field of view of a picture of one pixel, in degrees.
     const NARROW: f32 = 0.1;
     let observer = Observer { field_of_view: NARROW, ..Observer::at(eye, point - eye) };
     let Found { object, posed, face: (_, corners), weights, .. } =
-        first(store, shot, &observer, [1, 1], [0, 0])?;
+        first(store, (scene, registry), &observer, [1, 1], [0, 0])?;
     let [a, b, c] = corners.map(|i| posed.positions[i as usize]);
     Some((object, a * weights.x + b * weights.y + c * weights.z))
 }
@@ -121,7 +127,7 @@ pub(crate) fn towards(store: &mut MeshStore, shot: Shot, [eye, point]: [Vec3; 2]
 /// The nearest triangle at a pixel.
 fn first<'a>(
     store: &mut MeshStore,
-    Shot { scene, registry, .. }: Shot<'a>,
+    (scene, registry): (&'a Scene, &'a Registry),
     observer: &Observer,
     size: [usize; 2],
     pixel: [usize; 2],

@@ -50,8 +50,7 @@ fn models_folder(registry: &Registry) -> Result<PathBuf, String> {
 pub(super) fn save_material(session: &mut Session, registry: &Registry, material: Material, overwrite: bool) {
     let save = if overwrite { materials::replace } else { materials::save };
     let Ok(models) = models_folder(registry) else {
-        let text = "There is no folder for materials: name one for models with `lcm --models FOLDER`.";
-        return session.say(Severity::Error, text);
+        return session.say(Severity::Error, materials::NO_FOLDER);
     };
     match save(&material, &materials::beside(&models), registry) {
         Ok(path) => {

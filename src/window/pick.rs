@@ -15,7 +15,7 @@ use crate::{
         marks::{self, Lens},
         state::{Action, Cell, CompareCommand, PictureArea, Session},
     },
-    reference::{Settings, Shot, meshes::MeshStore, probe::towards},
+    reference::{meshes::MeshStore, probe::towards},
     registry::Registry,
     render::{entities::CurrentScene, schedule::LabFrame},
     scene::{Light, Scene, emitter},
@@ -102,9 +102,7 @@ pub(super) const CTRL: [KeyCode; 2] = if cfg!(target_os = "macos") {
 /// The object that a ray meets first, and its distance, as the CPU renderer sees it: the meshes of the window are on the
 /// GPU alone.
 fn object_at(scene: &Scene, registry: &Registry, ray: Ray3d, meshes: &mut MeshStore) -> Option<(usize, f32)> {
-    let settings = Settings { width: 1, height: 1, samples: 1, ..Settings::default() };
-    let sight = [ray.origin, ray.origin + *ray.direction];
-    let (object, there) = towards(meshes, Shot::new(scene, registry, &settings), sight)?;
+    let (object, there) = towards(meshes, scene, registry, [ray.origin, ray.origin + *ray.direction])?;
     Some((object, there.distance(ray.origin)))
 }
 

@@ -1,11 +1,9 @@
 //! The dialog that asks for the name of a material to be saved.
 
-use bevy_egui::egui::TextEdit;
-
 use super::super::{draft, prelude::*, state::MaterialCommand};
 use crate::{
     custom::id_of_name,
-    materials::{EXTENSION, Material, beside},
+    materials::{EXTENSION, Material, NO_FOLDER, beside},
 };
 
 /// Id of the dialog.
@@ -28,27 +26,14 @@ fn ask(ui: &mut Ui, material: &Material, context: &mut PanelContext<'_>) {
     let palette = Palette::here(ui);
     let folder = context.registry().custom_folder().map(beside);
     let checked = id_of_name(&material.name).map_err(|bad| bad.to_string()).and_then(|id| {
-        let folder = folder.ok_or_else(|| {
-            "There is no folder for materials: name one for models with `lcm --models FOLDER`.".to_owned()
-        })?;
+        let folder = folder.ok_or(NO_FOLDER)?;
         Ok(folder.join(id).with_extension(EXTENSION))
     });
     ui.label("Name");
-    let mut text = material.name.clone();
-    let stroke = Stroke::new(1.5, if checked.is_ok() { palette.accent } else { palette.error });
-    let frame = egui::Frame::new().fill(palette.field).stroke(stroke).corner_radius(4.0);
-    let id = Id::new("material draft name");
-    let edit = TextEdit::singleline(&mut text).id(id).desired_width(f32::INFINITY);
-    let edit = edit.frame(frame.inner_margin(egui::Margin::symmetric(6, 5))).show(ui);
-    let response = edit.response.response;
-    theme::names_field(&response, "Name of the material", [&material.name, &text, ""]);
-    if draft::is_new(ui, DRAFT) {
-        response.request_focus();
-        // Typing replaces the suggested name.
-        theme::select_all(ui, id, &material.name);
-    }
-    if response.changed() {
-        context.act(Action::Material(MaterialCommand::Type(text)));
+    let says = "Name of the material";
+    let (response, typed) = draft::name_field(ui, DRAFT, says, &material.name, checked.is_ok());
+    if let Some(name) = typed {
+        context.act(Action::Material(MaterialCommand::Type(name)));
     }
     ui.add_space(2.0);
     // Fixed height for either message, so that nothing below moves.
@@ -63,8 +48,7 @@ fn ask(ui: &mut Ui, material: &Material, context: &mut PanelContext<'_>) {
             }
         }
     });
-    let model = &material.reflection_model;
-    let model = context.registry().model(model).map_or(model.as_str(), |model| model.declaration.name);
+    let model = super::model_name(material, context.registry());
     let what =
         format!("It appears in the panel Materials, with the model {model} and the values of the object.");
     theme::note(ui, what);

@@ -6,14 +6,19 @@ use std::{path::Path, sync::Mutex, time::Duration};
 use bevy_egui::egui::{LayerId, Order, TextEdit};
 
 use super::{
-    cover::is_over_picture, draft::is_new, kept::Background, marks::Lens, prelude::*, rank::rank,
+    cover::is_over_picture,
+    draft::is_new,
+    kept::Background,
+    marks::Lens,
+    prelude::*,
+    rank::{leave_out_chance, rank},
     state::MaterialCommand,
 };
 use crate::{
     caught::lock,
     library::status::Reloaded,
     materials::{Broken, Library, Material, Origin, beside},
-    reference::{Settings, Shot, meshes::MeshStore, probe::towards},
+    reference::{meshes::MeshStore, probe::towards},
 };
 use shelf::Picture;
 
@@ -217,9 +222,8 @@ impl MaterialPanel {
         let cell = context.area().cell_at(at).copied();
         let lens = Lens::of(session, cell.map_or(context.area().frame, |cell| cell.rect));
         let ray = lens.ray(at);
-        let settings = Settings { width: 1, height: 1, samples: 1, ..Settings::default() };
-        let shot = Shot::new(session.scene(), registry, &settings);
-        let Some((object, _)) = towards(&mut MeshStore::default(), shot, [ray.eye, ray.eye + ray.way]) else {
+        let sight = [ray.eye, ray.eye + ray.way];
+        let Some((object, _)) = towards(&mut MeshStore::default(), session.scene(), registry, sight) else {
             return context.say("There is no object: drop the material onto one.");
         };
         if let Some(cell) = cell.filter(|cell| cell.view != session.active()) {
@@ -246,10 +250,7 @@ fn found(all: &[Material], search: &str, registry: &Registry) -> Vec<usize> {
     };
     let fits = |(i, m): (usize, &Material)| Some((rank(&m.name, &more(m), search)?, i));
     let mut found: Vec<_> = all.iter().enumerate().filter_map(fits).collect();
-    // Letters with gaps fit by chance; they count where nothing else does.
-    if found.iter().any(|(rank, _)| *rank > 0) {
-        found.retain(|(rank, _)| *rank > 0);
-    }
+    leave_out_chance(&mut found);
     found.sort_by_key(|(rank, _)| -rank);
     found.into_iter().map(|(_, i)| i).collect()
 }
