@@ -260,8 +260,24 @@ fn the_list_of_keys_has_the_groups_and_rows_in_their_order() {
     assert_eq!(
         rows("Window"),
         [
-            "Ctrl++", "Ctrl+−", "Ctrl+0", "F5", "F11", "F1", "Ctrl+F", "F8", "F7", "F9", "F6", "Shift+F6",
-            "F10", "Alt+F", "Alt+E", "Alt+V", "Alt+H"
+            "Ctrl++",
+            "Ctrl+−",
+            "Ctrl+0",
+            "F5",
+            "F11",
+            "F1",
+            "Ctrl+F",
+            "F8",
+            "F7",
+            "F9",
+            "Ctrl+Shift+M",
+            "F6",
+            "Shift+F6",
+            "F10",
+            "Alt+F",
+            "Alt+E",
+            "Alt+V",
+            "Alt+H"
         ]
         .map(str::to_owned)
     );
