@@ -15,6 +15,9 @@ use super::{
 pub struct LawReport {
     /// Id of the model.
     pub model: String,
+    /// True if it is measured: laws that it does not claim depend on its file.
+    #[serde(default)]
+    pub measured: bool,
     /// Number of responses examined.
     pub responses: usize,
     /// Number of non-finite ones among them.
@@ -96,6 +99,7 @@ impl LawReport {
         };
         Self {
             model: model.declaration.id.to_owned(),
+            measured: model.declaration.measured,
             responses: findings.responses,
             not_finite: findings.not_finite,
             first_not_finite: place(model, findings.first_not_finite.as_ref()),
@@ -133,6 +137,10 @@ impl LawReport {
             (_, true) if !self.is_finite() => "cannot be judged: some values are NaN or infinite",
             (true, true) => "claimed and kept",
             (true, false) => "claimed and BROKEN",
+            (false, true) if self.measured => {
+                "not claimed: it depends on the file, and no violation was found"
+            }
+            (false, false) if self.measured => "not claimed: it depends on the file, and this one breaks it",
             (false, true) => "not claimed, but no violation found: claim it?",
             (false, false) => "not claimed and broken",
         }

@@ -5,15 +5,16 @@
 //! `principled` is Burley's. Models that are merely similar are refused: the masking of `principled` differs
 //! from that of our metallic–roughness by up to half at grazing angles, and `roughplastic` lets light through
 //! its boundary by another law. `dielectric`, `roughdielectric` and `thindielectric` are glass, one rough boundary and
-//! thin glass, without colour.
+//! thin glass, without colour. `measured` reads the files of our `measured_rgl`.
 
 use glam::Vec3;
 
-use super::{through::Through, xml::Xml};
+use super::{super::File, through::Through, xml::Xml};
 use crate::{
+    files,
     optics::{colour::Encoding, distribution::MINIMUM_ALPHA, refraction::is_matched},
     parameter::{Value, Values},
-    reflection::{Ambient, ModelEntry},
+    reflection::{Ambient, ModelEntry, rgl},
 };
 
 /// The material of an object.
@@ -35,11 +36,13 @@ pub(super) struct Bsdf {
     pub(super) through: Through,
     /// A remaining difference.
     pub(super) note: Option<&'static str>,
+    /// A file that it references.
+    pub(super) file: Option<File>,
 }
 
 impl Bsdf {
     fn of(xml: Xml) -> Self {
-        Self { xml, brushed: false, through: Through::Nowhere, note: None }
+        Self { xml, brushed: false, through: Through::Nowhere, note: None, file: None }
     }
 }
 
@@ -63,6 +66,7 @@ const COUNTERPARTS: &[(&str, Counterpart)] = &[
     ("glass", glass),
     ("rough_dielectric", rough_dielectric),
     ("thin_glass", thin_glass),
+    ("measured_rgl", measured_rgl),
 ];
 
 /// The difference of rough facets.
@@ -100,6 +104,29 @@ impl Material<'_> {
 
 fn diffuse(reflectance: Vec3) -> Bsdf {
     Bsdf::of(Xml::plugin("bsdf", "diffuse").rgb("reflectance", reflectance))
+}
+
+/// A measurement of the RGL database, which both read.
+fn measured_rgl(m: &Material) -> Result<Bsdf, String> {
+    let Some(Value::File(named)) = m.values.0.get("rgl_file") else {
+        return Err("Mitsuba has a counterpart only of a file; choose a measurement".to_owned());
+    };
+    let Some(path) = named.path() else {
+        return Err("Mitsuba has a counterpart only of a file on disk; choose a measurement".to_owned());
+    };
+    if let Some(problem) = named.problem() {
+        return Err(problem);
+    }
+    let bytes = files::read(path, named.max_bytes()).map_err(|error| error.to_string())?;
+    if rgl::is_spectral(&bytes) {
+        return Err(
+            "Mitsuba has a counterpart in scalar_rgb only of a file with rgb, and this one has spectra"
+                .to_owned(),
+        );
+    }
+    let place = format!("measured/{:016x}.bsdf", named.digest());
+    let xml = Xml::plugin("bsdf", "measured").set("string", "filename", &place);
+    Ok(Bsdf { brushed: true, file: Some(File::new(place, bytes)), ..Bsdf::of(xml) })
 }
 
 /// A model that equals Lambert if one of its parameters is 0.

@@ -91,6 +91,9 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
             path
         });
         notes.extend(bsdf.note.map(str::to_owned));
+        let known = |file: &File| files.iter().any(|known: &File| known.path == file.path);
+        let new = bsdf.file.filter(|file| !known(file));
+        files.extend(new);
         let shape = Xml::plugin("shape", "ply").set("string", "filename", path);
         let shape = if smooth { shape } else { shape.set("boolean", "face_normals", "true") };
         file = file.says(&name).with(shape.with(to_world(object.room_from_object())).with(bsdf.xml));

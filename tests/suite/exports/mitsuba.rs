@@ -16,8 +16,9 @@ use lights_camera_models::{
     export::{Export, Progress, Request, form},
     files::Before,
     optics::TermSelection,
-    parameter::Value,
+    parameter::{NamedFile, Value},
     reference::{self, LightSamples, Picture, Settings},
+    reflection::rgl,
     registry::Registry,
     scene::{Background, Light, Object, Scene},
 };
@@ -472,4 +473,44 @@ fn what_is_different_shows() {
         println!("{name}: mean {mean:.5}");
         assert!(mean > 0.02, "{name}: {mean}");
     }
+}
+
+/// A sphere of a file of the RGL database.
+fn measured(path: &Path) -> Scene {
+    let folder = path.parent().expect("a folder");
+    let name = path.file_name().expect("a file").to_string_lossy();
+    let file = NamedFile::named(&name, folder, &rgl::FORMAT);
+    assert_eq!(file.problem(), None);
+    scene("sphere", "measured_rgl", &[("rgl_file", Value::File(file))])
+}
+
+#[test]
+fn a_measurement_goes_along_as_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("brushed.bsdf");
+    crate::helpers::tensor::write(&path, 0.4, 0.2);
+    let mut two = measured(&path);
+    two.objects.push(two.objects[0].clone());
+    let export = exported(&two);
+    let files: Vec<_> = export.files.iter().filter(|file| file.path.ends_with(".bsdf")).collect();
+    assert!(files.len() == 1 && files[0].bytes == fs::read(&path).expect("there"));
+    let xml = String::from_utf8_lossy(&export.files[0].bytes);
+    assert!(xml.contains("\"measured\"") && xml.matches(&files[0].path).count() == 2, "{xml}");
+}
+
+#[test]
+fn measurements_look_the_same_in_mitsuba() {
+    if skipped() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let [path, other] = ["brushed.bsdf", "other.bsdf"].map(|name| folder.path().join(name));
+    crate::helpers::tensor::write(&path, 0.4, 0.2);
+    crate::helpers::tensor::write(&other, 0.2, 0.4);
+    let (right, turned) = (measured(&path), measured(&other));
+    agree(&[("measured", right.clone(), 0.01), ("turned", turned.clone(), 0.01)]);
+    // The wrong twin: brushed the other way.
+    let pictures = theirs(&[&right], SAMPLES);
+    let (mean, _) = compare(&ours(&turned), &pictures[0]);
+    assert!(mean > 0.03, "{mean}");
 }

@@ -6,3 +6,4 @@ pub(crate) mod pictures;
 pub(crate) mod screen;
 pub(crate) mod skipped;
 pub(crate) mod support;
+pub(crate) mod tensor;

@@ -30,7 +30,7 @@ use lights_camera_models::{
     },
     parameter::Outside,
     recovery::Store,
-    reflection::{merl, samples},
+    reflection::{merl, rgl, samples},
     registry::Registry,
     scene::{
         Scene,
@@ -421,6 +421,20 @@ fn readers() -> Vec<Reader> {
                 let whole: Vec<u8> = counts.chain(bytes.iter().copied()).collect();
                 (merl::FORMAT.read)(&whole).map(drop).map_err(|p| p.message)
             },
+        },
+        Reader {
+            name: "tensor file",
+            around: [String::new(), String::new()],
+            pairs: &[],
+            phrases: &["tensor_file\0\u{1}\0", "\u{1}\0\0\0", "\u{5}\0phi_i", "\u{7f}\u{7f}\u{7f}\u{7f}"],
+            read: |bytes| (rgl::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "fields of a tensor file",
+            around: ["tensor_file\0\u{1}\0\u{40}\0\0\0".into(), String::new()],
+            pairs: &[],
+            phrases: &["\u{5}\0phi_i\u{1}\0\u{a}\0\0\0\0\0\0\0\0\u{1}\0\0\0\0\0\0\0", "\0\0\0\0\u{1}\0\0\0\0\0\0\0\0"],
+            read: |bytes| (rgl::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
         },
         Reader {
             name: "OBJ file",

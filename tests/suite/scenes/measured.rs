@@ -15,7 +15,7 @@ use lights_camera_models::{
     parameter::{NamedFile, Value, Values},
     progress::Progress,
     reference,
-    reflection::{brdf, merl, samples},
+    reflection::{brdf, merl, rgl, samples},
     registry::Registry,
     render::capture::gpu::{GpuRenderer, Output},
     scene::{
@@ -274,4 +274,32 @@ fn tables_of_a_file_are_calculated_on_the_command_line() {
     let refused = typed("../lost.binary");
     assert!(refused.status == Some(2) && refused.err.contains("lost.binary: "), "{}", refused.err);
     assert!(albedos.len() == 3 && albedos.iter().all(|albedo| (albedo - 1.0).abs() < 2e-3), "{}", run.out);
+}
+
+#[test]
+fn a_brushed_measurement_is_shown_by_both_renderers_and_evaluated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene_of = |name: &str, along: f32, across: f32| {
+        crate::helpers::tensor::write(&place(&folder, name), along, across);
+        let mut scene = close_up("sphere", "directional");
+        (scene.reflection_model, scene.shading_model) = ("measured_rgl".to_owned(), "phong".to_owned());
+        let file = NamedFile::named(name, folder.path(), &rgl::FORMAT);
+        assert_eq!(file.problem(), None);
+        scene.objects[0].material.set("rgl_file", Value::File(file));
+        scene
+    };
+    let (scene, turned) = (scene_of("brushed.bsdf", 0.4, 0.2), scene_of("turned.bsdf", 0.2, 0.4));
+    let mut renderer = GpuRenderer::new(96, 96, 1, Output::Linear).expect("software Vulkan is installed");
+    let picture = on_gpu(&mut renderer, &scene);
+    let d = compare(&picture, &cpu(&scene), Encoding::Srgb.decode(BACKGROUND), 1e-3);
+    assert!(d.covered > 500 && d.wrong * 1000 <= d.covered && d.edges * 50 <= d.covered, "{d:?}");
+    // The wrong twin: brushed the other way.
+    let d = compare(&picture, &cpu(&turned), Encoding::Srgb.decode(BACKGROUND), 1e-3);
+    assert!(d.wrong * 4 > d.covered, "{d:?}");
+    // The laws depend on the file, and the report says so.
+    let run =
+        lcm_in(folder.path(), &["models", "check", "measured_rgl", "--set", "rgl_file=brushed.bsdf"], b"");
+    let verdict = run.out.lines().find(|line| line.starts_with("energy conserving: "));
+    assert!(verdict.is_some_and(|line| line.contains("depends on the file")), "{} {}", run.out, run.err);
+    assert!(!run.out.contains("claim it?"), "{}", run.out);
 }
