@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use bevy_egui::egui::{
     self, Align, Button, Color32, Context, CornerRadius, FontId, FontSelection, Frame, Galley, Id, Label,
-    LayerId, Layout, Margin, Rect, Response, RichText, Stroke, Style, TextStyle, Ui, UiBuilder, Vec2,
-    WidgetInfo, WidgetType, Window, style::HandleShape, vec2,
+    LayerId, Layout, Margin, Painter, Pos2, Rect, Response, RichText, Stroke, Style, TextStyle, Ui,
+    UiBuilder, Vec2, WidgetInfo, WidgetType, Window, style::HandleShape, vec2,
 };
 
 use super::state::{Settings, Severity, ThemeChoice};
@@ -239,6 +239,26 @@ pub fn elided_within(ui: &Ui, text: &str, font: &FontId, ink: Color32, width: f3
         *(if with(middle).size().x <= width { &mut fits } else { &mut over }) = middle;
     }
     (with(fits), true)
+}
+
+/// Paints words on a plate beside the pointer, within the clip rectangle of a painter.
+pub(super) fn beside(ui: &Ui, painter: &Painter, pointer: Pos2, words: String) {
+    let palette = Palette::here(ui);
+    let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, semibold());
+    let galley = painter.layout_no_wrap(words, font, palette.text);
+    let padding = vec2(8.0, 4.0) * scale_here(ui);
+    let size = galley.size() + 2.0 * padding;
+    let room = painter.clip_rect().shrink(4.0);
+    let mut at = pointer + vec2(18.0, 16.0);
+    if at.x + size.x > room.right() {
+        at.x = pointer.x - 18.0 - size.x;
+    }
+    if at.y + size.y > room.bottom() {
+        at.y = pointer.y - 16.0 - size.y;
+    }
+    let place = Rect::from_min_size(at.max(room.min), size);
+    painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.92));
+    painter.galley(place.min + padding, galley, palette.text);
 }
 
 /// Selects all text of a field, for typing to replace it.

@@ -1,6 +1,6 @@
 //! Painting of the handles.
 
-use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, TextStyle, Ui, pos2, vec2};
+use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Ui, pos2, vec2};
 use glam::Vec3;
 
 use super::{
@@ -147,25 +147,4 @@ fn thin(ui: &Ui, lens: Lens, lines: impl IntoIterator<Item = Vec<Pos2>>, colour:
     let mut ink = Ink::new(lens);
     lines.into_iter().for_each(|line| ink.stroke(line, 1.0, colour));
     ink.paint(&ui.painter_at(lens.rect));
-}
-
-/// A plate with numbers beside the pointer.
-pub(super) fn plate(ui: &Ui, rect: Rect, pointer: Pos2, text: String) {
-    let palette = Palette::here(ui);
-    let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, theme::semibold());
-    let galley = ui.painter().layout_no_wrap(text, font, palette.text);
-    let padding = vec2(8.0, 4.0) * theme::scale_here(ui);
-    let size = galley.size() + 2.0 * padding;
-    let mut at = pointer + vec2(18.0, 16.0);
-    if at.x + size.x > rect.right() - 4.0 {
-        at.x = pointer.x - 18.0 - size.x;
-    }
-    if at.y + size.y > rect.bottom() - 4.0 {
-        at.y = pointer.y - 16.0 - size.y;
-    }
-    let corner = pos2(at.x.max(rect.left() + 4.0), at.y.max(rect.top() + 4.0));
-    let place = Rect::from_min_size(corner, size);
-    let painter = ui.painter_at(rect);
-    painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.92));
-    painter.galley(place.min + padding, galley, palette.text);
 }

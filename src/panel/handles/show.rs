@@ -17,6 +17,7 @@ use crate::{
         marks::{self, Asked, Lens, Sight},
         notice,
         state::{Action, HandleMode, Session},
+        theme,
         together::together,
     },
     parameter::Value,
@@ -246,7 +247,8 @@ fn drag(ui: &Ui, sight: Sight<'_>, lens: &Lens, mut hold: Hold, target: &Target)
         let Handle { sort, which } = grasp.handle;
         (sort.guide)(ui, *lens, which, target.at, [grasp.pointer, pointer], room);
         if let Some(shown) = shown {
-            paint::plate(ui, lens.rect, pointer, grasp.words(shown, lens.metres(grasp.at, 1.0)));
+            let words = grasp.words(shown, lens.metres(grasp.at, 1.0));
+            theme::beside(ui, &ui.painter_at(lens.rect), pointer, words);
         }
     }
     let changed = legal.filter(|edit| match wanted {

@@ -6,7 +6,7 @@ use std::{path::Path, sync::Mutex, time::Duration};
 use bevy_egui::egui::{LayerId, Order, TextEdit};
 
 use super::{
-    cover::is_over_picture,
+    cover::takes_drops,
     draft::is_new,
     kept::Background,
     marks::Lens,
@@ -40,7 +40,7 @@ const MOST_MISTAKES: usize = 3;
 #[derive(Clone, Debug, PartialEq)]
 struct Question {
     saved: u64,
-    /// Number of times that the panel came into sight.
+    /// Number of times that the panel came into sight, or the window back from another program, which may have changed files.
     opened: u64,
     models: usize,
     reloaded: Option<Reloaded>,
@@ -57,16 +57,20 @@ struct Found {
 pub(super) struct MaterialPanel {
     library: Mutex<Background<Question, Arc<Library>>>,
     opened: u64,
+    focused: bool,
     search: String,
     /// What was found last, by what was typed and in which list.
     found: Option<(String, Arc<Library>, Arc<Found>)>,
     /// The material that is being dragged.
     dragged: Option<Material>,
+    /// The meshes that its way over the picture meets.
+    meshes: MeshStore,
 }
 
 impl MaterialPanel {
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        self.opened += u64::from(is_new(ui, "materials"));
+        let back = !std::mem::replace(&mut self.focused, ui.input(|i| i.focused)) && self.focused;
+        self.opened += u64::from(is_new(ui, "materials") || back);
         let library = self.library(ui.ctx(), context);
         self.head(ui, context);
         let Some(library) = library else {
@@ -196,40 +200,65 @@ impl MaterialPanel {
         });
     }
 
-    /// Paints the material that is dragged at the pointer, and gives it to the object on which it is dropped.
+    /// Paints the material that is dragged at the pointer with the name of the object there, and gives it to the object on
+    /// which it is dropped.
     fn drag(&mut self, ui: &Ui, context: &mut PanelContext<'_>) {
         let Some(material) = self.dragged.take() else { return };
         let ctx = ui.ctx();
         let (at, down, stop) =
             ui.input(|i| (i.pointer.latest_pos(), i.pointer.primary_down(), i.key_pressed(Key::Escape)));
         let Some(at) = at.filter(|_| !stop) else { return };
+        let over = takes_drops(ctx, context.area().frame, at).then(|| self.object_at(context, at));
         if down {
             ctx.set_cursor_icon(CursorIcon::Grabbing);
             let picture = shelf::picture(ctx, &material, context.session(), context.registry());
-            if let Picture::Ready(texture) = picture {
-                let painter = ctx.layer_painter(LayerId::new(Order::Tooltip, Id::new("dragged material")));
-                let place = Rect::from_center_size(at, Vec2::splat(0.5 * PICTURE));
-                let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-                painter.image(texture.id(), place, whole, Color32::WHITE);
-            }
+            carried(ui, at, &picture, over.map(|object| words(&material, at, object, context)));
             self.dragged = Some(material);
             return;
         }
-        if !is_over_picture(ctx, context.area().frame, at) {
-            return;
-        }
-        let (session, registry) = (context.session(), context.registry());
-        let cell = context.area().cell_at(at).copied();
-        let lens = Lens::of(session, cell.map_or(context.area().frame, |cell| cell.rect));
-        let ray = lens.ray(at);
-        let sight = [ray.eye, ray.eye + ray.way];
-        let Some((object, _)) = towards(&mut MeshStore::default(), session.scene(), registry, sight) else {
+        let Some(object) = over else { return };
+        let Some(object) = object else {
             return context.say("There is no object: drop the material onto one.");
         };
-        if let Some(cell) = cell.filter(|cell| cell.view != session.active()) {
+        let cell = context.area().cell_at(at).copied();
+        if let Some(cell) = cell.filter(|cell| cell.view != context.session().active()) {
             context.act(Action::Compare(CompareCommand::Activate(cell.view)));
         }
         context.act(Action::Material(MaterialCommand::Apply(Box::new(material), Some(object))));
+    }
+
+    /// The object that one sees at a place of the picture.
+    fn object_at(&mut self, context: &PanelContext<'_>, at: Pos2) -> Option<usize> {
+        let (session, registry) = (context.session(), context.registry());
+        let cell = context.area().cell_at(at);
+        let ray = Lens::of(session, cell.map_or(context.area().frame, |cell| cell.rect)).ray(at);
+        towards(&mut self.meshes, session.scene(), registry, [ray.eye, ray.eye + ray.way]).map(|(i, _)| i)
+    }
+}
+
+/// A material and what gets it when it is dropped here.
+fn words(material: &Material, at: Pos2, object: Option<usize>, context: &PanelContext<'_>) -> String {
+    let (session, registry) = (context.session(), context.registry());
+    let view = context.area().cell_at(at).map_or(session.active(), |cell| cell.view);
+    match (object, LETTERS.get(view)) {
+        (None, _) => "No object here".to_owned(),
+        (_, Some(letter)) if view > 0 => format!("{} for all objects of view {letter}", material.name),
+        (Some(i), _) => {
+            format!("{} for {}", material.name, session.name_of(Selection::Object(i), registry))
+        }
+    }
+}
+
+/// Paints a picture at the pointer, over everything, and words beside it.
+fn carried(ui: &Ui, at: Pos2, picture: &Picture, words: Option<String>) {
+    let painter = ui.ctx().layer_painter(LayerId::new(Order::Tooltip, Id::new("dragged material")));
+    let place = Rect::from_center_size(at, Vec2::splat(0.5 * PICTURE));
+    if let Picture::Ready(texture) = picture {
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        painter.image(texture.id(), place, whole, Color32::WHITE);
+    }
+    if let Some(words) = words {
+        theme::beside(ui, &painter, place.right_center(), words);
     }
 }
 

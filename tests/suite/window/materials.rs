@@ -128,19 +128,48 @@ fn a_material_dropped_on_an_object_is_given_to_that_one_alone() {
 }
 
 fn drag(bench: &mut Bench, from: Pos2, to: Pos2) {
-    let press = |pos, pressed| Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
+    carry(bench, from, to);
+    drop_at(bench, to);
+}
+
+/// Takes what is there to another place, and holds it.
+fn carry(bench: &mut Bench, from: Pos2, to: Pos2) {
     bench.frame(vec![Event::PointerMoved(from)]);
     bench.frame(vec![press(from, true)]);
     for k in 1..=5 {
         bench.frame(vec![Event::PointerMoved(from + (to - from) * (k as f32 / 5.0))]);
     }
-    bench.frame(vec![press(to, false)]);
+}
+
+fn drop_at(bench: &mut Bench, at: Pos2) {
+    bench.frame(vec![press(at, false)]);
     bench.settle();
+}
+
+fn press(pos: Pos2, pressed: bool) -> Event {
+    Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
+}
+
+#[test]
+fn words_beside_a_dragged_material_name_what_would_get_it() {
+    let (mut bench, _folder) = bench();
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)));
+    bench.type_into("Search materials", "gold");
+    let from = bench.find("Material: Gold").expect("found").rect.center();
+    let cells = bench.area.cells.clone();
+    let middle = bench.session.document.objects[2].position;
+    for (view, words) in [(0, "Gold for Sphere 3"), (1, "Gold for all objects of view B")] {
+        let cell = cells.iter().find(|cell| cell.view == view).expect("it is shown").rect;
+        let to = Lens::of(&bench.session, cell).project(middle).expect("seen");
+        carry(&mut bench, from, to);
+        assert!(bench.texts().contains(&words.to_owned()), "{words}: {:?}", bench.texts());
+        carry(&mut bench, to, cell.left_top() + vec2(6.0, 40.0));
+        assert!(bench.texts().contains(&"No object here".to_owned()));
+        bench.frame(vec![Event::PointerGone]);
+        bench.key(Key::Escape, Modifiers::NONE);
+        drop_at(&mut bench, cell.left_top());
+        assert!(!bench.texts().iter().any(|text| text.starts_with("Gold for")));
+    }
 }
 
 #[test]
