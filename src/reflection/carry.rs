@@ -24,7 +24,7 @@ pub struct Carried {
 pub struct Journey {
     /// The values that go along.
     pub carried: Vec<Carried>,
-    /// The parameters of the model that is left whose values the new one has no place for.
+    /// The parameters of the model that is left whose values, other than the defaults, the new one has no place for.
     pub left: Vec<&'static Parameter>,
 }
 
@@ -65,7 +65,8 @@ pub fn journey(from: &[&ModelEntry], to: &ModelEntry, material: &Values) -> Jour
             };
             to.parameters.iter().filter(alike).any(|q| material.0.contains_key(q.name))
         };
-        to.parameter(p.name).is_none() && !goes() && !has_own()
+        let matters = material.get(p) != p.default_value();
+        matters && to.parameter(p.name).is_none() && !goes() && !has_own()
     };
     let left = from.first().into_iter().flat_map(|model| given(model, material)).filter(stays).collect();
     Journey { carried, left }
@@ -215,6 +216,8 @@ mod tests {
         let values = material(&[
             ("subsurface", number(1.0)),
             ("clearcoat", number(1.0)),
+            // The default, which nobody misses.
+            ("sheen", number(0.0)),
             ("base_colour", Value::Colour([1, 2, 3])),
         ]);
         let journey_to = |to: &str| journey(&[model("disney")], model(to), &values);

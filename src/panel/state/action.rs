@@ -241,13 +241,13 @@ impl Session {
             Action::SaveAs(path) => self.save_as(&path, registry),
             Action::ClearRecent => self.clear_recent(),
             Action::Answer(answer) => self.answered(answer, registry),
-            Action::Select(selection) => self.select(selection),
-            Action::SelectAlso(part) => self.select_also(part),
-            Action::SelectRange(to) => self.select_range(to),
-            Action::SelectEach(parts, add) => self.select_each(parts, add),
-            Action::SelectAlike(by) => self.select_alike(by),
-            Action::SelectNext => self.step_selection(1),
-            Action::SelectPrevious => self.step_selection(-1),
+            Action::Select(_)
+            | Action::SelectAlso(_)
+            | Action::SelectRange(_)
+            | Action::SelectEach(..)
+            | Action::SelectAlike(_)
+            | Action::SelectNext
+            | Action::SelectPrevious => self.choose(action),
             Action::AddLight(id) => self.add_light(&id, |_| (), registry),
             Action::AddObject(id) => self.add_object(&id, None, |_| (), registry),
             Action::Duplicate(part) => self.duplicate(part, registry),
@@ -287,6 +287,18 @@ impl Session {
             Action::Say(severity, text) => self.say(severity, text),
             Action::Dismiss(index) => self.messages.dismiss(index),
             Action::DismissAll => self.messages.clear(),
+        }
+    }
+    fn choose(&mut self, action: Action) {
+        match action {
+            Action::Select(selection) => self.select(selection),
+            Action::SelectAlso(part) => self.select_also(part),
+            Action::SelectRange(to) => self.select_range(to),
+            Action::SelectEach(parts, add) => self.select_each(parts, add),
+            Action::SelectAlike(by) => self.select_alike(by),
+            Action::SelectNext => self.step_selection(1),
+            Action::SelectPrevious => self.step_selection(-1),
+            _ => {}
         }
     }
 }
