@@ -1,6 +1,6 @@
 //! Painting of the handles.
 
-use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Ui, pos2, vec2};
+use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Ui, vec2};
 use glam::Vec3;
 
 use super::{
@@ -10,7 +10,7 @@ use super::{
 use crate::{
     panel::{
         marks::{Ink, Lens, OUTLINE},
-        theme::{self, Palette},
+        theme,
     },
     scene::SceneSize,
 };

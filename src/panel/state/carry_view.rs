@@ -11,6 +11,7 @@ use crate::{
     reflection::carry::{Carried, Journey, journey},
     registry::Registry,
     scene::{Part, Variant, variant::LETTERS},
+    text::{capitalised, listed},
 };
 
 /// A variant that may get another model, before it does.
@@ -20,18 +21,20 @@ pub(super) struct ViewDeparture {
     from: Vec<String>,
 }
 
-/// The values that go along with all objects, and the parameters whose values stay behind with one of them.
+/// The values that go along with all objects, the parameters for which the new model has no place, and those whose values
+/// differ from object to object.
 #[derive(Default)]
 struct Common {
     carried: Option<Vec<Carried>>,
     left: Vec<&'static Parameter>,
+    differ: Vec<&'static Parameter>,
 }
 
 impl Common {
     /// Adds an object.
     fn add(&mut self, found: Journey) {
         let alike = |a: &Carried, b: &Carried| a.to.name == b.to.name && a.value == b.value;
-        found.left.into_iter().for_each(|p| self.leave(p));
+        found.left.into_iter().for_each(|p| add(&mut self.left, p));
         let (stays, differs) = match self.carried.take() {
             None => (found.carried, Vec::new()),
             Some(all) => {
@@ -42,14 +45,14 @@ impl Common {
                 (same, differs)
             }
         };
-        differs.iter().flat_map(|one| &one.from).for_each(|p| self.leave(p));
+        differs.iter().flat_map(|one| &one.from).for_each(|p| add(&mut self.differ, p));
         self.carried = Some(stays);
     }
+}
 
-    fn leave(&mut self, parameter: &'static Parameter) {
-        if self.left.iter().all(|known| known.name != parameter.name) {
-            self.left.push(parameter);
-        }
+fn add(all: &mut Vec<&'static Parameter>, parameter: &'static Parameter) {
+    if all.iter().all(|known| known.name != parameter.name) {
+        all.push(parameter);
     }
 }
 
@@ -97,7 +100,7 @@ impl Session {
             }
             common.add(found);
         }
-        let Common { carried, left } = common;
+        let Common { carried, left, differ } = common;
         let (Some((from, to)), carried) = (models, carried.unwrap_or_default()) else { return };
         self.desk.travels.leave(who, &from);
         for one in &carried {
@@ -111,15 +114,24 @@ impl Session {
             });
         }
         let Some(to) = registry.model(&to) else { return };
+        let letter = LETTERS.get(variant + 1).copied().unwrap_or_default();
         let mut said = Vec::new();
         if !carried.is_empty() {
             let words: Vec<_> = carried.iter().map(without_values).collect();
-            let letter = LETTERS.get(variant + 1).copied().unwrap_or_default();
             said.push(format!("{} in view {letter}: {}.", to.declaration.name, words.join(", ")));
         }
         if !left.is_empty() {
             let from = registry.model(&from).map(|model| model.declaration.name);
             said.push(left_behind(&left, from, to));
+        }
+        if !differ.is_empty() {
+            let names: Vec<_> = differ.iter().map(|p| p.label).collect();
+            let verb = if names.len() == 1 { "differs" } else { "differ" };
+            let names = listed(&names, "and");
+            said.push(format!(
+                "{} {verb} from object to object, and view {letter} has one value for all.",
+                capitalised(&names)
+            ));
         }
         if !said.is_empty() {
             self.say(Severity::Info, said.join(" "));
@@ -188,6 +200,8 @@ mod tests {
         let (mut session, registry) = begin(&[0.5, 0.6]);
         choose(&mut session, &registry, "ward");
         assert_eq!(alpha(&session), None);
-        assert!(session.messages.last().is_some_and(|note| note.text.contains("no place for roughness")));
+        assert!(session.messages.last().is_some_and(|note| {
+            note.text == "Roughness differs from object to object, and view B has one value for all."
+        }));
     }
 }
