@@ -12,15 +12,18 @@ use super::{
 use crate::files::{Shown as _, words};
 use crate::{
     custom,
+    explain::finite::{Scope, Tried, probe},
     failure::Failure,
     library::assets::write_new,
     optics::colour::Encoding,
+    parameter::Values,
     progress::Progress,
     reflection::{
         law_report::LawReport,
         laws::{self, Effort},
     },
     registry::Registry,
+    scene::{Object, Scene},
     text::{listed, quoted},
 };
 
@@ -81,6 +84,14 @@ fn write(id: &str, text: &str, options: Options, places: &Places, known: &Regist
     Ok(())
 }
 
+/// Tells of values of a model that are not finite on the CPU.
+fn on_cpu(id: &str, material: Values, registry: &Registry) -> Option<String> {
+    let object = Object { material, ..Object::default() };
+    let scene = Scene { reflection_model: id.to_owned(), objects: vec![object], ..Scene::default() };
+    let found = probe(&scene, registry, Scope::Untested, &mut Tried::default());
+    found.first().map(|odd| odd.what.clone())
+}
+
 /// `lcm models check ID`: for all values of parameters, except for those that are set.
 pub(super) fn check(
     id: &str,
@@ -129,11 +140,18 @@ pub(super) fn check(
     } else {
         print_text(&report.to_string())?;
     }
-    if !report.is_finite() {
+    let mut is_finite = report.is_finite();
+    if !is_finite {
         complain(format_args!("{id} returns values that are not numbers"));
+    } else if ENGINE.is_some()
+        && let Some(found) = on_cpu(id, given, registry)
+    {
+        is_finite = false;
+        // Drivers may assume that no number is infinite.
+        complain(format_args!("{id} is finite on the GPU; on the CPU, an object {found}"));
     }
     match report.broken().as_slice() {
-        [] if report.is_finite() => Ok(()),
+        [] if is_finite => Ok(()),
         [] => Err(Failure::Invalid(String::new())),
         laws => Err(Failure::Invalid(format!("{id} claims to be {}, but is not", listed(laws, "and")))),
     }

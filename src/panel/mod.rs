@@ -60,6 +60,7 @@ mod finder;
 mod focus;
 pub mod formula;
 mod frame;
+mod gallery;
 mod glyphs;
 mod handles;
 pub mod help;

@@ -2,15 +2,16 @@
 //! CPU renderer, each once.
 
 use std::{
-    collections::HashMap,
     path::PathBuf,
-    thread,
     time::{Duration, Instant},
 };
 
 use bevy_egui::egui::{ColorImage, TextureHandle, TextureOptions};
 
-use super::prelude::*;
+use super::{
+    gallery::{Gallery, Wanted},
+    prelude::*,
+};
 use crate::{
     caught::catch,
     parameter::Outside,
@@ -29,8 +30,6 @@ const QUALITIES: [Quality; 2] = [
 ];
 /// Maximum rendering time of a preview in each quality: if the best takes longer, the next is tried.
 const PATIENCE: Duration = Duration::from_secs(3);
-/// Maximum number of previews kept.
-const MOST: usize = 128;
 /// Maximum number of lines about problems of a file.
 const LINES: usize = 6;
 
@@ -76,58 +75,29 @@ pub struct Shown {
     pub picture: Option<TextureHandle>,
 }
 
-#[derive(Default)]
-struct Store {
-    known: HashMap<Source, Preview>,
-    /// Previews still to be made, the most urgent last.
-    queue: Vec<Source>,
-    working: bool,
-}
+/// The previews, each under its source.
+type Previews = Gallery<Source, Source, Preview>;
 
 /// The current preview of a scene, which may name the files `outside` its folder. The latest file requested is read
-/// first.
+/// first; examples are all requested at once, and read from the first on.
 pub fn of(ctx: &Context, source: &Source, registry: &Registry, outside: &Outside) -> Preview {
-    kept::shared(ctx, |store: &mut Store| {
-        if let Some(known) = store.known.get(source) {
-            return known.clone();
+    let wanted = || Wanted {
+        job: source.clone(),
+        waiting: Preview::Waiting,
+        is_urgent: matches!(source, Source::File(_)),
+    };
+    Previews::of(ctx, source, wanted, || {
+        let (registry, outside) = (registry.clone(), outside.clone());
+        move |ctx: &Context, source: Source| {
+            catch(|| make(ctx, &source, &registry, &outside))
+                .unwrap_or_else(|_| Preview::Failed("This scene cannot be drawn.".into()))
         }
-        if store.known.len() >= MOST {
-            store.known.clear();
-        }
-        store.known.insert(source.clone(), Preview::Waiting);
-        match source {
-            // All examples are requested at once, and read from the first on.
-            Source::Example(_) => store.queue.insert(0, source.clone()),
-            Source::File(_) => store.queue.push(source.clone()),
-        }
-        if !std::mem::replace(&mut store.working, true) {
-            let (ctx, registry, outside) = (ctx.clone(), registry.clone(), outside.clone());
-            thread::spawn(move || work(&ctx, &registry, &outside));
-        }
-        Preview::Waiting
     })
 }
 
 /// Forgets the previews of files, which may have changed since the dialog was last open.
 pub fn forget_files(ctx: &Context) {
-    kept::shared(ctx, |store: &mut Store| {
-        store.known.retain(|source, _| matches!(source, Source::Example(_)));
-        store.queue.retain(|source| matches!(source, Source::Example(_)));
-    });
-}
-
-fn work(ctx: &Context, registry: &Registry, outside: &Outside) {
-    let next = |store: &mut Store| {
-        let source = store.queue.pop();
-        store.working = source.is_some();
-        source
-    };
-    while let Some(source) = kept::shared(ctx, next) {
-        let made = catch(|| make(ctx, &source, registry, outside))
-            .unwrap_or_else(|_| Preview::Failed("This scene cannot be drawn.".into()));
-        kept::shared(ctx, |store: &mut Store| store.known.insert(source, made));
-        ctx.request_repaint();
-    }
+    Previews::retain(ctx, |source| matches!(source, Source::Example(_)));
 }
 
 fn make(ctx: &Context, source: &Source, registry: &Registry, outside: &Outside) -> Preview {

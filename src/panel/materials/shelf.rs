@@ -1,22 +1,19 @@
 //! What the panel shows: the materials, read by a thread, and their pictures, drawn by another one, each once.
 
-use std::{
-    collections::HashMap,
-    thread,
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
 
 use bevy_egui::egui::{ColorImage, TextureHandle, TextureOptions};
 
-use super::super::{kept, prelude::*};
+use super::super::{
+    gallery::{Gallery, Wanted},
+    prelude::*,
+};
 use crate::{caught::catch, materials::Material, reference};
 
 /// Pixels across a picture.
 const SIDE: u32 = 128;
 /// Maximum time for a picture.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// Maximum number of pictures kept.
-const MOST: usize = 512;
 
 /// The picture of a material.
 #[derive(Clone)]
@@ -25,14 +22,6 @@ pub(super) enum Picture {
     Ready(TextureHandle),
     /// There is none, for this reason.
     Failed(Arc<str>),
-}
-
-#[derive(Default)]
-struct Store {
-    known: HashMap<String, Picture>,
-    /// Pictures still to be drawn, the first last.
-    queue: Vec<(String, Material)>,
-    working: bool,
 }
 
 /// The picture of a material. Models whose files were reloaded are drawn again.
@@ -45,39 +34,18 @@ pub(super) fn picture(ctx: &Context, material: &Material, session: &Session, reg
         }
         key += &format!("{:?}", session.shaders.last);
     }
-    kept::shared(ctx, |store: &mut Store| {
-        if let Some(known) = store.known.get(&key) {
-            return known.clone();
+    let wanted = || Wanted { job: material.clone(), waiting: Picture::Waiting, is_urgent: false };
+    Gallery::of(ctx, &key, wanted, || {
+        let registry = registry.clone();
+        move |ctx: &Context, material: Material| {
+            let drawn = catch(|| draw(&material, &registry))
+                .unwrap_or_else(|_| Err("It cannot be drawn.".to_owned()));
+            match drawn {
+                Ok(image) => Picture::Ready(ctx.load_texture("material", image, TextureOptions::LINEAR)),
+                Err(why) => Picture::Failed(why.into()),
+            }
         }
-        if store.known.len() >= MOST {
-            store.known.clear();
-        }
-        store.known.insert(key.clone(), Picture::Waiting);
-        store.queue.insert(0, (key, material.clone()));
-        if !std::mem::replace(&mut store.working, true) {
-            let (ctx, registry) = (ctx.clone(), registry.clone());
-            thread::spawn(move || work(&ctx, &registry));
-        }
-        Picture::Waiting
     })
-}
-
-fn work(ctx: &Context, registry: &Registry) {
-    let next = |store: &mut Store| {
-        let next = store.queue.pop();
-        store.working = next.is_some();
-        next
-    };
-    while let Some((key, material)) = kept::shared(ctx, next) {
-        let drawn =
-            catch(|| draw(&material, registry)).unwrap_or_else(|_| Err("It cannot be drawn.".to_owned()));
-        let picture = match drawn {
-            Ok(image) => Picture::Ready(ctx.load_texture("material", image, TextureOptions::LINEAR)),
-            Err(why) => Picture::Failed(why.into()),
-        };
-        kept::shared(ctx, |store: &mut Store| store.known.insert(key, picture));
-        ctx.request_repaint();
-    }
 }
 
 fn draw(material: &Material, registry: &Registry) -> Result<ColorImage, String> {

@@ -87,5 +87,5 @@ pub(super) fn arrays(alpha: Vec2, [phis, thetas]: [usize; 2], density: [usize; 2
 }
 
 pub(super) fn numbers() -> Vec<f32> {
-    table::numbers(&arrays(BRUSHED, [3, 6], [18, 36], 11))
+    table::numbers(&arrays(BRUSHED, [3, 5], [14, 28], 12))
 }

@@ -123,6 +123,13 @@ fn a_broken_claim_is_found_with_numbers_and_a_kept_one_that_nobody_makes_too() {
     assert_eq!(holes.status, Some(1));
     assert!(holes.out.contains("finite: NOT everywhere"), "{}", holes.out);
     assert!(!holes.out.contains("claimed and kept") && !holes.out.contains("claim it?"), "{}", holes.out);
+    // A driver may take 1/0 for 0; then the CPU tells.
+    put(folder.path(), "poles.wgsl", &model("cos_l / (cos_l - cos_l)"));
+    let poles = run(folder.path(), "models check poles --models models", "");
+    assert_eq!(poles.status, Some(1));
+    let told =
+        "poles is finite on the GPU; on the CPU, an object has the reflection model poles, which gives (∞";
+    assert!(poles.out.contains("finite: NOT everywhere") || poles.err.contains(told), "{}", poles.err);
     let phong = run(folder.path(), "models check phong", "");
     assert_eq!(phong.status, Some(0));
     assert!(phong.out.contains("reciprocal: not claimed and broken"), "{}", phong.out);
