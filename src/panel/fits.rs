@@ -98,7 +98,7 @@ fn row(ui: &mut Ui, matched: &Matched, shown: Option<&str>, context: &mut PanelC
     let is_shown = shown == Some(*model);
     let button = ui.add(Button::selectable(is_shown, label));
     theme::says_chosen(&button, WidgetType::Button, is_shown, format!("Show the fit of {label}"));
-    context.on_click(&button, || Action::Match(MatchCommand::Show(*model)));
+    context.on_click(&button, || Action::Match(MatchCommand::Show(model)));
     let parameter =
         |name: &'static str| context.registry().material_parameter(name).map_or(name, |p| p.label);
     let values: Vec<_> =

@@ -171,8 +171,9 @@ fn errors(lab: &Lab, samples: &[Sample], lobes: &[Lobes], metric: Metric) -> Err
         samples.iter().zip(&cosines).map(|(s, cos)| PI * cos * of(s)).collect()
     };
     let step = if lab.settings.quick { 10 } else { 1 };
-    let published: Vec<_> = Sgd::all().into_iter().zip(Abc::all()).step_by(step).collect();
-    let both = published.par_iter().map(|(sgd, abc)| {
+    let published: Vec<_> =
+        Sgd::all().into_iter().step_by(step).filter_map(|sgd| Some((Abc::named(sgd.name)?, sgd))).collect();
+    let both = published.par_iter().map(|(abc, sgd)| {
         let data = light(&|s| sgd.luminance(s.l, s.v));
         let target = Light { cosines: &cosines, data: &data };
         let best = |lobes: &Lobes| {

@@ -122,9 +122,10 @@ fn compare(to: &mut List) {
         let add = command("add_view", "Add a view", Action::Compare(CompareCommand::Add));
         to.add(add.says("Add a view").keys("Ctrl+B").rank(-1));
         let fit = command("fit", "Fit to the measurement", Action::Match(MatchCommand::Fit));
-        to.add(fit.tip(fits::ONE).at_desk());
+        to.add(fit.says("Fit to the measurement").tip(fits::ONE).at_desk());
         let every = Action::Match(MatchCommand::Every(Default::default()));
-        to.add(command("fit_every", "Fit every model…", every).tip(fits::EVERY).at_desk());
+        let every = command("fit_every", "Fit every model…", every).says("Fit every model…");
+        to.add(every.tip(fits::EVERY).at_desk());
     });
 }
 
