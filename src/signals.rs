@@ -56,14 +56,20 @@ impl Interrupt {
         self.0.compare_exchange(HEARD, TAKEN, Ordering::SeqCst, Ordering::SeqCst).is_ok()
     }
 
+    /// True after a Ctrl+C.
+    #[must_use]
+    pub fn is_asked(&self) -> bool {
+        self.0.load(Ordering::SeqCst) != NONE
+    }
+
     /// Records that the user decided to stay: the next Ctrl+C is a request again.
     pub fn stay(&self) {
         let _ = self.0.compare_exchange(TAKEN, NONE, Ordering::SeqCst, Ordering::SeqCst);
     }
 
-    /// Ends the process as Ctrl+C does, if Ctrl+C closed the window.
+    /// Ends the process as Ctrl+C does, after a Ctrl+C.
     pub fn end_if_asked(&self) {
-        if self.0.load(Ordering::SeqCst) != NONE {
+        if self.is_asked() {
             system::end_by_interrupt();
         }
     }

@@ -223,7 +223,7 @@ class Scene:
         return self._core.explain(pixel, [width, height], word("view", view), word("terms", terms), bool(markdown))
 
     def match(
-        self, view: str = "B", on: str = "lobe", free: list[str] | None = None
+        self, view: str = "B", on: str = "lobe", free: list[str] | None = None, metric: str = "cosine"
     ) -> tuple[dict[str, Any], Scene]:
         """The parameters of a view that come nearest to view A.
 
@@ -235,6 +235,9 @@ class Scene:
             What is compared: ``lobe``, ``picture`` or ``highlight``.
         free
             The parameters that are free; by default every number.
+        metric
+            The metric of lobes: ``cosine`` (Ngan and others 2005), ``log`` (Löw and others 2012) or ``cube-root`` (Fores and
+            others 2012).
 
         Returns
         -------
@@ -243,7 +246,7 @@ class Scene:
             with these values.
         """
         names = None if free is None else [word("a free parameter", name) for name in free]
-        found, scene = self._core.matched(word("view", view), word("on", on), names)
+        found, scene = self._core.matched(word("view", view), word("on", on), names, word("metric", metric))
         return json.loads(found), type(self)._of(scene, self._folder)
 
     def _repr_png_(self) -> bytes:

@@ -9,7 +9,7 @@ use lights_camera_models::{
     channel::{DebugChannel, Setting},
     compare::{Shown, Undrawn, View},
     explain,
-    matching::{self, MatchError, Request, What, match_view},
+    matching::{self, MatchError, Measure, Metric, Request, What, match_view},
     optics::TermSelection,
     progress::Progress,
     reference::{self, Settings, Until},
@@ -192,16 +192,20 @@ impl Scene {
     }
 
     /// The parameters of a view that come nearest to view A: what was found as JSON, and the scene with them.
-    #[pyo3(signature = (view, what, free))]
+    #[pyo3(signature = (view, what, free, metric))]
     fn matched(
         &self,
         py: Python<'_>,
         view: &str,
         what: &str,
         free: Option<Vec<String>>,
+        metric: &str,
     ) -> PyResult<(String, Self)> {
         let number = self.number(view)?;
         let what = What::from_id(what).ok_or_else(|| one_of("on", what, &What::ALL.map(What::id)))?;
+        let metric =
+            Metric::from_id(metric).ok_or_else(|| one_of("metric", metric, &Metric::ALL.map(Metric::id)))?;
+        let measure = Measure { what, metric };
         let free = free.unwrap_or_else(|| {
             let all = matching::parameters(&self.scene, number, &self.registry);
             all.into_iter()
@@ -210,13 +214,13 @@ impl Scene {
                 .collect()
         });
         let parameters: Vec<_> = free.iter().map(String::as_str).collect();
-        let request = Request { scene: &self.scene, view: number, what, parameters: &parameters };
+        let request = Request { scene: &self.scene, view: number, measure, parameters: &parameters };
         let found = work::long(py, |progress: &Progress| match_view(&request, &self.registry, progress))?;
         let found = found.map_err(|e: MatchError| PyValueError::new_err(e.to_string()))?;
         let values: serde_json::Map<_, _> =
             found.values.iter().map(|(name, v)| ((*name).to_owned(), v.json())).collect();
         let said = serde_json::json!({
-            "view": LETTERS[number], "on": what.id(), "unit": what.unit(), "before": found.before, "after": found.after,
+            "view": LETTERS[number], "on": what.id(), "metric": measure.metric().map(Metric::id), "unit": measure.unit(), "before": found.before, "after": found.after,
             "values": values, "unchanged": found.kept,
         });
         let mut scene = self.scene.clone();

@@ -225,7 +225,10 @@ def test_a_view_is_matched():
     found, nearer = scene.match("B", on="highlight", free=["alpha"])
     assert found["after"] < found["before"]
     assert nearer["variants[0].material.alpha"] == found["values"]["alpha"]
-    for arguments, text in [({"view": "C"}, "there is no view"), ({"on": "colour"}, "on is"), ({"free": ["alhpa"]}, "alpha")]:
+    logged, _ = scene.match("B", free=["alpha"], metric="log")
+    assert logged["metric"] == "log" and "ln(1 + f cos" in logged["unit"]
+    wrong = [({"view": "C"}, "there is no view"), ({"on": "colour"}, "on is"), ({"free": ["alhpa"]}, "alpha"), ({"metric": "eye"}, "metric is")]
+    for arguments, text in wrong:
         with pytest.raises(ValueError, match=text):
             scene.match(**arguments)
 

@@ -9,8 +9,9 @@ use clap::{
 use serde_json::{Value as Json, json};
 
 use super::{
-    Options, Outcome, outputs, print_json, print_text, progress,
+    FINE, Options, Outcome, outputs, print_json, print_text, progress,
     scenes::Source,
+    style,
     views::find,
     workshop::{Workshop, drawable},
 };
@@ -19,7 +20,7 @@ use crate::{
     export::write::inputs,
     failure::Failure,
     matching::{
-        self, Match, MatchError, Request, What, digits,
+        self, Match, MatchError, Measure, Metric, Request, What, digits,
         each::{Matched, Ranking, candidates, match_each},
         match_view,
     },
@@ -31,6 +32,7 @@ use crate::{
         save::{self, Expected, SaveError, Unwritten},
         variant::LETTERS,
     },
+    signals::Interrupt,
     text::listed,
 };
 
@@ -48,6 +50,9 @@ pub(super) struct Arguments {
     /// What is compared with view A
     #[arg(long, value_parser = what(), default_value = What::Lobe.id())]
     on: What,
+    /// The metric of the lobes: what the difference is taken of
+    #[arg(long, value_parser = metric(), default_value = Metric::default().id())]
+    metric: Metric,
     /// The parameters that are free, such as alpha,k_s; by default every number
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     free: Vec<String>,
@@ -74,7 +79,37 @@ fn what() -> impl TypedValueParser<Value = What> {
     PossibleValuesParser::new(choices).map(|id| What::from_id(&id).unwrap_or_default())
 }
 
+/// Parser of the metric, with the source of each.
+fn metric() -> impl TypedValueParser<Value = Metric> {
+    let choices = Metric::ALL.into_iter().map(|metric| {
+        let help = format!("{} {}", metric.summary(), metric.source().replace('*', ""));
+        PossibleValue::new(metric.id()).help(help)
+    });
+    PossibleValuesParser::new(choices).map(|id| Metric::from_id(&id).unwrap_or_default())
+}
+
+impl Arguments {
+    /// True if every model is matched.
+    pub(super) fn is_of_all(&self) -> bool {
+        self.each
+    }
+
+    /// What is compared; lobes alone have a choice of metrics.
+    fn measure(&self) -> Result<Measure, Failure> {
+        let measure = Measure { what: self.on, metric: self.metric };
+        if measure.metric().is_none() && self.metric != Metric::default() {
+            return Err(Failure::Usage(format!(
+                "--metric {} is for lobes, but --on is {}",
+                self.metric.id(),
+                self.on.id()
+            )));
+        }
+        Ok(measure)
+    }
+}
+
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
+    let measure = arguments.measure()?;
     let source = Source::named(&arguments.scene);
     let mut scene = source.open(workshop, options)?;
     let expected = if arguments.overwrite { Expected::Anything } else { Expected::Nothing };
@@ -89,7 +124,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     drawable(registry, &scene)?;
     let invalid = |why: &dyn std::fmt::Display| Failure::Invalid(format!("{}: {why}", source.name()));
     if arguments.each {
-        return each(&scene, arguments, options, registry);
+        return each(&scene, (measure, arguments.json), options, registry);
     }
     let view = view(&scene, &arguments.view, invalid)?;
     let free: Vec<&str> = match arguments.free.as_slice() {
@@ -99,13 +134,12 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         }
         names => names.iter().map(|name| name.trim()).collect(),
     };
-    let what = arguments.on;
     let bar = progress(100, options);
     let tell = |done: f32, step: &str| {
         bar.set_position((100.0 * done) as u64);
         bar.set_message(step.to_owned());
     };
-    let request = Request { scene: &scene, view, what, parameters: &free };
+    let request = Request { scene: &scene, view, measure, parameters: &free };
     let found = match_view(&request, registry, &Progress { tell: &tell, cancelled: &|| false });
     bar.finish_and_clear();
     let found = found.map_err(|error| match error {
@@ -117,9 +151,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     })?;
     let before: Vec<Value> = found.values.iter().map(|(name, _)| now(&scene, view, name, registry)).collect();
     if arguments.json {
-        print_json(&as_json(&found, view, what))?;
+        print_json(&as_json(&found, view, measure))?;
     } else {
-        print_text(&in_words(&found, &before, view, what))?;
+        print_text(&in_words(&found, &before, view, measure))?;
     }
     if let Some(file) = &arguments.output {
         for (name, value) in &found.values {
@@ -131,30 +165,33 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     Ok(())
 }
 
-/// `lcm match --each`.
-fn each(scene: &Scene, arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
-    let what = arguments.on;
-    let bar = progress(100, options);
+/// `lcm match --each`. Ctrl+C ends it with what was matched until then.
+fn each(scene: &Scene, (measure, json): (Measure, bool), options: Options, registry: &Registry) -> Outcome {
+    // Without it, Ctrl+C ends the program at once.
+    let interrupt = Interrupt::listen(|| (), |_| ()).unwrap_or_default();
+    let bar = progress(FINE, options);
+    bar.set_style(style("{bar:30} {percent} % {msg}{left}; Ctrl+C ends it"));
     let tell = |done: f32, step: &str| {
-        bar.set_position((100.0 * done) as u64);
+        bar.set_position((f64::from(done) * FINE as f64) as u64);
         bar.set_message(step.to_owned());
     };
-    let progress = Progress { tell: &tell, cancelled: &|| false };
-    let ranking = match_each(scene, candidates(registry), what, registry, &progress).unwrap_or_default();
+    let progress = Progress { tell: &tell, cancelled: &|| interrupt.is_asked() };
+    let ranking = match_each(scene, candidates(registry), measure, registry, &progress);
     bar.finish_and_clear();
-    if arguments.json {
-        print_json(&ranking_as_json(&ranking, what))?;
+    if json {
+        print_json(&ranking_as_json(&ranking, measure))?;
     } else {
-        print_text(&ranking_in_words(&ranking, what))?;
+        print_text(&ranking_in_words(&ranking, measure))?;
     }
+    interrupt.end_if_asked();
     if ranking.matched.is_empty() {
         return Err(Failure::Invalid("no model could be matched to view A".to_owned()));
     }
     Ok(())
 }
 
-fn ranking_in_words(ranking: &Ranking, what: What) -> String {
-    let mut text = format!("{}\n", what.unit());
+fn ranking_in_words(ranking: &Ranking, measure: Measure) -> String {
+    let mut text = format!("{}\n", measure.unit());
     let widest = ranking.matched.iter().map(|matched| matched.model.len()).max().unwrap_or_default();
     for Matched { model, found } in &ranking.matched {
         let values: Vec<_> = found.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
@@ -165,10 +202,13 @@ fn ranking_in_words(ranking: &Ranking, what: What) -> String {
     for (model, why) in &ranking.left_out {
         text += &format!("{model}: {why}\n");
     }
+    if !ranking.unfinished.is_empty() {
+        text += &format!("interrupted before {}\n", listed(&ranking.unfinished, "and"));
+    }
     text
 }
 
-fn ranking_as_json(ranking: &Ranking, what: What) -> Json {
+fn ranking_as_json(ranking: &Ranking, measure: Measure) -> Json {
     let matched = |Matched { model, found }: &Matched| {
         let values: serde_json::Map<_, _> =
             found.values.iter().map(|(name, v)| ((*name).to_owned(), v.json())).collect();
@@ -176,10 +216,12 @@ fn ranking_as_json(ranking: &Ranking, what: What) -> Json {
     };
     let left_out = |(model, why): &(&str, MatchError)| json!({ "model": model, "why": why.to_string() });
     json!({
-        "on": what.id(),
-        "unit": what.unit(),
+        "on": measure.what.id(),
+        "metric": measure.metric().map(Metric::id),
+        "unit": measure.unit(),
         "models": ranking.matched.iter().map(matched).collect::<Vec<_>>(),
         "left_out": ranking.left_out.iter().map(left_out).collect::<Vec<_>>(),
+        "unfinished": ranking.unfinished,
     })
 }
 
@@ -218,30 +260,31 @@ fn now(scene: &Scene, view: usize, name: &str, registry: &Registry) -> Value {
     value.unwrap_or(Value::Number(0.0))
 }
 
-fn in_words(found: &Match, before: &[Value], view: usize, what: What) -> String {
+fn in_words(found: &Match, before: &[Value], view: usize, measure: Measure) -> String {
     let letter = LETTERS[view];
     if found.values.is_empty() {
-        let (unit, before) = (what.unit(), digits(found.before));
+        let (unit, before) = (measure.unit(), digits(found.before));
         let stays = format!("view {letter} stays as it is: no other values come nearer to view A");
         return format!("{stays}\n{unit}: {before}\n");
     }
-    let mut text = format!("view {letter} matched to view A on the {}\n", what.id());
+    let mut text = format!("view {letter} matched to view A on the {measure}\n");
     for ((name, value), before) in found.values.iter().zip(before) {
         text += &format!("{name}: {before} → {value}\n");
     }
     if !found.kept.is_empty() {
         text += &format!("unchanged: {}\n", listed(&found.kept, "and"));
     }
-    text + &format!("{}: {} → {}\n", what.unit(), digits(found.before), digits(found.after))
+    text + &format!("{}: {} → {}\n", measure.unit(), digits(found.before), digits(found.after))
 }
 
-fn as_json(found: &Match, view: usize, what: What) -> Json {
+fn as_json(found: &Match, view: usize, measure: Measure) -> Json {
     let values: serde_json::Map<_, _> =
         found.values.iter().map(|(name, v)| ((*name).to_owned(), v.json())).collect();
     json!({
         "view": LETTERS[view],
-        "on": what.id(),
-        "unit": what.unit(),
+        "on": measure.what.id(),
+        "metric": measure.metric().map(Metric::id),
+        "unit": measure.unit(),
         "before": found.before,
         "after": found.after,
         "values": values,

@@ -87,6 +87,17 @@ struct Cli {
     places: Places,
 }
 
+impl Cli {
+    /// True if the command answers Ctrl+C itself: the window, and work of which a part is worth having.
+    fn handles_signals(&self) -> bool {
+        match &self.command {
+            None | Some(Command::View(_) | Command::TryShaders) => true,
+            Some(Command::Match(arguments)) => arguments.own.is_of_all(),
+            Some(_) => false,
+        }
+    }
+}
+
 #[cfg(target_os = "linux")]
 impl Cli {
     /// True if the command loads a graphics driver.
@@ -509,8 +520,7 @@ fn run_as(
         Ok(scenes) => cli.options.scenes = scenes,
         Err(failure) => return ended(Err(failure)),
     }
-    // The window handles signals itself.
-    if !matches!(cli.command, None | Some(Command::View(_) | Command::TryShaders)) {
+    if !cli.handles_signals() {
         // Without it, temporary files may remain until the next tidying after a signal.
         let _ = Interrupt::end_tidily();
     }

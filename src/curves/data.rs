@@ -6,6 +6,7 @@ use glam::Vec3;
 
 const PAINT_TABLE: &str = include_str!("../../assets/data/cornell_paints.csv");
 const SGD: &str = include_str!("../../assets/data/sgd_merl100.csv");
+const ABC: &str = include_str!("../../assets/data/abc_merl100.csv");
 
 /// A measured value: angles in degrees and the BRDF in sr⁻¹ at 630, 550 and 465 nm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,9 +143,81 @@ impl Sgd {
     /// The luminance of [`Self::brdf`] (ITU-R BT.709).
     #[must_use]
     pub fn luminance(&self, l: Vec3, v: Vec3) -> f64 {
-        let [r, g, b] = self.brdf(l, v);
-        0.2126 * r + 0.7152 * g + 0.0722 * b
+        luminance(self.brdf(l, v))
     }
+}
+
+fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// **The ABC model**, with the parameters fitted by its authors to a material of the MERL database. A fit, not a measurement.
+///
+/// ```text
+/// f = k_d/π + F(v·h) G D(h) / (π (n·l) (n·v)),  D = A / (1 + B (1 − n·h))^C
+/// G = min(1, 2 (n·h)(n·l)/(v·h), 2 (n·h)(n·v)/(v·h)),  F of a dielectric with the index n
+/// ```
+///
+/// J. Löw, J. Kronander, A. Ynnerman, J. Unger (2012), *BRDF Models for Accurate and Efficient Rendering of Glossy
+/// Surfaces*, ACM Transactions on Graphics 31(1), 9.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Abc {
+    /// The name of the material in the MERL database.
+    pub name: &'static str,
+    diffuse: [f64; 3],
+    a: [f64; 3],
+    b: f64,
+    c: f64,
+    ior: f64,
+}
+
+impl Abc {
+    /// The fit of a material.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        ABC.lines().skip(1).find(|line| line.split(',').next() == Some(name)).and_then(Self::read)
+    }
+
+    fn read(line: &'static str) -> Option<Self> {
+        let mut cells = line.split(',');
+        let name = cells.next()?;
+        let mut number = || cells.next()?.parse::<f64>().ok();
+        Some(Self {
+            name,
+            diffuse: [number()?, number()?, number()?],
+            a: [number()?, number()?, number()?],
+            b: number()?,
+            c: number()?,
+            ior: number()?,
+        })
+    }
+
+    /// `f_r` in sr⁻¹ in the three channels; l and v are in the local frame. Zero below the surface.
+    #[must_use]
+    pub fn brdf(&self, l: Vec3, v: Vec3) -> [f64; 3] {
+        if l.z <= 0.0 || v.z <= 0.0 {
+            return [0.0; 3];
+        }
+        let (l, v) = (l.as_dvec3().normalize(), v.as_dvec3().normalize());
+        let h = (l + v).normalize();
+        let cos_d = h.dot(l).clamp(1e-9, 1.0);
+        let g = (2.0 * h.z / cos_d * l.z.min(v.z)).min(1.0);
+        let lobe = reflectance(cos_d, self.ior) * g / (1.0 + self.b * (1.0 - h.z)).powf(self.c);
+        std::array::from_fn(|i| (self.diffuse[i] + self.a[i] * lobe / (l.z * v.z)) / PI)
+    }
+
+    /// The luminance of [`Self::brdf`] (ITU-R BT.709).
+    #[must_use]
+    pub fn luminance(&self, l: Vec3, v: Vec3) -> f64 {
+        luminance(self.brdf(l, v))
+    }
+}
+
+/// The reflectance of the boundary of a dielectric with refractive index n, unpolarised (A.-J. Fresnel 1823).
+fn reflectance(cos: f64, n: f64) -> f64 {
+    let bent = (n * n - 1.0 + cos * cos).max(0.0).sqrt();
+    let (s, p) = ((cos - bent) / (cos + bent), (n * n * cos - bent) / (n * n * cos + bent));
+    0.5 * (s * s + p * p)
 }
 
 #[cfg(test)]
@@ -182,6 +255,28 @@ mod tests {
             }
             assert_eq!(material.brdf(Vec3::NEG_Z, Vec3::Z), [0.0; 3]);
         }
+    }
+
+    #[test]
+    fn two_published_fits_of_a_material_are_alike() {
+        let sgd = Sgd::all();
+        let abc: Vec<_> = sgd.iter().map(|m| Abc::named(m.name).expect("both have it")).collect();
+        assert!(abc.iter().zip(&sgd).all(|(a, b)| a.name == b.name) && Abc::named("paper").is_none());
+        // Along the normal: k_d/π + ((n − 1)/(n + 1))² A/π.
+        let bronze = abc[0].brdf(Vec3::Z, Vec3::Z)[0];
+        let expected = (0.024514 + (1.236525f64 / 3.236525).powi(2) * 51.714554) / PI;
+        assert!((bronze / expected - 1.0).abs() < 1e-9, "{bronze} {expected}");
+        // At 60° from glass (n = 1.5), 0.08918671.
+        assert!((reflectance(0.5, 1.5) - 0.089_186_71).abs() < 1e-7);
+        // Of the measurement, halfway up the lobe of a plastic, both make about the same; of another material, not.
+        let (l, v) = (direction(30.0, 0.0), direction(40.0, 180.0));
+        let at = |name: &str| {
+            let i = abc.iter().position(|m| m.name == name).expect("is in the table");
+            (sgd[i].luminance(l, v), abc[i].luminance(l, v))
+        };
+        let (teflon, plastic) = (at("teflon"), at("black-obsidian"));
+        assert!((teflon.0 / teflon.1 - 1.0).abs() < 0.25, "{teflon:?}");
+        assert!((teflon.0 / plastic.1 - 1.0).abs() > 0.5, "the wrong twin: {teflon:?} {plastic:?}");
     }
 
     #[test]

@@ -101,6 +101,8 @@ pub struct Curve {
     pub name: String,
     /// The points by increasing angle.
     pub points: Vec<Point>,
+    /// The standard uncertainty of each point's value; empty if it is not known.
+    pub sigma: Vec<f64>,
     /// True if the points were measured, and nothing is known between them.
     pub measured: bool,
     /// True if a part of the light leaves in a single direction, which the curve leaves out.
@@ -110,6 +112,14 @@ pub struct Curve {
 }
 
 impl Curve {
+    /// The uncertainty of the point nearest to an angle.
+    #[must_use]
+    pub fn sigma_at(&self, angle: f64) -> Option<f64> {
+        let off = |(point, _): &(&Point, &f64)| (point.angle - angle).abs();
+        let nearest = self.points.iter().zip(&self.sigma).min_by(|a, b| off(a).total_cmp(&off(b)));
+        nearest.map(|(_, sigma)| *sigma)
+    }
+
     /// The points without a finite value.
     #[must_use]
     pub fn missing(&self) -> Option<Missing> {

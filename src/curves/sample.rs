@@ -1,6 +1,8 @@
 //! Curves of models and of measured data.
 
-use super::{Curve, CurveError, Detail, Kind, Point, Setup, Subject, adaptive, angles::behind, subject};
+use super::{
+    Curve, CurveError, Detail, Kind, Point, Setup, Subject, adaptive, angles::behind, kind, subject,
+};
 use crate::{
     optics::colour::Encoding, parameter::Values, progress::Progress, reflection::ModelEntry,
     registry::Registry, text::listed,
@@ -43,7 +45,17 @@ pub fn curve(
     subject.runs()?;
     let sharp = declared.has_light && subject.is_sharp();
     let reflected = declared.is_reflected && subject.transmits();
-    Ok(Curve { name: subject.name.clone(), points, measured: false, sharp, reflected })
+    let sigma = uncertainties(subject, setup, &points);
+    Ok(Curve { name: subject.name.clone(), points, sigma, measured: false, sharp, reflected })
+}
+
+/// The standard uncertainties of points of a measured surface, where its quantity follows from single values.
+fn uncertainties(subject: &Subject, setup: &Setup, points: &[Point]) -> Vec<f64> {
+    let Some(of) = setup.kind.declaration().of_measured else { return Vec::new() };
+    let l = kind::light(setup);
+    let sigma = |point: &Point| subject.uncertainty(l, kind::seen(setup, point.angle));
+    let all: Option<Vec<_>> = points.iter().map(sigma).collect();
+    all.unwrap_or_default().into_iter().map(|sigma| f64::from(sigma * of(l.z))).collect()
 }
 
 /// The angles to the normal behind a surface at which light from an angle goes on: straight, and bent; and 0.
@@ -95,5 +107,5 @@ fn measured(subject: &Subject, id: &str, setup: &Setup) -> Result<Curve, CurveEr
         }
     })?;
     let points = points.into_iter().map(|(angle, f)| Point { angle, rgb: factor * f }).collect();
-    Ok(Curve { name, points, measured: true, sharp: false, reflected: false })
+    Ok(Curve { name, points, sigma: Vec::new(), measured: true, sharp: false, reflected: false })
 }

@@ -75,6 +75,9 @@ impl Sheet {
             if let Some(missing) = curve.missing() {
                 notes.push(format!("{}: {missing}, where the curve has a gap.", curve.name));
             }
+            if !curve.sigma.is_empty() {
+                notes.push(format!("{}: bars are the standard uncertainty σ, up and down.", curve.name));
+            }
             if curve.sharp {
                 notes.push(format!("{}: {UNSPREAD}", curve.name));
             }
@@ -229,7 +232,9 @@ impl Sheet {
         let marks = [Mark::Ring, Mark::Square, Mark::Triangle, Mark::Cross];
         let (mut lines, mut measured) = (0, 0);
         let each = |(i, curve): (usize, &Curve)| {
-            let points = curve.points.iter().map(|p| (p.angle, self.value(p.rgb))).collect();
+            let points: Vec<_> = curve.points.iter().map(|p| (p.angle, self.value(p.rgb))).collect();
+            let bars =
+                points.iter().zip(&curve.sigma).map(|((_, v), sigma)| (v - sigma, v + sigma)).collect();
             let (colour, line, mark) = if curve.measured {
                 measured += 1;
                 (6, Line::None, marks[(measured - 1) % marks.len()])
@@ -239,7 +244,7 @@ impl Sheet {
                     self.styles.get(i).copied().unwrap_or_else(|| Style::nth(lines - 1));
                 (colour, line, Mark::None)
             };
-            Series { name: curve.name.clone(), points, colour, line, mark }
+            Series { name: curve.name.clone(), points, bars, colour, line, mark }
         };
         self.curves.iter().enumerate().map(each).collect()
     }
@@ -256,7 +261,10 @@ impl Sheet {
         let limit = if from_centre || self.log { 90.0 } else { self.limit() };
         let points = self.curves.iter().flat_map(|curve| &curve.points);
         let shown = points.filter(|p| from_surface(p.angle) <= limit);
-        let values: Vec<_> = shown.map(|p| self.value(p.rgb)).filter(|v| v.is_finite()).collect();
+        let mut values: Vec<_> = shown.map(|p| self.value(p.rgb)).filter(|v| v.is_finite()).collect();
+        let ends = self.curves.iter().flat_map(|curve| curve.points.iter().zip(&curve.sigma));
+        let ends = ends.filter(|(p, _)| from_surface(p.angle) <= limit);
+        values.extend(ends.map(|(p, sigma)| self.value(p.rgb) + sigma).filter(|v| v.is_finite()));
         span(self.setup.kind, self.log, from_centre, &values)
     }
 }

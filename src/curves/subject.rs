@@ -121,6 +121,14 @@ impl Subject {
         }
     }
 
+    /// The standard uncertainty of `f` in sr⁻¹, of measured surfaces that know it.
+    pub(super) fn uncertainty(&self, l: Vec3, v: Vec3) -> Option<f32> {
+        match &self.source {
+            Source::Model { surface, .. } => surface.uncertainty(l, v, &Frame::LOCAL),
+            _ => None,
+        }
+    }
+
     /// The directional albedo for a viewer.
     pub(super) fn directional_albedo(&self, v: Vec3) -> Vec3 {
         let albedo = match &self.source {

@@ -222,6 +222,7 @@ fn values_that_are_no_numbers_are_said_and_shown() {
     let curve = Curve {
         name: "broken".to_owned(),
         points: points.collect(),
+        sigma: Vec::new(),
         measured: false,
         sharp: false,
         reflected: false,
@@ -261,6 +262,7 @@ fn every_curve_has_a_colour_and_a_dash() {
     let one = |i: usize| Curve {
         name: format!("curve {i}"),
         points: vec![Point { angle: 0.0, rgb: Vec3::ONE }, Point { angle: 9.0, rgb: Vec3::ONE }],
+        sigma: Vec::new(),
         measured: false,
         sharp: false,
         reflected: false,
@@ -327,8 +329,14 @@ fn what_a_logarithmic_axis_cannot_show_is_said() {
     let said = |values: [f32; 3], log: bool| {
         let point = |(i, v): (usize, f32)| Point { angle: i as f64, rgb: Vec3::splat(v) };
         let points = values.into_iter().enumerate().map(point).collect();
-        let curves =
-            vec![Curve { name: "x".to_owned(), points, measured: false, sharp: false, reflected: false }];
+        let curves = vec![Curve {
+            name: "x".to_owned(),
+            points,
+            sigma: Vec::new(),
+            measured: false,
+            sharp: false,
+            reflected: false,
+        }];
         let sheet = Sheet { curves, log, ..Sheet::new(setup) };
         assert!(!sheet.figure().svg().contains("NaN"));
         sheet.notes().join(" ")
@@ -470,4 +478,61 @@ fn a_smooth_surface_has_an_albedo_and_says_what_curves_leave_out() {
     }
     let (said, heading) = (fine(&subject("phong", &[]), Kind::Brdf, 45.0).sharp, Kind::Brdf.name());
     assert!(!said && heading == "BRDF");
+}
+
+#[test]
+fn the_uncertainty_of_a_measurement_is_drawn_as_bars_and_written() {
+    let registry = Registry::builtin();
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, column: &str, sigma: &str| {
+        let mut rows = format!("theta_i,phi_i,theta_o,phi_o,value{column}\n");
+        for (theta_i, theta_o, phi) in
+            (0..9).flat_map(|i| (0..9).flat_map(move |j| [0, 60, 120, 180].map(|phi| (10 * i, 10 * j, phi))))
+        {
+            rows += &format!("{theta_i},0,{theta_o},{phi},0.25{sigma}\n");
+        }
+        let place = folder.path().join(name);
+        std::fs::write(&place, rows).expect("written");
+        let scene = format!(
+            "{{\"lights\":[{{\"type\":\"point\"}}],\"objects\":[{{\"type\":\"sphere\",\"reflection_model\":\"measured_table\",\"material\":{{\"table_file\":\"{name}\"}}}}]}}"
+        );
+        let file = folder.path().join("scene.json");
+        std::fs::write(&file, scene).expect("written");
+        let loaded = crate::scene::load::file(&file, &registry, crate::scene::load::Defaults::Use);
+        let material = loaded.expect("a scene").scene.objects[0].material.clone();
+        Subject::model(registry.model("measured_table").expect("built in"), &material, Encoding::Srgb)
+    };
+    let (with, without) = (write("with.csv", ",sigma", ",0.05"), write("without.csv", "", ""));
+    let drawn = |subject: &Subject, kind: Kind| {
+        let setup = Setup::new(kind, 60.0, 0.0).expect("legal");
+        let curve = curve(subject, &setup, Detail::Coarse, &Progress::NONE).expect("a curve");
+        Sheet { curves: vec![curve], ..Sheet::new(setup) }
+    };
+    // f has the uncertainty of the file, f cos θ half of it at 60°, π f cos θ π halves; an albedo has none.
+    for (kind, expected) in
+        [(Kind::Brdf, 0.05), (Kind::BrdfCos, 0.025), (Kind::Response, 0.025 * std::f64::consts::PI)]
+    {
+        let sheet = drawn(&with, kind);
+        let sigma = &sheet.curves[0].sigma;
+        assert_eq!(sigma.len(), sheet.curves[0].points.len());
+        assert!(sigma.iter().all(|s| (s / expected - 1.0).abs() < 1e-3), "{kind:?} {sigma:?}");
+    }
+    assert!(drawn(&with, Kind::Albedo).curves[0].sigma.is_empty());
+    let (sheet, plain) = (drawn(&with, Kind::Brdf), drawn(&without, Kind::Brdf));
+    assert!(plain.curves[0].sigma.is_empty(), "the wrong twin");
+    assert!((sheet.curves[0].sigma_at(12.3).expect("known") - 0.05).abs() < 1e-4);
+    let draw::Figure::Plot(plot) = sheet.figure() else { panic!("a plot") };
+    for ((_, v), (low, high)) in plot.series[0].points.iter().zip(&plot.series[0].bars) {
+        assert!((v - low - 0.05).abs() < 1e-3 && (high - v - 0.05).abs() < 1e-3);
+    }
+    let lines = |sheet: &Sheet| sheet.figure().svg().matches("stroke=\"#0072b2\"").count();
+    assert!(lines(&sheet) > lines(&plain) + 30, "three lines a bar: {} {}", lines(&sheet), lines(&plain));
+    assert!(lines(&drawn(&with, Kind::Polar)) > lines(&plain) + 30);
+    assert!(sheet.notes().iter().any(|note| note.contains("bars are the standard uncertainty σ")));
+    assert!(plain.notes().is_empty());
+    let csv = sheet.csv();
+    let mut rows = csv.lines();
+    assert!(rows.next().is_some_and(|head| head.ends_with(",luminance,sigma")));
+    assert!(rows.all(|row| row.rsplit(',').next().is_some_and(|s| s.starts_with("0.0"))), "{csv}");
+    assert!(plain.csv().lines().next().is_some_and(|head| head.ends_with(",luminance")));
 }

@@ -1,8 +1,8 @@
 //! Every model matched to view A: which one comes nearest?
 
-use super::{Match, MatchError, Request, What, match_view, parameters};
+use super::{Match, MatchError, Measure, Request, match_view, parameters};
 use crate::{
-    progress::{Cancelled, Progress},
+    progress::Progress,
     reflection::ModelEntry,
     registry::Registry,
     scene::{Scene, Variant},
@@ -17,13 +17,15 @@ pub struct Matched {
     pub found: Match,
 }
 
-/// All models that were matched, the nearest first, and the others with the reason.
+/// The models that were matched, the nearest first, and the others.
 #[derive(Clone, Debug, Default)]
 pub struct Ranking {
     /// The models by the error that remains.
     pub matched: Vec<Matched>,
-    /// Those that could not be matched.
+    /// Those that could not be matched, with the reason.
     pub left_out: Vec<(&'static str, MatchError)>,
+    /// Those whose turn did not come, or did not end, before the user cancelled.
+    pub unfinished: Vec<&'static str>,
 }
 
 /// Models that can be matched to a surface: of opaque surfaces, and with parameters rather than measurements.
@@ -32,16 +34,14 @@ pub fn candidates(registry: &Registry) -> impl Iterator<Item = &ModelEntry> {
 }
 
 /// Matches models to view A, each with all its numbers and colours free, from its defaults: the other views do not matter.
-///
-/// # Errors
-/// Returns an error if the user cancels.
+/// If the user cancels, what was matched until then is the result.
 pub fn match_each<'m>(
     scene: &Scene,
     models: impl IntoIterator<Item = &'m ModelEntry>,
-    what: What,
+    measure: Measure,
     registry: &Registry,
     progress: &Progress,
-) -> Result<Ranking, Cancelled> {
+) -> Ranking {
     let models: Vec<_> = models.into_iter().collect();
     let mut ranking = Ranking::default();
     for (i, model) in models.iter().enumerate() {
@@ -54,16 +54,19 @@ pub fn match_each<'m>(
         }
         let free = parameters(&scene, 1, registry);
         let free: Vec<_> = free.into_iter().map(|(parameter, _)| parameter.name).collect();
-        let request = Request { scene: &scene, view: 1, what, parameters: &free };
+        let request = Request { scene: &scene, view: 1, measure, parameters: &free };
         let name = |step: &str| format!("{}: {step}", model.declaration.name);
         let found =
             progress.part((i, models.len()), name, |progress| match_view(&request, registry, progress));
         match found {
             Ok(found) => ranking.matched.push(Matched { model: id, found }),
-            Err(MatchError::Cancelled) => return Err(Cancelled),
+            Err(MatchError::Cancelled) => {
+                ranking.unfinished = models[i..].iter().map(|model| model.declaration.id).collect();
+                break;
+            }
             Err(why) => ranking.left_out.push((id, why)),
         }
     }
     ranking.matched.sort_by(|a, b| a.found.after.total_cmp(&b.found.after));
-    Ok(ranking)
+    ranking
 }

@@ -4,6 +4,7 @@ use glam::{Quat, Vec3};
 use rayon::prelude::*;
 
 use super::{
+    Metric,
     search::{Given, Target},
     sides::{Pair, Side},
 };
@@ -49,35 +50,45 @@ pub fn directions(azimuth: f64, largest: f64) -> Vec<(Vec3, Vec3)> {
 
 /// The lobes of the objects' materials.
 pub(super) struct Lobe {
-    /// Each with its pairs of directions and the wanted responses.
+    /// Each with its pairs of directions and the wanted numbers of the metric.
     lobes: Vec<(Pair, Vec<(Vec3, Vec3)>, Vec<f64>)>,
+    metric: Metric,
     terms: TermSelection,
 }
 
-/// The response for each pair of directions, three numbers each.
-fn responses(surface: &dyn Surface, directions: &[(Vec3, Vec3)], terms: TermSelection, to: &mut [f64]) {
+/// The number of a metric for each pair of directions, three each.
+fn numbers(
+    surface: &dyn Surface,
+    directions: &[(Vec3, Vec3)],
+    (metric, terms): (Metric, TermSelection),
+    to: &mut [f64],
+) {
     /// Minimum number of pairs that justifies a separate task.
     const AT_ONCE: usize = 128;
     to.par_chunks_mut(3 * AT_ONCE).zip(directions.par_chunks(AT_ONCE)).for_each(|(to, directions)| {
         for (to, (l, v)) in to.as_chunks_mut::<3>().0.iter_mut().zip(directions) {
-            *to = surface.response(*l, *v, &Frame::LOCAL).select(terms).to_array().map(f64::from);
+            *to = surface
+                .response(*l, *v, &Frame::LOCAL)
+                .select(terms)
+                .to_array()
+                .map(|own| metric.of(own.into()));
         }
     });
 }
 
 impl Lobe {
     /// The lobes of the visible objects.
-    pub(super) fn new([a, b]: [&Side; 2], registry: &Registry) -> Self {
+    pub(super) fn new([a, b]: [&Side; 2], metric: Metric, registry: &Registry) -> Self {
         let lobe = |pair: Pair| {
             let azimuths = if pair.anisotropic { &AZIMUTHS[..] } else { &AZIMUTHS[..1] };
             let all: Vec<_> =
                 azimuths.iter().flat_map(|azimuth| directions(*azimuth, LARGEST_ANGLE)).collect();
             let mut wanted = vec![0.0; 3 * all.len()];
-            responses(&*pair.wanted, &all, a.terms, &mut wanted);
+            numbers(&*pair.wanted, &all, (metric, a.terms), &mut wanted);
             (pair, all, wanted)
         };
         let lobes = Pair::all([a, b], registry).into_iter().map(lobe).collect();
-        Self { lobes, terms: b.terms }
+        Self { lobes, metric, terms: b.terms }
     }
 }
 
@@ -89,7 +100,7 @@ impl Target for Lobe {
     fn differences(&mut self, values: &Given, mut to: &mut [f64]) {
         for (pair, directions, wanted) in &self.lobes {
             let (own, rest) = to.split_at_mut(wanted.len());
-            responses(&*pair.with(values), directions, self.terms, own);
+            numbers(&*pair.with(values), directions, (self.metric, self.terms), own);
             own.iter_mut().zip(wanted).for_each(|(to, wanted)| *to -= wanted);
             to = rest;
         }

@@ -4,7 +4,7 @@
 //! the other? The search knows nothing about the models. It changes the free parameters of view B within
 //! their legal ranges, and minimises the sum of squared differences between
 //!
-//! - [the lobes](What::Lobe): the responses of both models for about a thousand pairs of directions,
+//! - [the lobes](What::Lobe): the responses of both models for about a thousand pairs of directions, by a [`Metric`],
 //! - [the pictures](What::Picture): the light of both views, drawn small by the CPU renderer, or
 //! - [the highlights](What::Highlight): their widths at half maximum, in the plane of incidence.
 //!
@@ -19,7 +19,7 @@
 //! let mut scene = Scene { reflection_model: "blinn_phong".to_owned(), ..Scene::default() };
 //! scene.objects[0].material.set("alpha", Value::Integer(80));
 //! scene.variants = vec![Variant { reflection_model: Some("phong".to_owned()), ..Variant::default() }];
-//! let request = Request { scene: &scene, view: 1, what: What::Highlight, parameters: &["alpha"] };
+//! let request = Request { scene: &scene, view: 1, measure: What::Highlight.into(), parameters: &["alpha"] };
 //! let found = match_view(&request, &Registry::builtin(), &Progress::NONE).expect("both have a highlight");
 //! // A quarter of the exponent: F. Fisher and A. Woo (1994).
 //! assert_eq!(found.values, [("alpha", Value::Integer(20))]);
@@ -40,12 +40,14 @@ pub mod each;
 mod highlight;
 pub mod least_squares;
 mod lobe;
+mod metric;
 mod picture;
 mod search;
 mod sides;
 
 pub use highlight::highlight_width;
 pub use lobe::directions;
+pub use metric::{Measure, Metric};
 pub use picture::{HEIGHT, WIDTH};
 
 use axis::Axis;
@@ -94,8 +96,8 @@ pub struct Request<'a> {
     pub scene: &'a Scene,
     /// The view whose parameters are adjusted to match view A: 1 is view B.
     pub view: usize,
-    /// The quantity to compare.
-    pub what: What,
+    /// The quantity to compare, and the metric.
+    pub measure: Measure,
     /// Names of the free parameters.
     pub parameters: &'a [&'a str],
 }
@@ -107,7 +109,7 @@ pub struct Match {
     pub values: Vec<(&'static str, Value)>,
     /// The free parameters that keep their values, since changing them hardly helps.
     pub kept: Vec<&'static str>,
-    /// The error with the present values: see [`What::unit`].
+    /// The error with the present values: see [`Measure::unit`].
     pub before: f64,
     /// The error with the matched values.
     pub after: f64,
@@ -272,8 +274,10 @@ pub fn match_view(request: &Request, registry: &Registry, progress: &Progress) -
     let can_run = || sides.iter().try_for_each(|side| side.can_run(registry));
     can_run()?;
     let free = frees(request, b, letter, registry)?;
-    let found = match request.what {
-        What::Lobe => search(&mut Lobe::new(sides, registry), &free, MOST_LOBES, progress),
+    let found = match request.measure.what {
+        What::Lobe => {
+            search(&mut Lobe::new(sides, request.measure.metric, registry), &free, MOST_LOBES, progress)
+        }
         What::Picture => {
             let mut picture = Picture::new(sides, registry).ok_or(MatchError::NothingVisible)?;
             search(&mut picture, &free, MOST_PICTURES, progress)

@@ -19,7 +19,11 @@ fn number(value: f32) -> Value {
 }
 
 fn matched(scene: &Scene, what: What, parameters: &[&str]) -> Result<Match, MatchError> {
-    match_view(&Request { scene, view: 1, what, parameters }, &Registry::builtin(), &Progress::NONE)
+    match_view(
+        &Request { scene, view: 1, measure: what.into(), parameters },
+        &Registry::builtin(),
+        &Progress::NONE,
+    )
 }
 
 fn error(scene: &Scene, what: What, parameters: &[&str]) -> String {
@@ -246,7 +250,7 @@ fn what_cannot_be_matched_is_said() {
         "gamma is free, but it has no effect: Not used with GGX: only GTR has γ"
     );
     let view = |view: usize| {
-        let request = Request { scene: &phong, view, what: What::Lobe, parameters: &["alpha"] };
+        let request = Request { scene: &phong, view, measure: What::Lobe.into(), parameters: &["alpha"] };
         match_view(&request, &Registry::builtin(), &Progress::NONE).expect_err("refused").to_string()
     };
     assert_eq!(view(2), "there is no view C to match; the scene has 2 views: A and B");
@@ -270,7 +274,7 @@ fn what_cannot_be_matched_is_said() {
     );
     let cancelled = Progress { tell: &|_, _| (), cancelled: &|| true };
     let scene = scene(("phong", &[]), ("blinn_phong", &[]));
-    let request = Request { scene: &scene, view: 1, what: What::Picture, parameters: &["alpha"] };
+    let request = Request { scene: &scene, view: 1, measure: What::Picture.into(), parameters: &["alpha"] };
     assert_eq!(match_view(&request, &Registry::builtin(), &cancelled), Err(MatchError::Cancelled));
 }
 
@@ -289,4 +293,68 @@ fn numbers_are_free_unless_it_is_said_otherwise() {
     assert_eq!(names(&microfacet, true), ["alpha_x", "alpha_y"]);
     assert!(!names(&microfacet, false).contains(&"extinction"));
     assert!(parameters(&phong, 2, &registry).is_empty());
+}
+
+fn by(scene: &Scene, metric: Metric, parameters: &[&str]) -> Match {
+    let measure = Measure { what: What::Lobe, metric };
+    let request = Request { scene, view: 1, measure, parameters };
+    match_view(&request, &Registry::builtin(), &Progress::NONE).expect("a match")
+}
+
+#[test]
+fn the_metrics_of_a_white_and_a_black_matte_surface_have_closed_values() {
+    let colour = |value: u8| [("base_colour", Value::Colour([value; 3]))];
+    let scene = scene(("lambert", &colour(255)), ("lambert", &colour(0)));
+    // f cos θ is cos θ/π for white, and 0 for black.
+    let cosines: Vec<f64> = directions(0.0, 80.0).iter().map(|(l, _)| f64::from(l.z)).collect();
+    let mean = |of: &dyn Fn(f64) -> f64| cosines.iter().map(|c| of(*c)).sum::<f64>() / cosines.len() as f64;
+    let pi = std::f64::consts::PI;
+    let expected = [
+        (Metric::Cosine, mean(&|c| c * c).sqrt()),
+        (Metric::Log, mean(&|c| (1.0 + c / pi).ln().powi(2)).sqrt()),
+        (Metric::CubeRoot, mean(&|c| (c / pi).powf(2.0 / 3.0)).sqrt()),
+    ];
+    for (metric, value) in expected {
+        let found = by(&scene, metric, &["base_colour"]);
+        assert!((found.before / value - 1.0).abs() < 1e-5, "{metric:?}: {found:?}, {value}");
+        assert_eq!(found.values, colour(255), "{metric:?}");
+        // The wrong twins: no metric has the value of another.
+        let others = expected.iter().filter(|(other, _)| *other != metric);
+        assert!(others.clone().count() == 2 && others.clone().all(|(_, v)| (v / value - 1.0).abs() > 0.1));
+    }
+    // Pictures and highlights have no choice.
+    let picture = Measure { what: What::Picture, metric: Metric::Log };
+    assert_eq!((picture.unit(), picture.to_string()), (What::Picture.unit(), "picture".to_owned()));
+    let log = Measure { what: What::Lobe, metric: Metric::Log };
+    assert_eq!((log.unit(), log.to_string()), (Metric::Log.unit(), "lobe (log)".to_owned()));
+    assert_eq!(Measure::from(What::Lobe).unit(), What::Lobe.unit());
+}
+
+#[test]
+fn a_metric_that_sees_tails_widens_a_lobe_without_them() {
+    let metal =
+        [("distribution", Value::Choice("ggx")), ("alpha_x", number(0.15)), ("alpha_y", number(0.15))];
+    let mut scene =
+        scene(("microfacet", &metal), ("microfacet", &[("distribution", Value::Choice("beckmann"))]));
+    for name in ["alpha_x", "alpha_y"] {
+        scene.variants[0].material.set(name, number(0.4));
+    }
+    let [cosine, log, root] =
+        Metric::ALL.map(|metric| found(&by(&scene, metric, &["alpha_x", "alpha_y"]), "alpha_x"));
+    assert!(cosine < log && log < root, "{cosine} {log} {root}");
+}
+
+#[test]
+fn what_was_matched_before_the_user_cancelled_is_kept() {
+    let registry = Registry::builtin();
+    let scene = scene(("phong", &PHONG), ("phong", &[]));
+    let models = ["lambert", "phong", "ward"].map(|id| registry.model(id).expect("built in"));
+    let second = std::cell::Cell::new(false);
+    let tell = |_: f32, step: &str| second.set(second.get() || step.starts_with("Phong"));
+    let progress = Progress { tell: &tell, cancelled: &|| second.get() };
+    let ranking = each::match_each(&scene, models, What::Lobe.into(), &registry, &progress);
+    assert_eq!(ranking.matched.iter().map(|matched| matched.model).collect::<Vec<_>>(), ["lambert"]);
+    assert_eq!(ranking.unfinished, ["phong", "ward"]);
+    let whole = each::match_each(&scene, models, What::Lobe.into(), &registry, &Progress::NONE);
+    assert!(whole.unfinished.is_empty() && whole.matched[0].model == "phong", "{whole:?}");
 }

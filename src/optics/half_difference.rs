@@ -9,6 +9,7 @@
 //! 3. the number of entries that were not measured, and a number for the model;
 //! 4. two words for each entry, φ_d fastest, with the roots of red and green, of blue and of 1, or 0 if it was not measured,
 //!    as 16-bit floats, the first in the low bits. Values in sr⁻¹ keep a relative error of 9.8e-4.
+//! 5. perhaps a number for each entry, its standard uncertainty in sr⁻¹, which is not used for pictures.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -56,7 +57,8 @@ impl<'a> Grid<'a> {
     pub fn new(numbers: &'a [f32]) -> Option<Self> {
         let [h, d, phi, ..] = numbers else { return None };
         let counts = [*h, *d, *phi].map(|count| count as usize);
-        let is_whole = numbers.len() == HEADER + 2 * counts[0] * counts[1] * counts[2];
+        let entries = counts[0] * counts[1] * counts[2];
+        let is_whole = [2, 3].iter().any(|each| numbers.len() == HEADER + each * entries);
         (is_whole && counts[0] > 1 && counts[1] > 1 && counts[2] > 0).then_some(Self { counts, numbers })
     }
 
@@ -129,7 +131,25 @@ impl<'a> Grid<'a> {
     /// The value at three angles in radians, in sr⁻¹: linear between the middles of the bins.
     #[must_use]
     #[inline]
-    pub fn value(&self, [theta_h, theta_d, phi_d]: [f32; 3]) -> Vec3 {
+    pub fn value(&self, angles: [f32; 3]) -> Vec3 {
+        self.between(angles, |i, j, k| self.cell(i, j, k).truncate())
+    }
+
+    /// The standard uncertainty at three angles, interpolated like the value; `None` if the table has none.
+    #[must_use]
+    pub fn uncertainty(&self, angles: [f32; 3]) -> Option<f32> {
+        let [n_h, n_d, n_phi] = self.counts;
+        let all = self.numbers.get(HEADER + 2 * n_h * n_d * n_phi..).filter(|all| !all.is_empty())?;
+        Some(self.between(angles, |i, j, k| Vec3::splat(all[(i * n_d + j) * n_phi + k])).x)
+    }
+
+    /// Linear between the middles of the bins around three angles.
+    #[inline]
+    fn between(
+        &self,
+        [theta_h, theta_d, phi_d]: [f32; 3],
+        cell: impl Fn(usize, usize, usize) -> Vec3,
+    ) -> Vec3 {
         let [n_h, n_d, n_phi] = self.counts;
         let h = (n_h as f32 * (theta_h / FRAC_PI_2).sqrt() - 0.5).clamp(0.0, (n_h - 1) as f32);
         let d = (n_d as f32 * (theta_d / FRAC_PI_2) - 0.5).clamp(0.0, (n_d - 1) as f32);
@@ -139,8 +159,7 @@ impl<'a> Grid<'a> {
         let [a, b, c] = [h - i as f32, d - j as f32, phi - low];
         let k = if low < 0.0 { n_phi - 1 } else { (low as usize).min(n_phi - 1) };
         let next = if k + 1 == n_phi { 0 } else { k + 1 };
-        let along =
-            |i: usize, j: usize| self.cell(i, j, k).truncate().lerp(self.cell(i, j, next).truncate(), c);
+        let along = |i: usize, j: usize| cell(i, j, k).lerp(cell(i, j, next), c);
         let across = |i: usize| along(i, j).lerp(along(i, j + 1), b);
         across(i).lerp(across(i + 1), a)
     }

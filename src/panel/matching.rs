@@ -6,7 +6,7 @@ use super::{
     segmented,
     state::{Effect, MatchCommand, MatchDraft},
 };
-use crate::matching::What;
+use crate::matching::{Metric, What};
 
 /// Height of the description of an option, in points: the same for all, so that nothing moves.
 const SENTENCE: f32 = 34.0;
@@ -47,22 +47,25 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
 
 fn ask(ui: &mut Ui, draft: &MatchDraft, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
-    let mut next = draft.clone();
+    let (mut next, now) = (draft.clone(), draft.measure);
     ui.horizontal(|ui| {
         ui.label("Compare the");
         let tip = |ui: &mut Ui, what: What| {
             ui.set_max_width(300.0);
             ui.label(what.summary());
         };
-        next.what =
-            segmented::values(ui, "Compare", &What::ALL, draft.what, What::id, tip).unwrap_or(draft.what);
+        next.measure.what =
+            segmented::values(ui, "Compare", &What::ALL, now.what, What::id, tip).unwrap_or(now.what);
     });
     ui.add_space(2.0);
     let room = vec2(ui.available_width(), SENTENCE);
     ui.allocate_ui_with_layout(room, Layout::top_down(Align::Min), |ui| {
         ui.set_min_height(SENTENCE);
-        theme::note(ui, draft.what.summary());
+        theme::note(ui, now.what.summary());
     });
+    if now.metric().is_some() {
+        metric(ui, &mut next.measure.metric);
+    }
     ui.add_space(8.0);
     ui.label(theme::strong(ui, format!("Free parameters of view {}", letter(draft.view))));
     let seen = session.document.seen(draft.view, registry).map(|(scene, _)| scene);
@@ -78,6 +81,19 @@ fn ask(ui: &mut Ui, draft: &MatchDraft, context: &mut PanelContext<'_>) {
     if next != *draft {
         context.act(Action::Match(MatchCommand::Change(next)));
     }
+}
+
+/// The choice of the metric.
+pub(super) fn metric(ui: &mut Ui, now: &mut Metric) {
+    ui.horizontal(|ui| {
+        ui.label("Metric");
+        let tip = |ui: &mut Ui, metric: Metric| {
+            ui.set_max_width(300.0);
+            ui.label(metric.summary());
+            ui.label(theme::small(ui, metric.source().replace('*', "")));
+        };
+        *now = segmented::values(ui, "Metric", &Metric::ALL, *now, Metric::id, tip).unwrap_or(*now);
+    });
 }
 
 /// The parameters of a view, each with its value and a box that frees it.

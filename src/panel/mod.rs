@@ -57,6 +57,7 @@ pub mod explain;
 pub mod export;
 pub mod files;
 mod finder;
+mod fits;
 mod focus;
 pub mod formula;
 mod frame;
@@ -143,6 +144,7 @@ pub fn register_builtin(to: &mut Panels) {
             .open_if(|s| s.materials.draft.is_some()),
         Own::new([matching::DRAFT, "Match to A"], window, matching::show)
             .open_if(|s| s.match_draft.is_some()),
+        Own::new(fits::FITS, window, fits::show).open_if(|s| s.fits.is_some()),
         Own::new([taking::DRAFT, taking::TITLE], window, taking::show).open_if(|s| s.take_draft.is_some()),
         Own::new(["question", "Question"], question, question::show).open_if(|s| s.questions.open.is_some()),
     ] {

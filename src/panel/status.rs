@@ -1,7 +1,7 @@
 //! The status line at the bottom: messages, shader errors, the selection.
 
 use super::{
-    export, keys, matching,
+    export, fits, keys, matching,
     prelude::*,
     state::{Converging, MESSAGES_TAB, SHADER_TAB},
     taking,
@@ -32,6 +32,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         shader_errors(ui, context);
         export::progress(ui, context);
         matching::progress(ui, context);
+        fits::progress(ui, context);
         taking::progress(ui, context);
         samples(ui, &session.facts.converged);
         let name = if session.has_group() {

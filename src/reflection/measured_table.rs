@@ -2,7 +2,11 @@ use glam::Vec3;
 
 use super::{Declaration, Readout, ReadoutValue, ReflectionModel, built_in};
 use crate::{
-    optics::{Frame, Terms, half_difference::Grid, lobes::Lobes},
+    optics::{
+        Frame, Terms,
+        half_difference::{Grid, angles},
+        lobes::Lobes,
+    },
     parameter::Parameter,
     parameters,
 };
@@ -68,6 +72,10 @@ impl ReflectionModel for MeasuredTable {
 
     fn quantity(&self, symbol: &str, arguments: &[f32]) -> Option<Vec3> {
         self.grid()?.quantity(symbol, arguments)
+    }
+
+    fn uncertainty(&self, l: Vec3, v: Vec3, frame: &Frame) -> Option<f32> {
+        self.grid()?.uncertainty(angles(l, v, frame.n))
     }
 
     fn readouts(&self) -> Vec<Readout> {

@@ -144,6 +144,11 @@ pub trait ReflectionModel: ParameterSet + Clone {
         Vec::new()
     }
 
+    /// The standard uncertainty of a measured BRDF in sr⁻¹, for plots; `None` if it is not known.
+    fn uncertainty(&self, _l: Vec3, _v: Vec3, _frame: &Frame) -> Option<f32> {
+        None
+    }
+
     /// A single factor of the lobe, as used by [`response`](Self::response), for plots. `None` at all angles
     /// for a factor that the model lacks.
     fn factor(&self, _factor: Factor) -> Option<Vec3> {

@@ -80,6 +80,10 @@ pub trait Surface: Send + Sync {
     fn readouts(&self) -> Vec<Readout> {
         Vec::new()
     }
+    /// See [`ReflectionModel::uncertainty`].
+    fn uncertainty(&self, _l: Vec3, _v: Vec3, _frame: &Frame) -> Option<f32> {
+        None
+    }
     /// See [`ReflectionModel::factor`].
     fn factor(&self, _factor: Factor) -> Option<Vec3> {
         None
@@ -161,6 +165,7 @@ impl<M: ReflectionModel> Surface for M {
         fn curves() -> Vec<Vec4>;
         fn lobes() -> Lobes;
         fn readouts() -> Vec<Readout>;
+        fn uncertainty(l: Vec3, v: Vec3, frame: &Frame) -> Option<f32>;
         fn factor(factor: Factor) -> Option<Vec3>;
     }
 
@@ -211,6 +216,7 @@ impl<M: ReflectionModel> Surface for Instance<M> {
         fn curves() -> Vec<Vec4>;
         fn lobes() -> Lobes;
         fn readouts() -> Vec<Readout>;
+        fn uncertainty(l: Vec3, v: Vec3, frame: &Frame) -> Option<f32>;
         fn factor(factor: Factor) -> Option<Vec3>;
     }
 

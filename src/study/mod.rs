@@ -1,8 +1,8 @@
 //! The study: a report, with numbers, plots and pictures, of four phenomena that physically based models
-//! reproduce and Blinn–Phong does not, of the layers of OpenPBR, and of light with extent.
+//! reproduce and Blinn–Phong does not, of published orders of models on MERL, of the layers of OpenPBR, and of light with extent.
 //!
 //! Each chapter has a file: `fresnel`, `furnace` (conservation of energy), `gold` (another light), `lobe`
-//! (the shape of the highlight), `layers`, `extent`; their measured data are in
+//! (the shape of the highlight), `merl`, `layers`, `extent`; their measured data are in
 //! [`curves::data`](crate::curves::data). This is the results chapter planned in E. James (2022), *Physically
 //! Based Shading Models in Real-time Rendering*. Every sentence of a conclusion that depends on a number is
 //! selected by that number.
@@ -35,6 +35,7 @@ mod furnace;
 mod gold;
 mod layers;
 mod lobe;
+mod merl;
 mod report;
 mod text;
 
@@ -304,7 +305,7 @@ fn series(
     points: Vec<(f64, f64)>,
     (colour, line, mark): (usize, Line, Mark),
 ) -> Series {
-    Series { name: name.into(), points, colour, line, mark }
+    Series { name: name.into(), points, bars: Vec::new(), colour, line, mark }
 }
 
 /// A plot for the page, this high, with a legend.
@@ -357,11 +358,12 @@ fn percent(x: f64) -> String {
 
 /// The chapters: the id in the page, the name of the step, and the calculation. The first [`PHENOMENA`] are about
 /// phenomena.
-const CHAPTERS: [(&str, &str, fn(&mut Lab) -> Result<Chapter, StudyError>); 6] = [
+const CHAPTERS: [(&str, &str, fn(&mut Lab) -> Result<Chapter, StudyError>); 7] = [
     ("phenomenon-1", "Fresnel effect", fresnel::chapter),
     ("phenomenon-2", "conservation of energy", furnace::chapter),
     ("phenomenon-3", "gold under other lights", gold::chapter),
     ("phenomenon-4", "shape of the specular lobe", lobe::chapter),
+    ("merl", "published orders of models", merl::chapter),
     ("layers", "layers of OpenPBR", layers::chapter),
     ("extent", "light with extent", extent::chapter),
 ];

@@ -68,10 +68,13 @@ impl Work<'_> {
                 self.exports.begin(form, path, overwrite, session, registry, wake);
             }
             Effect::CancelExport => self.exports.0.cancel(),
-            Effect::Match { view, what, parameters } => {
-                self.matches.begin((view, what, parameters), session, registry, wake);
+            Effect::Match { view, measure, parameters } => {
+                self.matches.begin((view, measure, parameters), session, registry, wake);
             }
-            Effect::CancelMatch => self.matches.0.cancel(),
+            Effect::MatchEvery { view, measure } => {
+                self.matches.begin_every((view, measure), session, registry, wake);
+            }
+            Effect::CancelMatch => self.matches.cancel(),
             Effect::WritePlot(path) => self.plots.begin(path, session, registry, wake),
             Effect::WriteSheet { subject, path } => {
                 self.sheets.begin((subject, path), session, registry, wake)

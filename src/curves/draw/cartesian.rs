@@ -43,6 +43,12 @@ pub(super) fn draw(plot: &Plot, pen: &mut impl Pen) -> Ground {
     for (i, series) in plot.series.iter().enumerate() {
         pen.series(Some(i));
         let points: Vec<_> = series.points.iter().map(|p| [x(p.0), y(p.1)]).collect();
+        let bars = series
+            .points
+            .iter()
+            .zip(&series.bars)
+            .map(|(p, (low, high))| [[x(p.0), y(*low)], [x(p.0), y(*high)]]);
+        layout::bars(pen, bars, [left, top, right, bottom], series.colour);
         layout::curve(pen, &points, [left, top, right, bottom], series);
     }
     pen.series(None);

@@ -110,6 +110,35 @@ pub(super) fn curve(pen: &mut impl Pen, points: &[[f64; 2]], area: [f64; 4], ser
     }
 }
 
+/// Draws bars, so far apart that they can be told from each other.
+pub(super) fn bars(
+    pen: &mut impl Pen,
+    bars: impl Iterator<Item = [[f64; 2]; 2]>,
+    area: [f64; 4],
+    colour: usize,
+) {
+    /// The least distance between bars.
+    const APART: f64 = 16.0;
+    let mut last: Option<[f64; 2]> = None;
+    for bar in bars {
+        let middle = [0.5 * (bar[0][0] + bar[1][0]), 0.5 * (bar[0][1] + bar[1][1])];
+        if last.is_some_and(|[x, y]| (x - middle[0]).hypot(y - middle[1]) < APART) {
+            continue;
+        }
+        last = Some(middle);
+        let length = (bar[1][0] - bar[0][0]).hypot(bar[1][1] - bar[0][1]);
+        for run in clipped(&bar, area) {
+            pen.stroke(&run, Ink::Curve(colour), 1.0, &[]);
+        }
+        // The ends, across the bar.
+        let across = [0, 1].map(|i| 3.0 * (bar[1][1 - i] - bar[0][1 - i]) / length.max(1e-9));
+        for [x, y] in bar {
+            let end = [[x - across[0], y + across[1]], [x + across[0], y - across[1]]];
+            clipped(&end, area).iter().for_each(|run| pen.stroke(run, Ink::Curve(colour), 1.0, &[]));
+        }
+    }
+}
+
 /// A cross.
 pub(super) fn cross(pen: &mut impl Pen, [x, y]: [f64; 2], colour: usize) {
     for turn in [-1.0, 1.0] {

@@ -108,6 +108,8 @@ pub struct Series {
     pub name: String,
     /// Points. A point that is not finite makes a gap in the line, with crosses at the edge of the plot.
     pub points: Vec<(f64, f64)>,
+    /// The ends of a bar at each point, such as its uncertainty; empty without bars.
+    pub bars: Vec<(f64, f64)>,
     /// Colour, counted from 0; 6 is the text colour.
     pub colour: usize,
     /// The line between the points.
@@ -252,6 +254,7 @@ mod tests {
                 .map(|x| (f64::from(x), 0.05 * f64::from(x)))
                 .chain([(20.0, f64::NAN), (21.0, 0.5), (22.0, 0.5)])
                 .collect(),
+            bars: Vec::new(),
             colour: i,
             line,
             mark: marks.next().unwrap_or(Mark::None),
@@ -326,6 +329,7 @@ mod tests {
             plot.series = vec![Series {
                 name: "gap".to_owned(),
                 points: vec![(0.0, 0.1), (30.0, 0.2), (45.0, missing), (60.0, 0.2), (90.0, 0.1)],
+                bars: Vec::new(),
                 colour: 0,
                 line: Line::Solid,
                 mark: Mark::None,

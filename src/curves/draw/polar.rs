@@ -91,6 +91,10 @@ pub(super) fn draw(plot: &Polar, pen: &mut impl Pen) -> Ground {
     let area = [left, top, right, bottom];
     for (i, series) in plot.series.iter().enumerate() {
         pen.series(Some(i));
+        let part = |value: f64| full * plot.radius.place(value).max(0.0);
+        let bars = series.points.iter().zip(&series.bars);
+        let bars = bars.map(|((angle, _), (low, high))| [at(*angle, part(*low)), at(*angle, part(*high))]);
+        layout::bars(pen, bars, area, series.colour);
         let mut last = f64::NEG_INFINITY;
         let mut points = Vec::new();
         for (angle, value) in &series.points {

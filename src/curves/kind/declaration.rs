@@ -106,12 +106,12 @@ impl Horizontal {
 }
 
 /// The direction to the light.
-pub(super) fn light(setup: &Setup) -> Vec3 {
+pub(in crate::curves) fn light(setup: &Setup) -> Vec3 {
     direction(setup.theta_i, setup.phi_i)
 }
 
 /// The direction to the viewer in the plane of incidence.
-pub(super) fn seen(setup: &Setup, angle: f64) -> Vec3 {
+pub(in crate::curves) fn seen(setup: &Setup, angle: f64) -> Vec3 {
     let (theta, phi) = viewer(angle, setup.phi_i);
     direction(theta, phi)
 }

@@ -15,6 +15,7 @@ mod slice;
 use crate::declared::declared;
 
 pub use declaration::{Declaration, Form, Horizontal};
+pub(super) use declaration::{light, seen};
 
 declared! {
     /// The quantity of a plot.

@@ -4,9 +4,13 @@ use super::{Command, Group, List, Mark, Menu, command};
 use crate::{
     channel::DebugChannel,
     optics::TermSelection,
-    panel::state::{
-        Action, CompareCommand, Effect, HandleChange, HandleMode, Labels, LobeChoice, LobeScale,
-        MATERIALS_TAB, MESSAGES_TAB, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, ThemeChoice, ViewChange,
+    panel::{
+        fits,
+        state::{
+            Action, CompareCommand, Effect, HandleChange, HandleMode, Labels, LobeChoice, LobeScale,
+            MATERIALS_TAB, MESSAGES_TAB, MatchCommand, PLOTS_TAB, PanelInfo, Place, SHADER_TAB, ThemeChoice,
+            ViewChange,
+        },
     },
     scene::comparison::Layout,
     text::capitalised,
@@ -117,6 +121,11 @@ fn compare(to: &mut List) {
         to.line();
         let add = command("add_view", "Add a view", Action::Compare(CompareCommand::Add));
         to.add(add.says("Add a view").keys("Ctrl+B").rank(-1));
+        let fit = command("fit", "Fit to the measurement", Action::Match(MatchCommand::Fit));
+        to.add(fit.says("Fit to the measurement").tip(fits::ONE).at_desk());
+        let every = Action::Match(MatchCommand::Every(Default::default()));
+        let every = command("fit_every", "Fit every model…", every).says("Fit every model…");
+        to.add(every.tip(fits::EVERY).at_desk());
     });
 }
 

@@ -8,6 +8,7 @@ use super::{
 };
 use crate::{
     panel::{
+        fits,
         knob::{self, Amount, Caption},
         linked::{self, Domain},
         model_override,
@@ -94,6 +95,9 @@ impl Shown<'_> {
                 });
                 equation(ui, model);
                 terms(ui, model, context);
+                if model.declaration.measured {
+                    fits::buttons(ui, context);
+                }
             }
             None => missing_model(ui, session.scene().model_of(object), context),
         }

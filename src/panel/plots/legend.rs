@@ -179,7 +179,13 @@ fn row(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, kind: Kind, context: &mut 
 fn value(panel: &PlotPanel, entry: &Entry, drawn: Option<&Drawn>) -> Option<String> {
     let sheet = &panel.figure.as_ref()?.sheet;
     let value = match (panel.reading.filter(|_| entry.shown)?, drawn?) {
-        (Reading::Angle(angle), Drawn::Curve(curve)) => reading::of_curve(sheet, curve, angle),
+        (Reading::Angle(angle), Drawn::Curve(curve)) => {
+            let sigma = curve.sigma_at(angle).map(|sigma| format!(" ± {}", reading::text(sigma)));
+            let value = reading::of_curve(sheet, curve, angle);
+            return Some(
+                value.map_or_else(|| "–".to_owned(), |v| reading::text(v) + &sigma.unwrap_or_default()),
+            );
+        }
         (Reading::Angles(half, difference), Drawn::Slice(slice)) => {
             reading::of_slice(sheet, slice, [half, difference])
         }
@@ -205,6 +211,7 @@ fn style(
     let plain = Series {
         name: String::new(),
         points: Vec::new(),
+        bars: Vec::new(),
         colour: if data { COLOURS.len() } else { entry.style.colour },
         line: if data { Line::None } else { entry.style.line },
         mark: if data { Mark::Ring } else { Mark::None },

@@ -122,7 +122,7 @@ mod tests {
     fn curve(measured: bool) -> Curve {
         let point = |(angle, v)| Point { angle, rgb: Vec3::splat(v) };
         let points = [(-10.0, 1.0), (0.0, 2.0), (10.0, f32::NAN), (20.0, 4.0)].map(point).to_vec();
-        Curve { name: "a".to_owned(), points, measured, sharp: false, reflected: false }
+        Curve { name: "a".to_owned(), points, sigma: Vec::new(), measured, sharp: false, reflected: false }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::SheetOf;
 use crate::{
     document::Selection,
-    matching::What,
+    matching::Measure,
     materials::Material,
     parameter::Parameter,
     scene::{Key, load::Stamp},
@@ -136,10 +136,17 @@ pub enum Effect {
     Match {
         /// The view: 1 is view B.
         view: usize,
-        /// The quantity to compare.
-        what: What,
+        /// The quantity to compare, and the metric.
+        measure: Measure,
         /// Names of the free parameters.
         parameters: Vec<&'static str>,
+    },
+    /// Match every model to a measurement: see [`match_each`](crate::matching::each::match_each).
+    MatchEvery {
+        /// The view with the measurement.
+        view: usize,
+        /// The quantity to compare, and the metric.
+        measure: Measure,
     },
     /// Save the plot to a file.
     WritePlot(PathBuf),

@@ -28,6 +28,8 @@ pub struct Facts {
     pub export: Option<Running<&'static str>>,
     /// The running match, labelled with the view that is matched to view A.
     pub matching: Option<Running<usize>>,
+    /// The running fits of every model.
+    pub ranking: Option<Running<()>>,
     /// The picture being drawn for a file.
     pub picture: Option<Running<()>>,
     /// The sheet being drawn for a file.

@@ -3,7 +3,7 @@
 use super::{Effect, Session, Severity};
 use crate::{
     document::Edit,
-    matching::{Match, MatchError, What, digits, parameters},
+    matching::{Match, MatchError, Measure, digits, parameters},
     parameter::Parameter,
     registry::Registry,
     scene::{Part, Scene, variant::LETTERS},
@@ -21,6 +21,14 @@ pub enum MatchCommand {
     Start,
     /// Close the dialog without a match.
     Close,
+    /// Fit the model beside a measurement to it.
+    Fit,
+    /// Fit every model to the measurement.
+    Every(Measure),
+    /// Put a fitted model into a view.
+    Show(&'static str),
+    /// Close the list of fits.
+    CloseFits,
 }
 
 /// Options of a match that is about to start.
@@ -28,8 +36,8 @@ pub enum MatchCommand {
 pub struct MatchDraft {
     /// The view that is matched to view A.
     pub view: usize,
-    /// The quantity to compare.
-    pub what: What,
+    /// The quantity to compare, and the metric.
+    pub measure: Measure,
     /// Parameters of the view, each with true if it is free.
     pub parameters: Vec<(&'static Parameter, bool)>,
 }
@@ -43,8 +51,9 @@ impl MatchDraft {
 
 impl Session {
     pub(super) fn matching(&mut self, command: MatchCommand, registry: &Registry) {
+        let running = self.facts.matching.is_some() || self.facts.ranking.is_some();
         match command {
-            MatchCommand::Ask(_) if self.facts.matching.is_some() => {
+            MatchCommand::Ask(_) | MatchCommand::Fit | MatchCommand::Every(_) if running => {
                 self.say(Severity::Info, "A match is still running: wait for it, or cancel it below.");
             }
             MatchCommand::Ask(view) => {
@@ -56,17 +65,25 @@ impl Session {
                     );
                     self.say(Severity::Info, text);
                 } else {
-                    self.match_draft = Some(MatchDraft { view, what: What::default(), parameters });
+                    self.match_draft = Some(MatchDraft { view, measure: Measure::default(), parameters });
                 }
             }
             MatchCommand::Change(draft) => self.match_draft = Some(draft),
             MatchCommand::Start => {
                 if let Some(draft) = self.match_draft.take() {
                     let names = draft.free().map(|parameter| parameter.name).collect();
-                    self.request(Effect::Match { view: draft.view, what: draft.what, parameters: names });
+                    self.request(Effect::Match {
+                        view: draft.view,
+                        measure: draft.measure,
+                        parameters: names,
+                    });
                 }
             }
             MatchCommand::Close => self.match_draft = None,
+            MatchCommand::Fit => self.fit(registry),
+            MatchCommand::Every(measure) => self.fit_every(measure, registry),
+            MatchCommand::Show(model) => self.show_fit(model, registry),
+            MatchCommand::CloseFits => self.fits = None,
         }
     }
 
@@ -75,12 +92,12 @@ impl Session {
     pub fn matched(
         &mut self,
         scene: &Scene,
-        (view, what): (usize, What),
+        (view, measure): (usize, Measure),
         outcome: Option<Result<Match, MatchError>>,
         registry: &Registry,
     ) {
         let letter = LETTERS.get(view).copied().unwrap_or("?");
-        let unit = what.unit();
+        let unit = measure.unit();
         // The arrangement of the views does not matter.
         let is_same = || Scene { comparison: self.document.comparison, ..scene.clone() } == *self.document;
         let (severity, text) = match outcome {
@@ -97,12 +114,12 @@ impl Session {
                 let what = format!("View {letter} stays as it is: no other values come nearer to view A.");
                 (Severity::Info, format!("{what} Error: {} ({unit}).", digits(found.before)))
             }
-            Some(Ok(found)) => return self.apply_match(view, what, found, registry),
+            Some(Ok(found)) => return self.apply_match(view, measure, found, registry),
         };
         self.say(severity, text);
     }
 
-    fn apply_match(&mut self, view: usize, what: What, found: Match, registry: &Registry) {
+    fn apply_match(&mut self, view: usize, measure: Measure, found: Match, registry: &Registry) {
         let letter = LETTERS.get(view).copied().unwrap_or("?");
         let label = |name: &&'static str| registry.material_parameter(name).map_or(*name, |p| p.label);
         let values: Vec<_> =
@@ -118,12 +135,11 @@ impl Session {
         self.look(registry);
         if self.document.done() != steps {
             let text = format!(
-                "View {letter} matched to view A on the {}: {}.{kept} Error: {} → {} ({}).",
-                what.id(),
+                "View {letter} matched to view A on the {measure}: {}.{kept} Error: {} → {} ({}).",
                 listed(&values, "and"),
                 digits(found.before),
                 digits(found.after),
-                what.unit()
+                measure.unit()
             );
             let step = self.last_step();
             self.messages.offer_undo(text, step);

@@ -23,6 +23,7 @@ pub use disk::OnDisk;
 pub use effect::{CameraChange, Effect, Pick, RecoveryChoice, Steer};
 pub use export::PictureEnd;
 pub use facts::{Clipping, Converging, Facts, LARGEST, Numbers, Running};
+pub use fits::Fits;
 pub use lesson::{LessonCommand, LessonSource};
 pub use lobe::{LobeChoice, LobeScale};
 pub use matching::{MatchCommand, MatchDraft};
@@ -78,6 +79,7 @@ mod effect;
 mod export;
 mod facts;
 mod files;
+mod fits;
 pub mod follow;
 mod group;
 mod learning;
@@ -156,6 +158,8 @@ with_defaults! {
         pub materials: Materials = Materials::default(),
         /// The match that is about to start.
         pub match_draft: Option<MatchDraft> = None,
+        /// The fits of every model to a measurement.
+        pub fits: Option<Fits> = None,
         /// The options of a picture or a sheet that is about to be saved.
         pub take_draft: Option<TakeDraft> = None,
         /// The available panels, for the menus; updated when they are shown.

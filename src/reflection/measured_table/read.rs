@@ -31,7 +31,7 @@ const COLOUR: [&str; 3] = ["r", "g", "b"];
 /// are remarks. Samples with a negative value count as not measured.
 ///
 /// Renderers read a [table](crate::optics::half_difference), into which the samples are interpolated, with the mean relative
-/// uncertainty as the number of the model.
+/// uncertainty as the number of the model, and the uncertainties interpolated like the values.
 pub static FORMAT: FileFormat = FileFormat {
     name: "a table of measurements (.csv)",
     extensions: &["csv"],
@@ -134,7 +134,8 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
         if value.iter().all(|value| *value >= 0.0) {
             let value = Vec3::from_array(value.map(|value| value.min(1e9) as f32));
             (sigmas, values) = (sigmas + sigma, values + f64::from(value.element_sum()) / 3.0);
-            samples.push(Sample { l: direction(theta_i, phi_i), v: direction(theta_o, phi_o), value });
+            let (l, v, sigma) = (direction(theta_i, phi_i), direction(theta_o, phi_o), sigma.min(1e9) as f32);
+            samples.push(Sample { l, v, value, sigma });
         }
     }
     if samples.is_empty() {
@@ -165,7 +166,7 @@ pub(super) fn stations() -> impl Iterator<Item = [f64; 4]> {
 pub(super) fn samples(brdf: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<Sample> {
     let sample = |[theta_i, phi_i, theta_o, phi_o]: [f64; 4]| {
         let (l, v) = (direction(theta_i, phi_i), direction(theta_o, phi_o));
-        Sample { l, v, value: brdf(l, v) }
+        Sample { l, v, value: brdf(l, v), sigma: 0.0 }
     };
     stations().map(sample).collect()
 }

@@ -21,6 +21,8 @@ pub(super) struct Sample {
     pub(super) v: Vec3,
     /// The BRDF in sr⁻¹, from 0 on.
     pub(super) value: Vec3,
+    /// Its standard uncertainty in sr⁻¹.
+    pub(super) sigma: f32,
 }
 
 /// A place in which distances are measured.
@@ -31,10 +33,10 @@ fn place([theta_h, theta_d, phi_d]: [f32; 3]) -> Vec4 {
     Vec4::new((theta_h / quarter).sqrt(), theta_d / quarter, across * cosine, across * sine)
 }
 
-/// The value at a place, and the distance to the nearest sample.
-fn value(at: Vec4, samples: &[(Vec4, Vec3)]) -> (Vec3, f32) {
+/// The value and its uncertainty at a place, and the distance to the nearest sample.
+fn value(at: Vec4, samples: &[(Vec4, Vec4)]) -> (Vec4, f32) {
     // The nearest, by squared distance.
-    let mut nearest = [(f32::INFINITY, Vec3::ZERO); NEIGHBOURS + 1];
+    let mut nearest = [(f32::INFINITY, Vec4::ZERO); NEIGHBOURS + 1];
     for (place, value) in samples {
         let squared = at.distance_squared(*place);
         if squared < nearest[NEIGHBOURS].0 {
@@ -47,28 +49,30 @@ fn value(at: Vec4, samples: &[(Vec4, Vec3)]) -> (Vec3, f32) {
     let last = nearest.iter().rev().find(|(squared, _)| squared.is_finite()).map_or(0.0, |(d, _)| d.sqrt());
     // With few samples, none lies on the edge.
     let radius = if nearest[NEIGHBOURS].0.is_finite() { last } else { 2.0 * last + 1.0 };
-    let mut sum = Vec4::ZERO;
+    let (mut sum, mut weights) = (Vec4::ZERO, 0.0);
     for (squared, value) in nearest.into_iter().filter(|(squared, _)| squared.is_finite()) {
         // Samples at the place itself have nearly all the weight.
         let d = squared.sqrt().max(1e-4);
         let weight = ((radius - d).max(0.0) / (radius * d).max(1e-12)).powi(2);
-        sum += weight * value.extend(1.0);
+        (sum, weights) = (sum + weight * value, weights + weight);
     }
     // All as far away as the ninth.
-    let mean = if sum.w > 0.0 { sum.truncate() / sum.w } else { nearest_mean(samples, at, last) };
+    let mean = if weights > 0.0 { sum / weights } else { nearest_mean(samples, at, last) };
     (mean, least)
 }
 
 /// The mean of the samples up to a distance.
-fn nearest_mean(samples: &[(Vec4, Vec3)], at: Vec4, distance: f32) -> Vec3 {
+fn nearest_mean(samples: &[(Vec4, Vec4)], at: Vec4, distance: f32) -> Vec4 {
     let within = samples.iter().filter(|(place, _)| at.distance(*place) <= distance * 1.000_1);
-    let sum: Vec4 = within.map(|(_, value)| value.extend(1.0)).sum();
-    if sum.w > 0.0 { sum.truncate() / sum.w } else { Vec3::ZERO }
+    let (sum, count) = within.fold((Vec4::ZERO, 0.0), |(sum, n), (_, value)| (sum + *value, n + 1.0));
+    if count > 0.0 { sum / count } else { Vec4::ZERO }
 }
 
 /// The numbers of the table of some samples; `sigma` is their mean relative uncertainty.
 pub(super) fn table(samples: &[Sample], sigma: f32) -> Vec<f32> {
-    let placed = samples.iter().map(|sample| (place(angles(sample.l, sample.v, Vec3::Z)), sample.value));
+    let placed = samples
+        .iter()
+        .map(|sample| (place(angles(sample.l, sample.v, Vec3::Z)), sample.value.extend(sample.sigma)));
     let placed: Vec<_> = placed.collect();
     let middles: Vec<_> = middles(COUNTS).collect();
     let entry = |middle: &[f32; 3]| {
@@ -76,5 +80,9 @@ pub(super) fn table(samples: &[Sample], sigma: f32) -> Vec<f32> {
         (value, distance <= NEAR)
     };
     let entries: Vec<_> = middles.par_iter().map(entry).collect();
-    numbers(COUNTS, entries, sigma)
+    let mut table = numbers(COUNTS, entries.iter().map(|(entry, near)| (entry.truncate(), *near)), sigma);
+    if sigma > 0.0 {
+        table.extend(entries.iter().map(|(entry, _)| entry.w));
+    }
+    table
 }

@@ -30,6 +30,11 @@ fn exponent(width: f64) -> String {
     format!("alpha={}", equivalence::exponent_of_alpha(width as f32).round())
 }
 
+/// Phong's exponent: a quarter of Blinn's has about the same lobe (F. Fisher, A. Woo 1994).
+fn mirror_exponent(width: f64) -> String {
+    format!("alpha={}", (0.25 * equivalence::exponent_of_alpha(width as f32)).round().max(1.0))
+}
+
 impl Contestant {
     fn microfacet(name: &'static str, d: &'static str, g: &'static str, style: (usize, Line, Mark)) -> Self {
         let settings = |f| format!("distribution={d} masking={g} fresnel={f} diffuse=none ior=1.5");
@@ -37,19 +42,26 @@ impl Contestant {
         Self { name, id: "microfacet", settings, instead, width: alpha, style }
     }
 
+    fn simple(
+        name: &'static str,
+        id: &'static str,
+        width: fn(f64) -> String,
+        style: (usize, Line, Mark),
+    ) -> Self {
+        Self { name, id, settings: "k_s=1".to_owned(), instead: None, width, style }
+    }
+
+    /// The four models, behind Phong's, whose lobe is about the mirror direction.
+    pub(in crate::study) fn with_phong() -> Vec<Self> {
+        let phong = Self::simple("Phong", "phong", mirror_exponent, (3, Line::Dashed, Mark::Disc));
+        [phong].into_iter().chain(Self::all()).collect()
+    }
+
     /// The four models of the comparison.
     pub(in crate::study) fn all() -> Vec<Self> {
-        let simple = |name, id, width, style| Self {
-            name,
-            id,
-            settings: "k_s=1".to_owned(),
-            instead: None,
-            width,
-            style,
-        };
         vec![
-            simple("Blinn–Phong", "blinn_phong", exponent, (1, Line::Dashed, Mark::Triangle)),
-            simple("Ward", "ward", alpha, (4, Line::Dotted, Mark::Square)),
+            Self::simple("Blinn–Phong", "blinn_phong", exponent, (1, Line::Dashed, Mark::Triangle)),
+            Self::simple("Ward", "ward", alpha, (4, Line::Dotted, Mark::Square)),
             Self::microfacet("Cook–Torrance", "beckmann", "v_cavity", (2, Line::Dashed, Mark::Cross)),
             Self::microfacet("GGX", "ggx", "smith_height_correlated", (0, Line::Solid, Mark::Disc)),
         ]
@@ -66,7 +78,7 @@ impl Contestant {
     }
 
     /// Refuses settings that the model does not have.
-    pub(super) fn check(&self, lab: &Lab) -> Result<(), StudyError> {
+    pub(in crate::study) fn check(&self, lab: &Lab) -> Result<(), StudyError> {
         for settings in [&self.settings].into_iter().chain(&self.instead) {
             set(lab.registry, self.id, &format!("{settings} {}", (self.width)(0.1)))?;
         }
@@ -83,6 +95,17 @@ impl Contestant {
             f64::from(specular) / (std::f64::consts::PI * f64::from(s.l.z))
         };
         samples.iter().map(f).collect()
+    }
+
+    /// The lobe with a width at every sample, with each of the settings.
+    pub(in crate::study) fn lobes(
+        &self,
+        registry: &Registry,
+        width: f64,
+        samples: &[Sample],
+    ) -> Vec<Vec<f64>> {
+        let settings = [&self.settings].into_iter().chain(&self.instead);
+        settings.map(|settings| self.lobe(registry, settings, width, samples)).collect()
     }
 
     /// The best fit, with the Fresnel term of a dielectric.

@@ -63,7 +63,7 @@ fn merl_fit(
     MerlFit { name: material.name, fits, matte: fit::diffuse_only(&values).error }
 }
 
-fn median(mut all: Vec<f64>) -> f64 {
+pub(in crate::study) fn median(mut all: Vec<f64>) -> f64 {
     all.sort_by(f64::total_cmp);
     match all.len() {
         0 => f64::NAN,

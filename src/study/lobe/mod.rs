@@ -16,6 +16,7 @@ mod merl;
 mod paint;
 
 pub(super) use contestant::Contestant;
+pub(super) use merl::median;
 pub(super) use paint::paint_samples;
 
 const SCENE: &str = include_str!("../../../scenes/lobe_shape.json");

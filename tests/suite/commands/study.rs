@@ -60,6 +60,37 @@ fn layers_add_up(html: &str, folder: &Path) {
     assert!(html.contains("Film of index 2 over a body of index 1.1”"), "the one that gains is named");
 }
 
+/// The numbers of the chapter on published orders, and the verdicts that follow from them.
+fn orders_are_judged_by_their_numbers(html: &str, folder: &Path) {
+    assert!(html.contains("<section id=\"merl\">") && html.contains("href=\"#merl\""));
+    let rows = |name: &str| -> Vec<Vec<String>> {
+        let text = fs::read_to_string(folder.join(name)).unwrap();
+        text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
+    };
+    let orders = rows("merl_orders.csv");
+    assert_eq!(orders.len(), 4);
+    let mut reproduced = 0;
+    for row in &orders {
+        let [count, all, holds] = [4, 5, 6].map(|i| row[i].parse::<f64>().unwrap());
+        assert!(all == 10.0 && (holds == 1.0) == (2.0 * count > all), "{row:?}");
+        assert!(html.contains(&format!("{count} of {all}")), "{row:?}");
+        reproduced += usize::from(holds == 1.0);
+    }
+    assert!(
+        html.contains(&format!("Of 4 published orders of models on the MERL materials, {reproduced} are"))
+    );
+    // Heavy tails are an order that the fits of SGD, which has them, must show.
+    assert!(orders.iter().any(|row| row[2] == "GGX" && row[6].starts_with('1')), "{orders:?}");
+    let medians = rows("merl_metrics.csv");
+    assert_eq!(medians.len(), 3 * 6);
+    let of = |metric: &str, model: &str| -> f64 {
+        let row = medians.iter().find(|row| row[0] == metric && row[1] == model).unwrap();
+        row[2].parse().unwrap()
+    };
+    assert!(of("log", "GGX") < of("log", "Cook–Torrance"), "{medians:?}");
+    assert!(of("log", "GGX") < 0.5 && of("log", "ABC") > 0.0, "{medians:?}");
+}
+
 /// The numbers of the chapter on light with extent.
 fn approximations_have_errors(html: &str, folder: &Path) {
     assert!(html.contains("<section id=\"extent\">") && html.contains("href=\"#extent\""));
@@ -91,7 +122,7 @@ fn the_study_writes_a_report_that_stands_alone() {
         assert!(html.contains(&format!("<section id=\"phenomenon-{i}\">")), "section {i}");
     }
     for part in ["Question", "Method", "Results", "Conclusion"] {
-        assert_eq!(html.matches(&format!("<h3>{part}</h3>")).count(), 6, "{part}");
+        assert_eq!(html.matches(&format!("<h3>{part}</h3>")).count(), 7, "{part}");
     }
     // The contents of the numbers, not only their presence.
     assert!(html.contains("All four phenomena are shown"), "{}", &html[..4000.min(html.len())]);
@@ -114,6 +145,7 @@ fn the_study_writes_a_report_that_stands_alone() {
         let columns: Vec<_> = text.lines().map(|line| line.split(',').count()).collect();
         assert!(columns.len() > 2 && columns.iter().all(|c| *c == columns[0]), "{}", table.display());
     }
+    orders_are_judged_by_their_numbers(&html, &folder.path().join("new/report"));
     layers_add_up(&html, &folder.path().join("new/report"));
     approximations_have_errors(&html, &folder.path().join("new/report"));
     // A quick run is marked as such.

@@ -9,7 +9,7 @@ use bevy::{
 use bevy_egui::egui::{Key, Modifiers};
 use lights_camera_models::{
     document::Edit,
-    matching::{self, Match, Request, What, match_view},
+    matching::{self, Match, Measure, Metric, Request, What, match_view},
     panel::state::{Action, CompareCommand, Effect, MatchCommand, Running, Session, Severity},
     parameter::{Value, Values},
     progress::Progress,
@@ -117,6 +117,59 @@ fn lobes_and_pictures_come_nearer_too() {
 }
 
 #[test]
+fn the_metric_of_the_lobes_can_be_chosen_and_is_said() {
+    let folder = folder();
+    let at = folder.path();
+    let run = lcm_in(at, &["match", "a.json", "--free", "k_s,alpha", "--metric", "log"], b"");
+    assert!(run.out.starts_with("view B matched to view A on the lobe (log)\n"), "{}", run.out);
+    assert!(run.out.contains("RMS difference of ln(1 + f cos θ), f in sr⁻¹: "), "{}", run.out);
+    let arguments = ["match", "a.json", "--free", "k_s,alpha", "--metric", "cube-root", "--json"];
+    let json: serde_json::Value = serde_json::from_str(&lcm_in(at, &arguments, b"").out).expect("JSON");
+    assert_eq!((&json["on"], &json["metric"]), (&json!("lobe"), &json!("cube-root")));
+    assert_eq!(json["unit"], json!(Metric::CubeRoot.unit()));
+    refused(
+        &lcm_in(at, &["match", "a.json", "--on", "picture", "--metric", "log"], b""),
+        2,
+        "--metric log is for lobes, but --on is picture",
+    );
+    refused(&lcm_in(at, &["match", "a.json", "--metric", "eye"], b""), 2, "invalid value 'eye'");
+    let help = lcm_in(at, &["match", "--help"], b"").out;
+    for name in ["Ngan", "Löw", "Fores"] {
+        assert!(help.contains(name), "{name}: {help}");
+    }
+}
+
+/// Ctrl+C ends the work with what it has, as the status says.
+#[test]
+#[cfg(target_os = "linux")]
+fn every_model_is_matched_until_ctrl_c() {
+    let folder = folder();
+    let run = |arguments: &str| {
+        // Whoever runs the tests may ignore some signals, and programs respect that.
+        let command = format!(
+            "timeout --foreground --preserve-status -s INT 4 env --default-signal=INT taskset -c 0 {} match a.json --each {arguments}",
+            env!("CARGO_BIN_EXE_lcm")
+        );
+        let mut script = std::process::Command::new("script");
+        script.args(["-qec", &command, "/dev/null"]).current_dir(folder.path());
+        let output =
+            script.stdin(std::process::Stdio::null()).output().expect("script is a part of every Linux");
+        (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let (status, said) = run("--metric log");
+    assert_eq!(status, Some(130), "{said}");
+    assert!(said.contains("RMS difference of ln(1 + f cos θ), f in sr⁻¹\r\n"), "{said}");
+    assert!(said.contains("  lambert") && said.contains("interrupted before "), "{said}");
+    assert!(said.contains(" left; Ctrl+C ends it"), "{said}");
+    let (status, said) = run("--json --quiet");
+    assert_eq!(status, Some(130), "{said}");
+    let json: serde_json::Value = serde_json::from_str(&said).expect("JSON");
+    assert_eq!((&json["on"], &json["metric"]), (&json!("lobe"), &json!("cosine")));
+    let count = |key: &str| json[key].as_array().map_or(0, Vec::len);
+    assert!(count("models") > 0 && count("unfinished") > 0, "{json:#}");
+}
+
+#[test]
 fn what_cannot_be_matched_has_a_message_and_an_exit_status() {
     let folder = folder();
     let at = folder.path();
@@ -166,7 +219,7 @@ pub fn run(bench: &mut Bench) {
     let values = vec![("k_s", Value::Number(0.3)), ("alpha", Value::Integer(128))];
     let found = Match { values, kept: vec!["k_a"], before: 0.0312, after: 0.00204 };
     let scene = (*bench.session.document).clone();
-    bench.session.matched(&scene, (1, What::Lobe), Some(Ok(found)), &bench.registry);
+    bench.session.matched(&scene, (1, What::Lobe.into()), Some(Ok(found)), &bench.registry);
     bench.session.facts.matching =
         Some(Running { label: 1, done: 0.4, step: "descending from start 2 of 5".to_owned() });
     bench.settle();
@@ -182,7 +235,12 @@ fn the_menu_of_a_view_asks_how_it_shall_be_matched() {
     bench.click("Match B to A…");
     assert!(bench.says("Match B to A") && bench.says("Free parameters of view B"));
     assert!(bench.says(What::Lobe.summary()));
+    bench.click("Metric: log");
+    let log = Measure { what: What::Lobe, metric: Metric::Log };
+    assert_eq!(bench.session.match_draft.as_ref().map(|draft| draft.measure), Some(log));
+    bench.click("Metric: cosine");
     bench.click("Compare: picture");
+    assert!(bench.find("Metric: log").is_none());
     assert!(bench.says(What::Picture.summary()));
     // Numbers are free, colours are not.
     bench.click("Free: ambient coefficient");
@@ -190,7 +248,7 @@ fn the_menu_of_a_view_asks_how_it_shall_be_matched() {
     bench.click("Match");
     let expected = Effect::Match {
         view: 1,
-        what: What::Picture,
+        measure: What::Picture.into(),
         parameters: vec!["specular_colour", "k_d", "k_s", "alpha"],
     };
     assert_eq!(bench.effects, [expected]);
@@ -255,7 +313,8 @@ fn a_match_of_the_window_is_one_step_that_undo_brings_back_and_cancel_leaves_eve
     let plugins =
         LabPlugins::default().scene(folder.path().join("a.json")).size(64, 36).exit_after(100_000).headless();
     let mut app = app(plugins.build(), |_| ());
-    let start = |what: What| Effect::Match { view: 1, what, parameters: vec!["k_s", "alpha"] };
+    let start =
+        |what: What| Effect::Match { view: 1, measure: what.into(), parameters: vec!["k_s", "alpha"] };
     app.update();
     let before = app.world().resource::<Session>().document.clone();
     assert_eq!(before.variants.len(), 1);
@@ -290,7 +349,7 @@ fn a_match_of_the_window_is_one_step_that_undo_brings_back_and_cancel_leaves_eve
     assert_eq!(app.world().resource::<Session>().document.done(), 1);
 
     // Views that cannot be matched are reported.
-    let unknown = Effect::Match { view: 2, what: What::Lobe, parameters: vec!["alpha"] };
+    let unknown = Effect::Match { view: 2, measure: What::Lobe.into(), parameters: vec!["alpha"] };
     let said = matched(&mut app, vec![unknown]);
     let expected = "View C was not matched: there is no view C to match; the scene has 2 views: A and B.";
     assert_eq!(said, (Severity::Error, expected.to_owned()));
@@ -318,7 +377,7 @@ fn more_free_parameters_never_end_worse() {
             .collect();
         assert!(all.len() >= 8, "{all:?}");
         let matched = |parameters: &[&str]| {
-            let request = Request { scene: &scene, view: 1, what, parameters };
+            let request = Request { scene: &scene, view: 1, measure: what.into(), parameters };
             match_view(&request, &registry, &Progress::NONE).expect("a match")
         };
         let together = matched(&all);

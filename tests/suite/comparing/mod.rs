@@ -1,5 +1,6 @@
 //! Comparisons of views, and matching one to another.
 
+mod fits;
 pub(crate) mod matching;
 mod metrics;
 mod views;

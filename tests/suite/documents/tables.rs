@@ -12,7 +12,7 @@ use lights_camera_models::{
     explain,
     lesson::{self, Lesson},
     light::{MAX_LIGHTS, ies, panorama},
-    matching::What,
+    matching::{Metric as LobeMetric, What},
     optics::{Frame, colour::Encoding},
     panel::{Panels, command::declared, state::Session},
     parameter::{MAX_FILES_BYTES, MAX_FILES_NUMBERS, Meaning, Outside, Parameter, Side, Value, Values},
@@ -134,6 +134,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
                 ("differences", differences()),
                 ("metrics", metrics()),
                 ("match", matches()),
+                ("lobe metrics", lobe_metrics()),
             ],
         ),
         (
@@ -290,6 +291,15 @@ fn metrics() -> String {
 fn matches() -> String {
     let row = |what: &What| vec![code(what.id()), what.summary().to_owned(), what.unit().to_owned()];
     table(&["`--on`", "what is compared", "error"], What::ALL.iter().map(row))
+}
+
+/// The metrics of lobes.
+fn lobe_metrics() -> String {
+    let row = |metric: &LobeMetric| {
+        [code(metric.id()), metric.summary().to_owned(), metric.unit().to_owned(), metric.source().to_owned()]
+            .to_vec()
+    };
+    table(&["`--metric`", "what the difference is of", "error", "source"], LobeMetric::ALL.iter().map(row))
 }
 
 /// The additions of the example crate, with their files.

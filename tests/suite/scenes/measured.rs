@@ -160,7 +160,8 @@ fn a_model_matched_with_a_file_written_from_it_finds_its_parameters_again() {
     let mut variant = Variant { reflection_model: Some("microfacet".to_owned()), ..Variant::default() };
     variant.material = metal(0.6);
     scene.variants = vec![variant];
-    let request = Request { scene: &scene, view: 1, what: What::Lobe, parameters: &["alpha_x", "alpha_y"] };
+    let request =
+        Request { scene: &scene, view: 1, measure: What::Lobe.into(), parameters: &["alpha_x", "alpha_y"] };
     let found = match_view(&request, &Registry::builtin(), &Progress::NONE).expect("a match");
     assert_eq!(found.values.len(), 2, "both were far off: {found:?}");
     for (name, value) in &found.values {
@@ -176,7 +177,7 @@ fn of_several_models_the_one_that_wrote_the_file_comes_nearest() {
     let scene = read(folder.path(), "metal.binary").expect("legal");
     let registry = Registry::builtin();
     let models = ["lambert", "ward", "phong"].map(|id| registry.model(id).expect("built in"));
-    let ranking = match_each(&scene, models, What::Lobe, &registry, &Progress::NONE).expect("not cancelled");
+    let ranking = match_each(&scene, models, What::Lobe.into(), &registry, &Progress::NONE);
     let order: Vec<_> = ranking.matched.iter().map(|matched| matched.model).collect();
     assert_eq!(order, ["ward", "phong", "lambert"], "{ranking:?}");
     let after = |i: usize| ranking.matched[i].found.after;
