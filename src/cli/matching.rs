@@ -9,7 +9,7 @@ use clap::{
 use serde_json::{Value as Json, json};
 
 use super::{
-    Options, Outcome, outputs, print_json, print_text, progress,
+    Options, Outcome, gauged, outputs, print_json, print_text,
     scenes::Source,
     views::find,
     workshop::{Workshop, drawable},
@@ -24,7 +24,6 @@ use crate::{
         match_view,
     },
     parameter::Value,
-    progress::Progress,
     registry::Registry,
     scene::{
         Scene,
@@ -100,14 +99,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         names => names.iter().map(|name| name.trim()).collect(),
     };
     let what = arguments.on;
-    let bar = progress(100, options);
-    let tell = |done: f32, step: &str| {
-        bar.set_position((100.0 * done) as u64);
-        bar.set_message(step.to_owned());
-    };
     let request = Request { scene: &scene, view, what, parameters: &free };
-    let found = match_view(&request, registry, &Progress { tell: &tell, cancelled: &|| false });
-    bar.finish_and_clear();
+    let found = gauged("matching", options, |progress| match_view(&request, registry, progress));
     let found = found.map_err(|error| match error {
         MatchError::NothingFree { .. }
         | MatchError::NoParameter { .. }
@@ -134,14 +127,10 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
 /// `lcm match --each`.
 fn each(scene: &Scene, arguments: &Arguments, options: Options, registry: &Registry) -> Outcome {
     let what = arguments.on;
-    let bar = progress(100, options);
-    let tell = |done: f32, step: &str| {
-        bar.set_position((100.0 * done) as u64);
-        bar.set_message(step.to_owned());
-    };
-    let progress = Progress { tell: &tell, cancelled: &|| false };
-    let ranking = match_each(scene, candidates(registry), what, registry, &progress).unwrap_or_default();
-    bar.finish_and_clear();
+    let ranking = gauged("matching", options, |progress| {
+        match_each(scene, candidates(registry), what, registry, progress)
+    });
+    let ranking = ranking.unwrap_or_default();
     if arguments.json {
         print_json(&ranking_as_json(&ranking, what))?;
     } else {
