@@ -134,10 +134,12 @@ pub fn shortened(text: &str) -> String {
 /// A rule that follows the name of what breaks it: "metallic is 2, but it must be …", not "but the metallic must be …".
 #[must_use]
 pub fn behind<'r>(name: &str, rule: &'r str) -> Cow<'r, str> {
-    let must = rule.strip_prefix("the ").and_then(|rule| rule.strip_prefix(name));
-    match must.filter(|must| must.starts_with(" must ")) {
-        Some(must) => Cow::Owned(format!("it{must}")),
-        None => Cow::Borrowed(rule),
+    match rule.split_once(&format!("the {name} must be ")) {
+        Some(("", range)) => Cow::Owned(format!("it must be {range}")),
+        Some((kind, range)) if range.starts_with("between ") || range.starts_with("greater ") => {
+            Cow::Owned(format!("{}, {range}", kind.trim_end_matches(": ")))
+        }
+        _ => Cow::Borrowed(rule),
     }
 }
 
@@ -176,6 +178,8 @@ mod tests {
     #[test]
     fn a_rule_does_not_repeat_the_name_before_it() {
         assert_eq!(behind("metallic", "the metallic must be 1"), "it must be 1");
+        let text = behind("metallic", "it must be a number: the metallic must be between 0 and 1");
+        assert_eq!(text, "it must be a number, between 0 and 1");
         for rule in ["the clear coat must be 1", "the clearcoat of it must be 1", "clearcoat must be 1"] {
             assert_eq!(behind("clearcoat", rule), rule);
         }
