@@ -104,10 +104,7 @@ impl LawReport {
         Self {
             model: model.declaration.id.to_owned(),
             measured: model.declaration.measured,
-            given: model
-                .parameters
-                .iter()
-                .any(|p| p.kind.format().is_none() && given.0.get(p.name).is_some()),
+            given: model.parameters.iter().any(|p| p.kind.format().is_none() && given.0.contains_key(p.name)),
             responses: findings.responses,
             not_finite: findings.not_finite,
             first_not_finite: place(model, findings.first_not_finite.as_ref()),
