@@ -139,7 +139,7 @@ impl Model {
             let own = self.values.0.iter().filter(|(_, value)| is_file(value));
             let given = Values(own.map(|(name, value)| (name.clone(), value.clone())).collect());
             let findings = examine_on_cpu(&self.entry, &given, Effort::default(), progress);
-            findings.map(|findings| LawReport::new(&self.entry, &findings))
+            findings.map(|findings| LawReport::new(&self.entry, &given, &findings))
         })?;
         self.runs()?;
         let examined = examined.map_err(|_| crate::bug("cancelled without a signal"))?;

@@ -8,7 +8,7 @@ use crate::{
     optics::tone::ToneMapping,
     registry::Registry,
     scene::{Display, Scene, field::Ids},
-    text::{listed, quoted},
+    text::{behind, listed, quoted},
 };
 
 /// Models and display settings in place of those of a scene.
@@ -38,7 +38,7 @@ impl Changes {
     /// Fails if an option has a wrong value. Reads the custom model that is named.
     pub(super) fn check(&self, workshop: &mut Workshop) -> Outcome {
         let usage = |flag: &str, value: &str, rule: String| {
-            Failure::Usage(format!("--{flag} is {}, but {rule}", quoted(value)))
+            Failure::Usage(format!("--{flag} is {}, but {}", quoted(value), behind(flag, &rule)))
         };
         if let Some(id) = &self.reflection {
             workshop.need(id);

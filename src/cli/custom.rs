@@ -134,7 +134,7 @@ pub(super) fn check(
         }
     };
     bar.finish_and_clear();
-    let report = LawReport::new(model, &findings);
+    let report = LawReport::new(model, &given, &findings);
     if as_json {
         print_json(&report)?;
     } else {

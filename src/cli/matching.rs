@@ -9,7 +9,7 @@ use clap::{
 use serde_json::{Value as Json, json};
 
 use super::{
-    FINE, Options, Outcome, outputs, print_json, print_text, progress,
+    FINE, Options, Outcome, gauged, outputs, print_json, print_text, progress,
     scenes::Source,
     style,
     views::find,
@@ -134,14 +134,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         }
         names => names.iter().map(|name| name.trim()).collect(),
     };
-    let bar = progress(100, options);
-    let tell = |done: f32, step: &str| {
-        bar.set_position((100.0 * done) as u64);
-        bar.set_message(step.to_owned());
-    };
     let request = Request { scene: &scene, view, measure, parameters: &free };
-    let found = match_view(&request, registry, &Progress { tell: &tell, cancelled: &|| false });
-    bar.finish_and_clear();
+    let found = gauged("matching", options, |progress| match_view(&request, registry, progress));
     let found = found.map_err(|error| match error {
         MatchError::NothingFree { .. }
         | MatchError::NoParameter { .. }

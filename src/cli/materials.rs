@@ -41,8 +41,14 @@ pub(super) struct Arguments {
     #[arg(long, short, value_name = "FILE", value_parser = outputs::place())]
     output: Option<PathBuf>,
     /// Width and height of each picture, in pixels
-    #[arg(long, value_name = "PIXELS", default_value = "160", value_parser = clap::value_parser!(u32).range(16..=1024))]
+    #[arg(long, value_name = "PIXELS", default_value = "160", value_parser = side)]
     size: u32,
+}
+
+/// Parser of the size of the pictures.
+fn side(text: &str) -> Result<u32, String> {
+    let side = text.trim().parse().ok().filter(|side| (16..=1024).contains(side));
+    side.ok_or_else(|| "it must be a whole number of pixels from 16 to 1024".to_owned())
 }
 
 pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {

@@ -61,7 +61,7 @@ pub(super) fn write_linear(output: &Path, format: Format, channels: &Channels, a
     linear::write(output, format, channels, about).map_err(|e| unwritten(output, &e))
 }
 
-fn unwritten(output: &Path, error: &io::Error) -> Failure {
+pub(super) fn unwritten(output: &Path, error: &io::Error) -> Failure {
     match error.kind() {
         io::ErrorKind::BrokenPipe => Failure::Closed,
         _ => Failure::Write(format!("{} could not be written: {}", output.shown(), words(error))),

@@ -98,6 +98,9 @@ impl Light {
 }
 
 fn decode(bytes: &[u8]) -> Result<Shown, String> {
+    if bytes.is_empty() {
+        return Err(files::EMPTY.to_owned());
+    }
     if !bytes.starts_with(files::PNG.begins) {
         return Err("this is not a PNG picture, though its name ends in .png".to_owned());
     }

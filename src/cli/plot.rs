@@ -20,7 +20,7 @@ use crate::{
     },
     export::write::inputs,
     failure::Failure,
-    files::{self, Output},
+    files::Output,
     optics::colour::Encoding,
     parameter::Values,
     progress::Progress,
@@ -214,12 +214,8 @@ fn sheet(
 
 /// Writes a file whole or not at all.
 fn write(file: &Path, bytes: &[u8]) -> Outcome {
-    let failed =
-        |error: files::FileError| Failure::Write(format!("{} could not be written: {error}", file.shown()));
     outputs::tidy_beside(file);
-    let mut output = Output::open(file).map_err(failed)?;
-    output.write_all(bytes).map_err(|error| failed(error.into()))?;
-    output.finish().map_err(failed)
+    Output::put(file, |to| to.write_all(bytes)).map_err(|error| outputs::unwritten(file, &error))
 }
 
 #[cfg(test)]

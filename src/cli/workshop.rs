@@ -9,7 +9,7 @@ use std::{
 use clap::Args;
 
 use super::{Options, Outcome, complain};
-use crate::files::Shown as _;
+use crate::files::{self, Shown as _};
 use crate::{
     custom::folder::{self, Reading},
     export::payload::{Payload, PayloadError},
@@ -17,7 +17,7 @@ use crate::{
     library::assets::{self, Folders},
     program::{HAS_WINDOW, without_window},
     reflection::ModelEntry,
-    registry::{Registry, check::wgsl, compose::compose},
+    registry::{MODELS, Registry, check::wgsl, compose::compose},
     scene::{
         Scene,
         error::LoadError,
@@ -288,9 +288,16 @@ pub(super) fn all_annotated(problems: &[(PathBuf, ShaderProblem)]) -> String {
     let mut each: Vec<_> = problems
         .iter()
         .map(|(path, problem)| {
-            // A model may be broken because of a file that it shares with others.
-            let own = path.ends_with(problem.file.rsplit('/').next().unwrap_or_default());
-            annotated(problem, &if own { path.shown().to_string() } else { problem.file.clone() })
+            // A model may be broken because of a file that it shares with others, beside it.
+            let file = match problem.file.strip_prefix(MODELS) {
+                Some(name) => files::folder_of(path).join(name),
+                // The folder itself, or a file given to the command.
+                None if problem.file == MODELS.trim_end_matches('/') || path.ends_with(&problem.file) => {
+                    path.clone()
+                }
+                None => PathBuf::from(&problem.file),
+            };
+            annotated(problem, &file.shown().to_string())
         })
         .collect();
     each.dedup();

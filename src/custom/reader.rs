@@ -8,7 +8,7 @@ use crate::{
     reflection::ModelEntry,
     registry::Registry,
     text::{
-        did_you_mean,
+        behind, did_you_mean,
         json::{self, Ast, Cursor, Fields, Reader as _},
         one_of,
         path::Path,
@@ -42,8 +42,11 @@ impl json::Reader for Reader<'_> {
 
     fn report(&mut self, at: usize, path: Path, found: Option<String>, rule: &str) {
         let place = if path == Path::root() { "the declaration".to_owned() } else { path.to_string() };
-        let found = found.map_or_else(String::new, |found| format!("is {found}, but "));
-        self.mistake(at, format!("{place} {found}{rule}"));
+        let said = match found {
+            Some(found) => format!("is {found}, but {}", behind(path.last_key(), rule)),
+            None => rule.to_owned(),
+        };
+        self.mistake(at, format!("{place} {said}"));
     }
 
     /// Short lists as written.

@@ -14,9 +14,7 @@ use super::{
     folder_of, follow, litter,
     living::{self, Living, Temporary},
     overwrite::{fill, open_to_overwrite},
-    regular,
-    shown::Shown as _,
-    tidy,
+    regular, tidy,
 };
 
 /// Writes a document, replacing any existing one: all or nothing, and on disk when this returns. Links are
@@ -108,10 +106,7 @@ impl Draft {
             )
         };
         let missing = |error: io::Error| match error.kind() {
-            io::ErrorKind::NotFound => {
-                let message = format!("there is no folder {}", folder_of(&target).shown());
-                io::Error::new(io::ErrorKind::NotFound, message)
-            }
+            io::ErrorKind::NotFound => super::missing(folder_of(&target)),
             _ => error,
         };
         let (file, living) =

@@ -154,7 +154,13 @@ pub fn in_folder<T, E: From<io::Error>>(folder: &Path, write: impl FnOnce() -> R
     // Recorded until the end, in case this process is terminated meanwhile.
     let known = |folder: &&Path| Living::making(|| Ok(()), |()| Temporary::Folder((*folder).to_owned()));
     let _living = new.iter().map(known).collect::<Result<Vec<_>, _>>()?;
-    fs::create_dir_all(folder).map_err(E::from).and_then(|()| write()).inspect_err(|_| {
+    let made = fs::create_dir_all(folder).map_err(|error| {
+        match (error.kind(), folder.ancestors().find(|f| f.exists())) {
+            (io::ErrorKind::NotFound, Some(there)) => super::missing(there),
+            _ => error,
+        }
+    });
+    made.map_err(E::from).and_then(|()| write()).inspect_err(|_| {
         // Only empty folders are removed.
         new.iter().for_each(|folder| drop(fs::remove_dir(folder)));
     })

@@ -174,6 +174,9 @@ impl From<FileError> for io::Error {
     }
 }
 
+/// The message for a file without a byte, such as one whose writing failed.
+pub const EMPTY: &str = "the file is empty";
+
 /// A limit as displayed.
 fn size(bytes: u64) -> String {
     if bytes >= 1 << 20 { format!("{} MiB", bytes >> 20) } else { format!("{} KiB", bytes >> 10) }
@@ -312,6 +315,17 @@ pub fn follow(path: &Path) -> io::Result<PathBuf> {
         }
     }
     Err(io::Error::other("too many links, each leading to the next"))
+}
+
+/// The reason why nothing can be made in a folder, where the system says that it is not there.
+fn missing(folder: &Path) -> io::Error {
+    let folder = if folder.is_dir() {
+        // As in /proc.
+        format!("{} is a folder of the system in which no files can be created", folder.shown())
+    } else {
+        format!("there is no folder {}", folder.shown())
+    };
+    io::Error::new(io::ErrorKind::NotFound, folder)
 }
 
 /// The folder that contains a file.

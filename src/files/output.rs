@@ -9,7 +9,9 @@ use std::{
 };
 
 use super::shown::Shown as _;
-use super::{Draft, FileError, Kind, input::descriptor, kind, options, read_start, same};
+use super::{
+    Draft, FileError, Kind, folder_of, in_folder, input::descriptor, kind, options, read_start, same,
+};
 
 /// Maximum wait for a reader of a named pipe.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -173,6 +175,19 @@ impl Output {
             Ok(kind) => Err(FileError::Kind(kind)),
             Err(error) => Err(error.into()),
         }
+    }
+
+    /// Writes a whole result, as every command does: missing folders are created, and removed again if the result cannot
+    /// be written.
+    ///
+    /// # Errors
+    /// Returns the errors of [`open`](Self::open) and of `write`.
+    pub fn put(path: &Path, write: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()> {
+        in_folder(folder_of(path), || {
+            let mut output = Self::open(path)?;
+            write(&mut output)?;
+            Ok(output.finish()?)
+        })
     }
 
     /// Finishes writing.

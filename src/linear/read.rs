@@ -72,6 +72,8 @@ fn decode<P: Pixels>(bytes: &[u8], limits: &Limits) -> Result<P, String> {
         radiance(rest, limits)
     } else if bytes.starts_with(files::EXR.begins) {
         open_exr(bytes, limits)
+    } else if bytes.is_empty() {
+        Err(files::EMPTY.to_owned())
     } else {
         Err("it does not begin like a Radiance picture (#?RADIANCE) or an OpenEXR picture".to_owned())
     }
@@ -104,7 +106,7 @@ fn radiance<P: Pixels>(rest: &[u8], limits: &Limits) -> Result<P, String> {
     P::check(width, height)?;
     let decoder = HdrDecoder::new(RADIANCE[0].chain(rest)).map_err(|error| match error {
         ImageError::Unsupported(_) => "its FORMAT must be 32-bit_rle_rgbe".to_owned(),
-        error => format!("the header of the Radiance picture cannot be read: {error}"),
+        _ => bad_line(head),
     })?;
     let meta = decoder.metadata();
     let exposure = meta.exposure.unwrap_or(1.0);
@@ -115,7 +117,10 @@ fn radiance<P: Pixels>(rest: &[u8], limits: &Limits) -> Result<P, String> {
     let mut pixels = vec![0; 12 * width * height];
     decoder.read_image(&mut pixels).map_err(|error| match error {
         ImageError::IoError(_) => "the file ends before its last pixel".to_owned(),
-        error => format!("the pixels of the Radiance picture cannot be read: {error}"),
+        _ => {
+            let what = "its compressed rows of pixels do not have the width that its header gives";
+            format!("the Radiance picture is damaged: {what}, {width}; copy it again from its source")
+        }
     })?;
     // The values of the file were multiplied by these factors.
     let mut picture = P::new(width, height, DVec3::from_array(factors.map(f64::from)).recip());
@@ -125,6 +130,26 @@ fn radiance<P: Pixels>(rest: &[u8], limits: &Limits) -> Result<P, String> {
         picture.add(i % width, i / width, [r, g, b, f32::NAN]);
     }
     Ok(picture)
+}
+
+/// The first line of the header of a Radiance picture that has no numbers where it must.
+fn bad_line(head: &[u8]) -> String {
+    let count = |key: &str| match key {
+        "EXPOSURE" | "PIXASPECT" => Some((1, "a number")),
+        "COLORCORR" => Some((3, "three numbers")),
+        _ => None,
+    };
+    let head = String::from_utf8_lossy(head);
+    let wrong = head.lines().enumerate().find_map(|(i, line)| {
+        let (key, value) = line.split_once('=')?;
+        let (most, what) = count(key.trim())?;
+        let numbers: Result<Vec<f32>, _> = value.split_whitespace().map(str::parse).collect();
+        let good = numbers.is_ok_and(|all| all.len() == most);
+        let said =
+            || format!("line {} of its header is “{}”, but {key} must be {what}", i + 1, shortened(line));
+        (!good).then(said)
+    });
+    wrong.unwrap_or_else(|| "the header of the Radiance picture is damaged".to_owned())
 }
 
 fn open_exr<P: Pixels>(bytes: &[u8], limits: &Limits) -> Result<P, String> {
@@ -153,17 +178,47 @@ fn open_exr<P: Pixels>(bytes: &[u8], limits: &Limits) -> Result<P, String> {
     Ok(image.layer_data.channel_data.pixels)
 }
 
+/// An error in our own words: the decoder's are written for its authors.
 fn broken(error: &exr::error::Error) -> String {
-    match error {
-        exr::error::Error::NotSupported(what) => format!(
-            "this kind of OpenEXR picture is not supported ({}); it must have flat pixels, uncompressed or \
-             compressed with RLE, ZIP, PIZ, PXR24 or B44",
-            shortened(what)
-        ),
-        error => {
-            format!("the OpenEXR picture is incomplete or broken ({})", shortened(&error.to_string()))
+    /// Parts of the decoder's messages, which are all that identifies the kind of an error, and ours.
+    const KINDS: &[(&str, &str)] = &[
+        ("not enough data", "it ends too early"),
+        ("reference to missing bytes", "it ends too early"),
+        ("missing or invalid", "its header lacks what every picture has, or has it in another form"),
+        ("window", "its header gives it no pixels, or too many"),
+        ("attribute", "its header is wrong"),
+        ("header", "its header is wrong"),
+        ("feature flags", "its header is wrong"),
+        ("chunk", "its list of blocks is wrong"),
+        ("block", "its list of blocks is wrong"),
+        ("tile", "its list of tiles is wrong"),
+        ("offset table", "its list of blocks is wrong"),
+        ("compress", "its compressed pixels cannot be read"),
+        ("code", "its compressed pixels cannot be read"),
+        ("table", "its compressed pixels cannot be read"),
+        ("data", "its compressed pixels cannot be read"),
+    ];
+    const FORMS: &str =
+        "it must have flat pixels, uncompressed or compressed with RLE, ZIP, PIZ, PXR24 or B44";
+    let damage = match error {
+        exr::error::Error::NotSupported(what) => {
+            let kinds = [
+                ("deep", "deep pixels"),
+                ("compression", "another compression"),
+                ("sampling", "channels of several sizes"),
+            ];
+            let known = kinds.into_iter().find(|(theirs, _)| what.contains(theirs));
+            let kind = known.map_or("a newer form of the format", |(_, ours)| ours);
+            return format!("OpenEXR pictures with {kind} are not supported; {FORMS}");
         }
-    }
+        exr::error::Error::Io(_) => "it ends too early",
+        error => {
+            let said = error.to_string();
+            let known = KINDS.iter().find(|(theirs, _)| said.contains(*theirs));
+            known.map_or("one of its parts is not valid", |(_, ours)| *ours)
+        }
+    };
+    format!("the OpenEXR picture is damaged: {damage}; copy it again from its source")
 }
 
 /// The size and the scale of the layer that is read, the first one with red, green and blue, if the file respects

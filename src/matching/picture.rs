@@ -1,5 +1,7 @@
 //! Pictures: the light of two views, drawn small by the CPU renderer.
 
+use std::sync::atomic::AtomicBool;
+
 use glam::{Vec3, Vec4};
 
 use super::{
@@ -8,7 +10,7 @@ use super::{
 };
 use crate::{
     parameter::Values,
-    reference::{self, Settings},
+    reference::{self, LightSamples, Settings},
     registry::Registry,
     scene::Scene,
 };
@@ -17,6 +19,14 @@ use crate::{
 pub const HEIGHT: u32 = 96;
 /// Width of the pictures, with the usual aspect ratio of 16 to 9.
 pub const WIDTH: u32 = HEIGHT * 16 / 9;
+
+/// Number of samples of lights with extent: what they leave out is missing in both pictures alike.
+const LIGHT_SAMPLES: LightSamples = LightSamples::of(32);
+
+/// The light of a scene.
+fn light(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<Vec4> {
+    reference::render_samples(scene, registry, settings, LIGHT_SAMPLES, &AtomicBool::new(false)).pixels
+}
 
 /// The picture of a view, for comparison with that of view A.
 pub(super) struct Picture<'r> {
@@ -33,8 +43,7 @@ impl<'r> Picture<'r> {
     /// The picture of the second view, for comparison with the first; `None` if no object covers a pixel.
     pub(super) fn new([a, b]: [&Side; 2], registry: &'r Registry) -> Option<Self> {
         let settings = |side: &Side| Settings { width: WIDTH, height: HEIGHT, samples: 1, terms: side.terms };
-        let [of_a, of_b] =
-            [a, b].map(|side| reference::render(&side.scene, registry, &settings(side)).pixels);
+        let [of_a, of_b] = [a, b].map(|side| light(&side.scene, registry, &settings(side)));
         let covered = |(i, (a, b)): (usize, (&Vec4, &Vec4))| (a.w.max(b.w) > 0.0).then(|| (i, a.truncate()));
         let wanted: Vec<_> = of_a.iter().zip(&of_b).enumerate().filter_map(covered).collect();
         if wanted.is_empty() {
@@ -55,7 +64,7 @@ impl Target for Picture<'_> {
             object.material.clone_from(own);
             values.iter().for_each(|(name, value)| object.material.set(*name, value.clone()));
         }
-        let pixels = reference::render(&self.scene, self.registry, &self.settings).pixels;
+        let pixels = light(&self.scene, self.registry, &self.settings);
         for (to, (i, wanted)) in to.as_chunks_mut::<3>().0.iter_mut().zip(&self.wanted) {
             *to = (pixels[*i].truncate() - *wanted).to_array().map(f64::from);
         }

@@ -189,8 +189,10 @@ impl<'a, T: Target> Search<'a, T> {
 
     /// Reports the progress of the search.
     fn tell(&self) {
-        let done = if self.last { 1.0 } else { self.evaluations as f32 / self.most as f32 };
-        (self.progress.tell)(done, &self.step);
+        // Whichever ends the search first.
+        let spent = self.begun.elapsed().as_secs_f32() / LONGEST.as_secs_f32();
+        let done = spent.max(self.evaluations as f32 / self.most as f32).min(1.0);
+        (self.progress.tell)(if self.last { 1.0 } else { done }, &self.step);
     }
 
     fn error(&mut self, point: &Point) -> Result<f64, Stop> {

@@ -27,6 +27,8 @@ const PADDING: f32 = 8.0;
 /// The part of the window above it, and the part that its list takes.
 const ABOVE: f32 = 0.09;
 const LIST: f32 = 0.58;
+/// The rank above every other, of a model by another of its names.
+const FIRST: i32 = 10_000;
 /// Number of the latest commands that come first.
 const RECENT: usize = 5;
 
@@ -52,6 +54,8 @@ struct Found {
     note: String,
     /// Further words by which it is found.
     more: String,
+    /// Other names of a model.
+    synonyms: &'static [&'static str],
     key: String,
     off: bool,
     on: bool,
@@ -152,7 +156,13 @@ fn listed<'f>(ctx: &Context, all: &'f [Found]) -> Vec<(&'static str, &'f Found)>
 
 /// The entries that match the typed text, best first.
 fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> {
-    let fits = |found: &'f Found| Some((rank(&found.title, &found.more, search)?, found));
+    let name = search.trim().to_lowercase();
+    // Who types another name of a model looks for the model, not for a scene whose title has the word.
+    let is_model = |found: &Found| found.synonyms.iter().any(|synonym| synonym.to_lowercase() == name);
+    let fits = |found: &'f Found| {
+        let first = if is_model(found) { FIRST } else { 0 };
+        Some((rank(&found.title, &found.more, search)? + first, found))
+    };
     let mut found: Vec<_> = all.iter().filter_map(fits).collect();
     leave_out_chance(&mut found);
     found.sort_by_key(|(rank, found)| (-rank, found.off));
@@ -210,6 +220,7 @@ fn commands(root: &Menu, session: &Session, registry: &Registry) -> Vec<Found> {
                 (None, None) => place,
             },
             more,
+            synonyms: model.map_or(&[], |model| model.declaration.synonyms),
             key: key(command).unwrap_or_default(),
             off: why.is_some(),
             on: matches!(command.mark, Mark::Check(true) | Mark::Radio(true)),
@@ -255,6 +266,7 @@ fn parameter(p: &Parameter, of: &str, beginning: &str, unused: Option<String>) -
         off: unused.is_some(),
         note: unused.unwrap_or_else(|| format!("Parameter of {of}")),
         more: format!("{} {} parameter {of}", p.name, p.symbol),
+        synonyms: &[],
         key: String::new(),
         on: false,
         tip: p.help.to_owned(),

@@ -443,7 +443,9 @@ impl Content {
             Ok(path) => {
                 let bytes = self.place(path).and_then(|place| {
                     key = self.identity_at(&place).map(|(key, _)| key);
-                    files::read(&place, self.format.max_bytes).map_err(|error| error.to_string())
+                    let bytes =
+                        files::read(&place, self.format.max_bytes).map_err(|error| error.to_string())?;
+                    if bytes.is_empty() { Err(files::EMPTY.to_owned()) } else { Ok(bytes) }
                 });
                 bytes.map_err(|error| format!("{}: {error}", path.shown())).and_then(|bytes| {
                     (self.format.read)(&bytes).map_err(|FileProblem { line, message }| {

@@ -1,7 +1,7 @@
 //! A value from text, as typed on the command line, and the rule that a value breaks.
 
 use super::{Parameter, kind::Value};
-use crate::text::shortened;
+use crate::text::{behind, shortened};
 
 /// The reason why a text is not a legal value of a parameter. Displayed as the end of a sentence: "is 0.2,
 /// but the diffuse coefficient must be between 0.5 and 1".
@@ -31,8 +31,9 @@ impl Parameter {
     /// # Errors
     /// Returns a [`ParseError`] if the text is not a value of the parameter's kind, or the value is out of range.
     pub fn parse(&self, text: &str) -> Result<Value, ParseError> {
-        let broken = |rule| ParseError { found: text.to_owned(), rule };
-        let value = self.kind.parse(text).ok_or_else(|| broken(self.clause()))?;
+        let broken =
+            |rule: String| ParseError { found: text.to_owned(), rule: behind(self.name, &rule).into_owned() };
+        let value = self.kind.parse(text).ok_or_else(|| broken(self.clause() + &self.kind.excess(text)))?;
         self.check(&value).map(|()| value).map_err(broken)
     }
 

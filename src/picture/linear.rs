@@ -7,7 +7,7 @@ use std::{
 
 use super::png::About;
 use crate::{
-    files::{self, Output},
+    files::Output,
     linear::{Channels, Format, Notes},
     scene::formats::SCENE_KEYWORD,
 };
@@ -20,11 +20,7 @@ use crate::{
 pub fn write(path: &Path, format: Format, channels: &Channels, about: &About) -> io::Result<()> {
     // Before the file is begun.
     let bytes = encode(format, channels, about)?;
-    files::in_folder(files::folder_of(path), || {
-        let mut output = Output::open(path)?;
-        output.write_all(&bytes)?;
-        Ok(output.finish()?)
-    })
+    Output::put(path, |to| to.write_all(&bytes))
 }
 
 /// The picture as the bytes of a file.

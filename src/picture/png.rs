@@ -57,18 +57,14 @@ impl About {
 
 /// Writes an sRGB picture (red, green, blue, row by row from the top) with its metadata.
 ///
-/// Missing folders are created, and removed again if the picture cannot be written. A file appears complete
-/// or not at all; standard output, devices and pipes are written to directly, see [`Output`].
+/// A file appears complete or not at all, in a folder that is created if it is missing; standard output, devices and
+/// pipes are written to directly, see [`Output::put`].
 ///
 /// # Errors
 /// Returns an error if `rgb8` is not `width · height · 3` bytes, if a keyword is empty or longer than 79
 /// characters, or if the file cannot be written.
 pub fn write(path: &Path, width: u32, height: u32, rgb8: &[u8], about: &About) -> io::Result<()> {
-    files::in_folder(files::folder_of(path), || {
-        let mut output = Output::open(path)?;
-        encode(BufWriter::new(&mut output), width, height, rgb8, about)?;
-        Ok(output.finish()?)
-    })
+    Output::put(path, |to| encode(BufWriter::new(to), width, height, rgb8, about))
 }
 
 /// Writes a film that goes on for ever, as an animated PNG file: pictures of one size, so many per second. Programs that
@@ -83,11 +79,7 @@ pub fn write_film(
     rate: u32,
     about: &About,
 ) -> io::Result<()> {
-    files::in_folder(files::folder_of(path), || {
-        let mut output = Output::open(path)?;
-        encode_all(BufWriter::new(&mut output), size, pictures, Some(rate), about)?;
-        Ok(output.finish()?)
-    })
+    Output::put(path, |to| encode_all(BufWriter::new(to), size, pictures, Some(rate), about))
 }
 
 /// The picture as the bytes of a PNG file.

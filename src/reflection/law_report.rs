@@ -9,6 +9,7 @@ use super::{
     ModelEntry,
     laws::{Case, Effort, Extreme, Findings, SAMPLES, SAMPLING_TOLERANCE},
 };
+use crate::parameter::Values;
 
 /// The findings about a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,6 +19,9 @@ pub struct LawReport {
     /// True if it is measured: laws that it does not claim depend on its file.
     #[serde(default)]
     pub measured: bool,
+    /// True if the user gave some parameters: what is found is true of these alone.
+    #[serde(default)]
+    pub given: bool,
     /// Number of responses examined.
     pub responses: usize,
     /// Number of non-finite ones among them.
@@ -78,9 +82,9 @@ pub struct LawVerdict {
 }
 
 impl LawReport {
-    /// The findings of an examination.
+    /// The findings of an examination, in which these parameters were given.
     #[must_use]
-    pub fn new(model: &ModelEntry, findings: &Findings) -> Self {
+    pub fn new(model: &ModelEntry, given: &Values, findings: &Findings) -> Self {
         let evidence = [
             ("largest relative difference of f(l, v) and f(v, l)", &findings.reciprocity),
             ("largest directional albedo", &findings.albedo),
@@ -100,6 +104,7 @@ impl LawReport {
         Self {
             model: model.declaration.id.to_owned(),
             measured: model.declaration.measured,
+            given: model.parameters.iter().any(|p| p.kind.format().is_none() && given.0.contains_key(p.name)),
             responses: findings.responses,
             not_finite: findings.not_finite,
             first_not_finite: place(model, findings.first_not_finite.as_ref()),
@@ -135,12 +140,15 @@ impl LawReport {
     pub fn verdict(&self, law: &LawVerdict) -> &'static str {
         match (law.claimed, law.kept) {
             (_, true) if !self.is_finite() => "cannot be judged: some values are NaN or infinite",
+            (false, true) if self.measured => "depends on the file; with this one, no violation was found",
+            (false, false) if self.measured => "depends on the file; this one breaks it",
+            (true, true) if self.given => "claimed for all parameters, and kept with these",
+            (false, true) if self.given => {
+                "not claimed for all parameters; with these, no violation was found"
+            }
+            (false, false) if self.given => "not claimed for all parameters, and broken with these",
             (true, true) => "claimed and kept",
             (true, false) => "claimed and BROKEN",
-            (false, true) if self.measured => {
-                "not claimed: it depends on the file, and no violation was found"
-            }
-            (false, false) if self.measured => "not claimed: it depends on the file, and this one breaks it",
             (false, true) => "not claimed, but no violation found: claim it?",
             (false, false) => "not claimed and broken",
         }
@@ -210,7 +218,7 @@ mod tests {
         let registry = Registry::builtin();
         let lambert = registry.model("lambert").expect("built in");
         let mut findings = Findings { responses: 4, ..Findings::default() };
-        let report = |findings: &Findings| LawReport::new(lambert, findings).to_string();
+        let report = |findings: &Findings| LawReport::new(lambert, &Values::default(), findings).to_string();
         assert_eq!(report(&findings).matches("claimed and kept").count(), 3);
         findings.not_finite = 1;
         findings.albedo.size = 2.0;
@@ -218,7 +226,7 @@ mod tests {
         assert!(!text.contains("kept"), "{text}");
         assert_eq!(text.matches("cannot be judged: some values are NaN or infinite").count(), 2, "{text}");
         assert!(text.contains("energy conserving: claimed and BROKEN"), "{text}");
-        assert_eq!(LawReport::new(lambert, &findings).broken(), ["energy conserving"]);
+        assert_eq!(LawReport::new(lambert, &Values::default(), &findings).broken(), ["energy conserving"]);
     }
 
     #[test]
@@ -226,9 +234,13 @@ mod tests {
         let registry = Registry::builtin();
         let lambert = registry.model("lambert").expect("built in");
         let mut findings = Findings::default();
-        assert!(LawReport::new(lambert, &findings).to_string().contains("lobes for sampling: they fit\n"));
+        assert!(
+            LawReport::new(lambert, &Values::default(), &findings)
+                .to_string()
+                .contains("lobes for sampling: they fit\n")
+        );
         findings.sampling.size = 0.5;
-        let report = LawReport::new(lambert, &findings);
+        let report = LawReport::new(lambert, &Values::default(), &findings);
         assert!(report.to_string().contains("lobes for sampling: they miss highlights"), "{report}");
         assert!(report.broken().is_empty());
     }

@@ -75,41 +75,74 @@ pub fn tonemapping(tone: ToneMapping) -> Tonemapping {
     }
 }
 
-/// Keeps cameras that follow the observer at the observer's position, and updates the field of view and tone
-/// mapping of every picture camera.
+/// Gives the lens of every picture camera its angle, for the size of the picture that is about to be drawn.
+pub(super) fn aim(
+    scene: Res<CurrentScene>,
+    shown: Res<Shown>,
+    mut cameras: Query<(&PictureCamera, Option<&View>, &mut Projection)>,
+) {
+    for (camera, view, mut lens) in &mut cameras {
+        let Projection::Perspective(perspective) = &*lens else { continue };
+        // The camera knows its size only after the first picture of that size.
+        let size = view.map(|view| view.inset.map_or(view.size, |inset| inset.size()).as_vec2());
+        let size = size.filter(|size| size.min_element() > 0.0);
+        let aspect = size.map_or(perspective.aspect_ratio, |size| size.x / size.y);
+        let keeps = if camera.fits_width { scene.0.view_angle().keeps } else { 0.0 };
+        let fov = ViewAngle { degrees: shown.observer.field_of_view, keeps }.vertical(aspect);
+        if perspective.fov != fov
+            && let Projection::Perspective(perspective) = &mut *lens
+        {
+            perspective.fov = fov;
+        }
+    }
+}
+
+/// Keeps cameras that follow the observer at the observer's position, and updates the tone mapping of every picture
+/// camera.
 pub fn follow_scene(
     scene: Res<CurrentScene>,
     shown: Res<Shown>,
     mut cameras: Query<(
         &PictureCamera,
         Option<&Overrides>,
-        Option<&View>,
         &mut Transform,
-        &mut Projection,
         &mut Tonemapping,
         (Has<Hdr>, Has<ForDisplay>),
     )>,
 ) {
     let observer = &shown.observer;
-    for (camera, overrides, view, mut transform, mut lens, mut tone, (hdr, display)) in &mut cameras {
+    for (camera, overrides, mut transform, mut tone, (hdr, display)) in &mut cameras {
         if camera.follows_observer {
             let wanted =
                 Transform::from_translation(observer.position).with_rotation(rotation(observer.direction));
             transform.set_if_neq(wanted);
         }
-        let Projection::Perspective(perspective) = &*lens else { continue };
-        let inset = view.and_then(|view| view.inset).map(|inset| inset.size().as_vec2());
-        let aspect = inset.map_or(perspective.aspect_ratio, |size| size.x / size.y);
-        let keeps = if camera.fits_width { scene.0.view_angle().keeps } else { 0.0 };
-        let fov = ViewAngle { degrees: observer.field_of_view, keeps }.vertical(aspect);
-        if perspective.fov != fov
-            && let Projection::Perspective(perspective) = &mut *lens
-        {
-            perspective.fov = fov;
-        }
         let seen = hdr || display;
         let display = overrides.map_or(scene.0.display, |o| o.seen_through(&scene.0));
         let wanted = if seen { tonemapping(display.tone_mapping) } else { Tonemapping::None };
         tone.set_if_neq(wanted);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Scene, Variant, comparison::Layout};
+
+    #[test]
+    fn the_first_picture_of_a_size_has_its_angle() {
+        let mut scene = Scene { variants: vec![Variant::default()], ..Scene::default() };
+        scene.comparison.layout = Layout::SideBySide;
+        let wanted = scene.view_angle().vertical(0.5);
+        let mut app = App::new();
+        app.insert_resource(Shown { observer: scene.observer, ..Shown::default() })
+            .insert_resource(CurrentScene(scene))
+            .add_systems(Update, aim);
+        let camera = PictureCamera { follows_observer: true, fits_width: true };
+        let view = View::for_display(UVec2::new(300, 600));
+        let camera = app.world_mut().spawn((view, picture_camera(1))).insert(camera).id();
+        app.update();
+        let Some(Projection::Perspective(lens)) = app.world().get(camera) else { panic!("it has a lens") };
+        assert!((lens.fov - wanted).abs() < 1e-6 && lens.fov > 1.0, "{}", lens.fov);
     }
 }

@@ -21,6 +21,7 @@ use bevy::{
 use std::collections::HashSet;
 
 use super::{
+    camera::aim,
     converge::{Converged, Convergence, Part},
     drawn::{ByChance, Drawn},
     entities::CurrentScene,
@@ -41,6 +42,7 @@ const PICTURES: u32 = 2;
 pub(super) fn plugin(app: &mut App) {
     let rest = rest.after(AssetEventSystems).after(CameraUpdateSystems);
     let systems = (
+        aim.before(CameraUpdateSystems),
         fit.before(AssetEventSystems).before(CameraUpdateSystems),
         frame.after(VisibilitySystems::UpdateFrusta),
         rest.before(VisibilitySystems::CheckVisibility),

@@ -81,7 +81,15 @@ impl Place {
     /// Returns the path, the text and the rule that it breaks.
     pub fn read(&self, text: &str, registry: &Registry) -> Result<Value, String> {
         let text = text.trim();
-        let broken = |rule: &str| format!("{} is {}, but {rule}", self.path, shortened(text));
+        let broken = |rule: &str| {
+            Problem {
+                place: None,
+                path: self.path.clone(),
+                found: Some(shortened(text)),
+                rule: rule.to_owned(),
+            }
+            .to_string()
+        };
         if self.component.is_some() {
             let value = text.parse().ok().filter(|v: &f32| v.is_finite()).map(Value::Number);
             let code = |value: &Value| {

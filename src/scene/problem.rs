@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-use crate::text::{path::Path, place::Place};
+use crate::text::{behind, path::Path, place::Place};
 
 /// Maximum number of problems listed. A scene within the limits of lights and objects with errors in every
 /// field has fewer; a hostile file could have millions.
@@ -42,7 +42,7 @@ impl Problem {
     #[must_use]
     pub fn message(&self) -> String {
         match &self.found {
-            Some(found) => format!("is {found}, but {}", self.rule),
+            Some(found) => format!("is {found}, but {}", behind(self.path.last_key(), &self.rule)),
             None => self.rule.clone(),
         }
     }

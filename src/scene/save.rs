@@ -73,12 +73,15 @@ pub enum Unwritten {
     /// The path leads to something other than a file or folder.
     #[error("was not written: it is {0}, not a regular file")]
     NoFile(Kind),
-    /// The folder of the file does not exist.
-    #[error("was not written: there is no folder {}", .0.shown())]
-    NoFolder(PathBuf),
     /// A failure of the operating system: no permission, no space.
     #[error("was not written: {}", words(.0))]
     Io(#[source] io::Error),
+}
+
+impl From<io::Error> for Unwritten {
+    fn from(error: io::Error) -> Self {
+        FileError::from(error).into()
+    }
 }
 
 impl From<FileError> for Unwritten {
@@ -115,7 +118,8 @@ fn lines(problems: &[Problem]) -> String {
 }
 
 /// Writes a scene, completely or not at all, as [`files::write`](fn@files::write) does, in the
-/// [format](super::formats) of the file's extension. Returns the stamp to expect next time.
+/// [format](super::formats) of the file's extension. Missing folders are created, as [`files::in_folder`] does. Returns the
+/// stamp to expect next time.
 ///
 /// # Errors
 /// Returns a [`SaveError`]; the old file is then untouched.
@@ -141,26 +145,24 @@ fn written(path: &Path, scene: &Scene, registry: &Registry, expected: Expected) 
     }
     let target = files::follow(path).map_err(FileError::from)?;
     let folder = files::folder_of(&target);
-    if !folder.is_dir() {
-        return Err(Unwritten::NoFolder(folder.to_owned()));
-    }
     let old = on_disk(&target, expected)?;
-    let bytes = writer.write(scene, &Target::new(folder, old.as_deref()), registry);
-    let bytes = bytes.map_err(Unwritten::Lossy)?;
-    if !formats::is_json(format) {
-        comes_back(&bytes, scene, (path, folder), registry).map_err(Unwritten::Lossy)?;
-    }
-
-    let mut draft = Draft::new(&target)?;
-    draft.write_all(&bytes).map_err(FileError::from)?;
-    if expected == Expected::Nothing {
-        draft.create()?;
-    } else {
-        // Check again: writing took time.
-        on_disk(&target, expected)?;
-        draft.replace()?;
-    }
-    Ok(Stamp::of(&bytes))
+    files::in_folder(folder, || {
+        let bytes = writer.write(scene, &Target::new(folder, old.as_deref()), registry);
+        let bytes = bytes.map_err(Unwritten::Lossy)?;
+        if !formats::is_json(format) {
+            comes_back(&bytes, scene, (path, folder), registry).map_err(Unwritten::Lossy)?;
+        }
+        let mut draft = Draft::new(&target)?;
+        draft.write_all(&bytes).map_err(FileError::from)?;
+        if expected == Expected::Nothing {
+            draft.create()?;
+        } else {
+            // Check again: writing took time.
+            on_disk(&target, expected)?;
+            draft.replace()?;
+        }
+        Ok(Stamp::of(&bytes))
+    })
 }
 
 /// `Ok` if the written scene can be read back from the content of the file; otherwise the first part that is

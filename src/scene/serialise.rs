@@ -24,7 +24,7 @@ use super::{
 use crate::{
     parameter::{Parameter, Value},
     registry::Registry,
-    text::listed,
+    text::{behind, listed},
 };
 
 /// The built-in types.
@@ -122,7 +122,7 @@ impl<'de> DeserializeSeed<'de> for &Parameter {
         let found = |rule: &dyn Shown| D::Error::custom(format!("{} {rule}", self.name));
         match written {
             Some(text) => self.parse(&text).map_err(|error| found(&error)),
-            None => Err(found(&format!("is {json}, but {}", self.clause()))),
+            None => Err(found(&format!("is {json}, but {}", behind(self.name, &self.clause())))),
         }
     }
 }

@@ -256,8 +256,7 @@ impl<'a> Composer<'a> {
         };
         self.composed.imports.insert(path.clone());
         if let Some(first) = self.open.iter().position(|open| *open == path) {
-            let mut round: Vec<_> = self.open[first..].to_vec();
-            round.push(path);
+            let round: Vec<_> = self.open[first..].iter().chain([&path]).map(|path| shown(path)).collect();
             return self.complain(from, at, line, &format!("circular import: {}", round.join(" → ")));
         }
         if !self.done.insert(path.clone()) {
@@ -275,7 +274,7 @@ impl<'a> Composer<'a> {
                 self.check_end(&path, text);
                 self.file(&path, text);
             }
-            None => self.complain(from, at, line, &format!("there is no file `{path}` to import")),
+            None => self.complain(from, at, line, &format!("there is no file `{}` to import", shown(&path))),
         }
     }
 
@@ -302,6 +301,11 @@ impl<'a> Composer<'a> {
             self.lines += 1;
         }
     }
+}
+
+/// A path as shown in messages: custom models are in a folder of any name, which stands before the message.
+pub(super) fn shown(path: &str) -> &str {
+    path.strip_prefix("models/").unwrap_or(path)
 }
 
 /// The file named by a line `#import "file.wgsl"`. Imports without quotation marks are modules of Bevy.

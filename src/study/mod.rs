@@ -7,7 +7,7 @@
 //! Based Shading Models in Real-time Rendering*. Every sentence of a conclusion that depends on a number is
 //! selected by that number.
 
-use std::{fmt::Write as _, fs, io, iter, path::Path, sync::Arc};
+use std::{fmt::Write as _, io, iter, path::Path, sync::Arc};
 
 use glam::DVec3;
 use maud::{Markup, PreEscaped, html};
@@ -145,12 +145,13 @@ impl Study {
         if !before.is_nothing() {
             return Ok(files::write_all(all.map(|(name, text)| (folder.join(name), text)))?);
         }
-        fs::create_dir_all(files::folder_of(folder))?;
-        let draft = FolderDraft::new(folder)?;
-        for (name, text) in all {
-            draft.add(&name, text, false)?;
-        }
-        Ok(draft.replace_if(&before)?)
+        files::in_folder(files::folder_of(folder), || {
+            let draft = FolderDraft::new(folder)?;
+            for (name, text) in all {
+                draft.add(&name, text, false)?;
+            }
+            Ok(draft.replace_if(&before)?)
+        })
     }
 }
 

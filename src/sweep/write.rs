@@ -15,7 +15,7 @@ use super::{
 use crate::{
     caption,
     failure::Failure,
-    files::{self, FileError, Output, PNG, Signature},
+    files::{Output, PNG, Signature},
     picture::png::{self, About},
     progress::Progress,
     reference::MAX_SIDE,
@@ -189,12 +189,7 @@ impl<'a> Plan<'a> {
             (Format::Apng, sheets) => png::write_film(output, size, sheets, rate, about),
             (Format::Gif, sheets) => {
                 let bytes = gif(sheets, size, rate)?;
-                let write = || {
-                    let mut to = Output::open(output)?;
-                    to.write_all(&bytes)?;
-                    to.finish()
-                };
-                files::in_folder::<_, FileError>(files::folder_of(output), write).map_err(io::Error::from)
+                Output::put(output, |to| to.write_all(&bytes))
             }
         }
     }

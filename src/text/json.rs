@@ -100,17 +100,19 @@ impl<'p, 'a> Cursor<'p, 'a> {
         }
     }
 
-    /// The integer. `32.0` and `3.2e1` are integers: JSON does not distinguish them from `32`.
+    /// The number as written, if it is one.
+    #[must_use]
+    pub fn literal(&self) -> Option<&'p str> {
+        match self.value {
+            Ast::NumberLit(number) => Some(number.value),
+            _ => None,
+        }
+    }
+
+    /// The [integer](whole).
     #[must_use]
     pub fn integer(&self) -> Option<i64> {
-        let Ast::NumberLit(number) = self.value else { return None };
-        if let Ok(integer) = number.value.parse() {
-            return Some(integer);
-        }
-        // Beyond this, neighbouring integers are equal in 64 bits.
-        const EXACT: f64 = 9_007_199_254_740_992.0;
-        let v: f64 = number.value.parse().ok()?;
-        (v.fract() == 0.0 && v.abs() <= EXACT).then_some(v as i64)
+        whole(self.literal()?)
     }
 
     /// The entries, if it is a list.
@@ -135,6 +137,17 @@ impl<'p, 'a> Cursor<'p, 'a> {
         let property = self.properties()?.iter().find(|p| p.name.as_str() == key)?;
         Some(Self { value: &property.value, way: Way::Key(self, key) })
     }
+}
+
+/// The largest integer that may be written as a real number: beyond it, neighbouring integers are equal in 64 bits.
+pub const EXACT: i64 = 1 << 53;
+
+/// An integer. `32.0` and `3.2e1` are integers: JSON does not distinguish them from `32`.
+#[must_use]
+pub fn whole(number: &str) -> Option<i64> {
+    let fraction = |v: &f64| v.fract() == 0.0 && v.abs() <= EXACT as f64;
+    let of_real = || number.parse::<f64>().ok().filter(fraction).map(|v| v as i64);
+    number.parse().ok().or_else(of_real)
 }
 
 /// The known fields of an object, each key once.

@@ -73,6 +73,15 @@ impl Path {
         }
     }
 
+    /// The key at the end; empty if there is none.
+    #[must_use]
+    pub fn last_key(&self) -> &str {
+        match self.0.last() {
+            Some(Segment::Key(key)) => key,
+            _ => "",
+        }
+    }
+
     /// The steps from the outermost value.
     #[must_use]
     pub fn segments(&self) -> &[Segment] {

@@ -1,6 +1,6 @@
 //! Words for messages: lists, numbers, quotations, the nearest spelling.
 
-use std::mem;
+use std::{borrow::Cow, mem};
 
 use serde_json::Value as Json;
 
@@ -131,6 +131,18 @@ pub fn shortened(text: &str) -> String {
     }
 }
 
+/// A rule that follows the name of what breaks it: "metallic is 2, but it must be …", not "but the metallic must be …".
+#[must_use]
+pub fn behind<'r>(name: &str, rule: &'r str) -> Cow<'r, str> {
+    match rule.split_once(&format!("the {name} must be ")) {
+        Some(("", range)) => Cow::Owned(format!("it must be {range}")),
+        Some((kind, range)) if range.starts_with("between ") || range.starts_with("greater ") => {
+            Cow::Owned(format!("{}, {range}", kind.trim_end_matches(": ")))
+        }
+        _ => Cow::Borrowed(rule),
+    }
+}
+
 /// "a sphere", "an icosahedron".
 #[must_use]
 pub fn with_article(id: &str) -> String {
@@ -161,6 +173,16 @@ mod tests {
     fn parts_are_told_in_per_cent_with_two_digits() {
         let told = [0.0, 0.00001, 0.005, 0.00996, 0.0123, 0.0996, 0.123].map(per_cent);
         assert_eq!(told, ["0.00 %", "< 0.01 %", "0.50 %", "1.0 %", "1.2 %", "10 %", "12 %"]);
+    }
+
+    #[test]
+    fn a_rule_does_not_repeat_the_name_before_it() {
+        assert_eq!(behind("metallic", "the metallic must be 1"), "it must be 1");
+        let text = behind("metallic", "it must be a number: the metallic must be between 0 and 1");
+        assert_eq!(text, "it must be a number, between 0 and 1");
+        for rule in ["the clear coat must be 1", "the clearcoat of it must be 1", "clearcoat must be 1"] {
+            assert_eq!(behind("clearcoat", rule), rule);
+        }
     }
 
     #[test]

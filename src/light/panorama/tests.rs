@@ -473,7 +473,15 @@ fn illegal_radiance_files_are_told_what_is_wrong() {
         ),
         (
             [with("-Y 1 +X 2"), vec![1, 1, 1, 130, 200, 200, 200, 250]].concat(),
-            "the pixels of the Radiance picture cannot be read: Format error decoding Hdr: First pixel of a scanline shouldn't be run length marker".to_owned(),
+            "the Radiance picture is damaged: its compressed rows of pixels do not have the width that its header gives, 2; copy it again from its source".to_owned(),
+        ),
+        (
+            head("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=bright\n\n-Y 1 +X 2\n\0\0\0\0\0\0\0\0"),
+            "line 3 of its header is “EXPOSURE=bright”, but EXPOSURE must be a number".to_owned(),
+        ),
+        (
+            head("#?RADIANCE\nCOLORCORR=1 2\n\n-Y 1 +X 2\n\0\0\0\0\0\0\0\0"),
+            "line 2 of its header is “COLORCORR=1 2”, but COLORCORR must be three numbers".to_owned(),
         ),
         (
             [with("-Y 1 +X 2"), vec![9, 9, 9, 130, 200, 200, 200, 250]].concat(),
@@ -548,12 +556,13 @@ fn illegal_openexr_files_are_told_what_is_wrong() {
     absurd[at + 8..at + 16].copy_from_slice(&[0xff, 0xff, 0xff, 0x3f, 0xff, 0xff, 0xff, 0x1f]);
     let told = said(&absurd);
     assert!(
-        told.starts_with("the OpenEXR picture is incomplete or broken (") || told.starts_with("a layer has "),
+        told.starts_with("the OpenEXR picture is damaged: its header gives it no pixels, or too many;")
+            || told.starts_with("a layer has "),
         "{told}"
     );
     for end in [4, 8, 20, whole.len() / 2, whole.len() - 1] {
         let told = said(&whole[..end]);
-        assert!(told.starts_with("the OpenEXR picture is incomplete or broken ("), "{end}: {told}");
+        assert!(told.starts_with("the OpenEXR picture is damaged: it ends too early;"), "{end}: {told}");
     }
     // Deep pixels: bit 11 of the version.
     let mut deep = whole;
@@ -633,10 +642,10 @@ fn what_unfolds_to_too_much_is_refused() {
     let runs = [127, 0].repeat(whole.len());
     let at = whole.len() / 2;
     let bomb = [&whole[..at], &runs, &whole[at..]].concat();
-    assert!(said(&bomb).starts_with("the OpenEXR picture is incomplete or broken"));
+    assert!(said(&bomb).starts_with("the OpenEXR picture is damaged: its "));
     let head = b"#?RADIANCE\n\n-Y 16 +X 32\n".as_slice();
     let bomb = [head, &[2, 2, 0, 32], &[255, 1].repeat(1000)].concat();
-    assert!(said(&bomb).contains("Wrong length of decoded scanline"), "{}", said(&bomb));
+    assert!(said(&bomb).contains("do not have the width that its header gives, 32;"), "{}", said(&bomb));
 }
 
 #[cfg(target_os = "linux")]

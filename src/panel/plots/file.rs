@@ -70,7 +70,8 @@ pub fn write(
     }
     let sheet = request.sheet(made.iter().map(|(style, drawn)| (*style, drawn)));
     let bytes = format.bytes(&sheet).map_err(|error| error.to_string())?;
-    files::write(file, &bytes).map_err(|error| format!("{} could not be written: {error}", file.shown()))?;
+    let written = files::in_folder(files::folder_of(file), || files::write(file, &bytes));
+    written.map_err(|error| format!("{} could not be written: {error}", file.shown()))?;
     notes.extend(sheet.notes());
     Ok(notes)
 }

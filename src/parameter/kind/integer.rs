@@ -8,6 +8,7 @@ use super::{
     Cursor, Declarations, Header, Json, Kind, Limits, Parameter, ParameterKind, Payload, Place, Reader, Type,
     Value,
 };
+use crate::text::json;
 
 /// The content of a value.
 pub type Given = i64;
@@ -60,11 +61,17 @@ impl Kind for Integer {
     }
 
     fn parse(&self, text: &str) -> Option<Value> {
-        text.trim().parse().ok().map(Value::Integer)
+        json::whole(text.trim()).map(Value::Integer)
+    }
+
+    fn excess(&self, text: &str) -> String {
+        let beyond = text.trim().parse::<f64>().is_ok_and(|v| v > json::EXACT as f64);
+        if beyond && self.max.is_none() { format!(" and at most {}", json::EXACT) } else { String::new() }
     }
 
     fn read(&self, reader: &mut dyn Reader, value: Cursor, rule: &str, _: Place) -> Option<Value> {
-        reader.integer(value, rule).map(Value::Integer)
+        let excess = self.excess(value.literal().unwrap_or_default());
+        reader.integer(value, &format!("{rule}{excess}")).map(Value::Integer)
     }
 
     fn schema(&self) -> Json {

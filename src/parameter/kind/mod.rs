@@ -61,6 +61,11 @@ pub trait Kind {
     /// The value in a text as typed on the command line, which may be out of range; files are in the current folder.
     fn parse(&self, text: &str) -> Option<Value>;
 
+    /// The end of the rule for a text that is no value because its number is too large.
+    fn excess(&self, _: &str) -> String {
+        String::new()
+    }
+
     /// The value in a scene file, which may be out of range. A value of another type is reported.
     fn read(&self, reader: &mut dyn Reader, value: Cursor, rule: &str, place: Place) -> Option<Value>;
 

@@ -521,7 +521,7 @@ mod tests {
             "objects[0].material.k_d is 0.2, but the diffuse coefficient must be between 0.5 and 1",
             "objects[0].tessellation is 0, but the tessellation of a sphere must be a whole number between",
             "lights[0].intensity is NaN, but an intensity must be at least 0",
-            "display.exposure is 17, but the exposure must be between -16 and 16 EV",
+            "display.exposure is 17, but it must be between -16 and 16 EV",
         ] {
             assert!(found.contains(expected), "{expected}\nis not in\n{found}");
         }

@@ -2,6 +2,7 @@
 
 use super::{Parsed, Source, json};
 use crate::{
+    files,
     registry::Registry,
     scene::{error::LoadError, load::MAX_FILE_BYTES},
     text::{listed, place::Lines, quoted},
@@ -23,6 +24,9 @@ pub(super) fn parsed<'a>(
     find: fn(&[u8], u64) -> Result<String, String>,
 ) -> Result<Parsed<'a>, LoadError> {
     let failed = |what| LoadError::Picture { name: source.name.to_owned(), what };
+    if source.bytes.is_empty() {
+        return Err(failed(files::EMPTY.to_owned()));
+    }
     let text = find(source.bytes, MAX_FILE_BYTES).map_err(failed)?;
     let text = source.derived(|| text);
     let empty = || failed("the scene in the picture is empty".to_owned());

@@ -11,7 +11,7 @@ use naga::{
     valid::ValidationError,
 };
 
-use super::compose::Composed;
+use super::compose::{Composed, shown};
 
 mod calls;
 mod field;
@@ -126,7 +126,7 @@ impl Complaint<'_> {
         } else if here == there {
             format!("`{name}` is already defined in line {line}; choose another name")
         } else {
-            format!("{file} defines {name} too; choose another name")
+            format!("{} defines {name} too; choose another name", shown(file))
         };
         Some((Some(at.range.start), message))
     }

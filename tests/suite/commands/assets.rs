@@ -133,6 +133,10 @@ fn a_broken_claim_is_found_with_numbers_and_a_kept_one_that_nobody_makes_too() {
     let phong = run(folder.path(), "models check phong", "");
     assert_eq!(phong.status, Some(0));
     assert!(phong.out.contains("reciprocal: not claimed and broken"), "{}", phong.out);
+    let set = run(folder.path(), "models check phong --set k_s=0", "");
+    let expected = "reciprocal: not claimed for all parameters; with these, no violation was found";
+    assert!(set.out.contains(expected) && !set.out.contains("claim it?"), "{}", set.out);
+    assert!(set.out.contains("non-negative: claimed for all parameters, and kept with these"), "{}", set.out);
     assert_eq!(run(folder.path(), "models check banana", "").status, Some(2));
 }
 

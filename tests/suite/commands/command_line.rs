@@ -39,10 +39,7 @@ fn wrong_usage_has_status_2() {
         (&["render", "--reflection", "fong"], "--reflection is \"fong\", but the reflection model must be"),
         (&["render", "--shading", "x"], "--shading is \"x\", but the shading model must be"),
         (&["render", "--tone-mapping", "acess"], "did you mean \"aces\"?"),
-        (
-            &["render", "--exposure", "17"],
-            "--exposure is \"17\", but the exposure must be between -16 and 16 EV",
-        ),
+        (&["render", "--exposure", "17"], "--exposure is \"17\", but it must be between -16 and 16 EV"),
         (&["render", "--exposure", "-17"], "the exposure must be between -16 and 16 EV"),
         (&["render", "a.json", "b.json", "-o", "x.png"], "-o x.png is one file, but there are 2 scenes"),
         (&["render", "a/x.json", "b/x.json"], "would both be written to renders/x.png"),
@@ -157,7 +154,11 @@ fn new_writes_the_default_scene_and_overwrites_nothing() {
         4,
         "a.json already exists; it was not overwritten",
     );
-    refused(&lcm_in(folder.path(), &["new", "x/a.json"], b""), 4, "there is no folder x");
+    let run = lcm_in(folder.path(), &["new", "x/y/a.json"], b"");
+    assert_eq!((run.status, run.err.as_str()), (Some(0), "wrote x/y/a.json\n"));
+    // Folders that were made for nothing do not stay.
+    refused(&lcm_in(folder.path(), &["new", "z/a.png"], b""), 4, "was not written");
+    assert!(!folder.path().join("z").exists());
     refused(&lcm_in(folder.path(), &["new", "."], b""), 4, "is a folder; choose a file name");
 }
 

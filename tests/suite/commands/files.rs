@@ -366,6 +366,11 @@ fn pictures_go_to_devices_and_pipes() {
     symlink("nowhere/x.png", at.join("dangling.png")).expect("linked");
     let said = "dangling.png could not be written: there is no folder nowhere\n";
     refused(&run(&mut render(at, &["-o", "dangling.png"])), 4, said);
+    #[cfg(target_os = "linux")]
+    for place in ["/proc/x.png", "/proc/none/x.png"] {
+        let said = "could not be written: /proc is a folder of the system in which no files can be created\n";
+        refused(&run(&mut render(at, &["-o", place])), 4, said);
+    }
     // On failure, no new folder remains.
     let long = format!("new/folder/{}.png", "x".repeat(300));
     refused(&run(&mut render(at, &["-o", &long])), 4, "the name is too long");

@@ -94,6 +94,14 @@ fn the_sheet_has_a_picture_for_each_and_replaces_no_other_file() {
     assert!(bytes("gold.png") == bytes("again.png") && bytes("gold.png") != bytes("one.png"));
     let before = bytes("materials/velvet.json");
     assert_eq!(drawn("mira", "materials/velvet.json").status, Some(4));
+    for size in ["x", "15", "1025", "-1", "16.5", ""] {
+        let run = materials(folder.path(), &["mira", "-o", "x.png", &format!("--size={size}")]);
+        assert!(
+            run.status == Some(2) && run.err.contains("it must be a whole number of pixels from 16 to 1024"),
+            "{}",
+            run.err
+        );
+    }
     assert_eq!(bytes("materials/velvet.json"), before);
     assert_eq!(names(&folder.path().join("materials")), ["velvet.json"]);
 }

@@ -187,7 +187,11 @@ fn mistakes_are_explained() {
     ] {
         refused(arguments, 2, expected);
     }
-    refused(&["phong", "-o", "no-such-folder/x.svg"], 4, "no-such-folder/x.svg could not be written");
+    refused(
+        &["phong", "-o", "/dev/null/x.svg"],
+        4,
+        "/dev/null/x.svg could not be written: /dev/null is not a folder",
+    );
 }
 
 #[test]
@@ -208,6 +212,8 @@ fn files_are_what_their_names_say_and_replace_nothing_else() {
         }
     }
     assert_eq!(names(folder.path()), ["a.csv", "a.png", "a.svg"], "nothing else is left behind");
+    assert_eq!(plot(&["-o", "new/folder/a.svg"]).status, Some(0));
+    assert!(read("new/folder/a.svg") == read("a.svg"));
     let svg = String::from_utf8(read("a.svg")).expect("text");
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
     for shown in [

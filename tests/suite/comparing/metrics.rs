@@ -706,6 +706,7 @@ fn linear_pictures_that_are_wrong_are_refused() {
     let whole = channels.encode(Format::Exr, &Notes::default()).expect("written");
     put("good.exr", &whole);
     put("short.exr", &whole[..whole.len() - 3]);
+    ["nothing.exr", "nothing.hdr", "nothing.png"].iter().for_each(|name| put(name, b""));
     put("not_a.exr", b"{}");
     put("not_a.hdr", b"{}");
     put("huge.hdr", b"#?RADIANCE\n\n-Y 16384 +X 16384\naaaa");
@@ -720,7 +721,10 @@ fn linear_pictures_that_are_wrong_are_refused() {
     depth.add("depth", &["Z"], &pixels);
     put("depth.exr", &depth.encode(Format::Exr, &Notes::default()).expect("written"));
     for (name, expected) in [
-        ("short.exr", "short.exr: the OpenEXR picture is incomplete or broken ("),
+        (
+            "short.exr",
+            "short.exr: the OpenEXR picture is damaged: it ends too early; copy it again from its source",
+        ),
         (
             "not_a.exr",
             "not_a.exr: it does not begin like a Radiance picture (#?RADIANCE) or an OpenEXR picture",
@@ -735,6 +739,9 @@ fn linear_pictures_that_are_wrong_are_refused() {
         ("endless.hdr", "endless.hdr: the header of a Radiance picture must end with an empty line"),
         ("odd.exr", "odd.exr: the pixel in column 2, row 2 has NaN; light must be finite"),
         ("depth.exr", "depth.exr: no layer has the channels R, G and B; the channels are depth.Z"),
+        ("nothing.exr", "nothing.exr: the file is empty"),
+        ("nothing.hdr", "nothing.hdr: the file is empty"),
+        ("nothing.png", "nothing.png: the file is empty"),
         ("none.exr", "none.exr could not be read"),
     ] {
         let run = run(folder.path(), &["compare", "good.exr", name]);

@@ -499,15 +499,12 @@ fn parameters_of_every_kind_stand_in_files_of_scenes() {
         Value::Triple([0.5; 3])
     );
     for (parameters, message) in [
-        (
-            json!({ "extents": [1, 2, 1] }),
-            "objects[0].extents is [1, 2, 1], but the extents must be three numbers",
-        ),
-        (json!({ "extents": [1, 1] }), "objects[0].extents is [1, 1], but the extents must be three numbers"),
-        (json!({ "top": "rof" }), "but the top must be one of \"flat\", \"roof\"; did you mean \"roof\"?"),
-        (json!({ "top": 1 }), "objects[0].top is 1, but the top must be one of \"flat\", \"roof\""),
-        (json!({ "pitch": 2 }), "objects[0].pitch is 2, but the pitch must be between 0.1 and 1"),
-        (json!({ "courses": 1.5 }), "but the courses must be a whole number between 1 and 4"),
+        (json!({ "extents": [1, 2, 1] }), "objects[0].extents is [1, 2, 1], but it must be three numbers"),
+        (json!({ "extents": [1, 1] }), "objects[0].extents is [1, 1], but it must be three numbers"),
+        (json!({ "top": "rof" }), "but it must be one of \"flat\", \"roof\"; did you mean \"roof\"?"),
+        (json!({ "top": 1 }), "objects[0].top is 1, but it must be one of \"flat\", \"roof\""),
+        (json!({ "pitch": 2 }), "objects[0].pitch is 2, but it must be between 0.1 and 1"),
+        (json!({ "courses": 1.5 }), "but it must be a whole number between 1 and 4"),
         (
             json!({ "lean": [256, 0, 0] }),
             "objects[0].lean[0] is 256, but the lean must be three whole numbers",
@@ -618,7 +615,7 @@ fn parameters_of_a_shading_model_stand_in_materials_and_have_knobs() {
     let schema = schema::text(&registry);
     assert!(schema.contains("Used by: Tinted shading."), "{schema}");
     for (key, value, message) in [
-        ("strength", json!(2), "objects[0].material.strength is 2, but the strength must be between 0 and 1"),
+        ("strength", json!(2), "objects[0].material.strength is 2, but it must be between 0 and 1"),
         ("times", json!(1.5), "must be a whole number between 1 and 4"),
         ("order", json!("lsat"), "did you mean \"last\"?"),
         ("strenght", json!(1), "did you mean \"strength\"?"),

@@ -225,6 +225,33 @@ fn a_bad_file_is_an_error_for_whoever_names_it() {
     let told = bench.run("evaluate huge", ANGLES);
     assert!(told.status == Some(2) && told.err.contains("must be \"lambert\""), "{}", told.err);
     assert!(told.err.contains("models/huge.wgsl is not a model: it neither begins with"), "{}", told.err);
+    // The folder is called as it is, wherever the mistake is.
+    let elsewhere = bench.folder.path().join("elsewhere");
+    fs::create_dir(&elsewhere).unwrap();
+    let with = |import: &str| model("x").replace("*/\n", &format!("*/\n#import \"{import}\"\n"));
+    for (name, text) in [
+        ("imports.wgsl", with("latin.wgsl")),
+        ("lacks.wgsl", with("none.wgsl")),
+        ("round.wgsl", with("round.wgsl")),
+        (
+            "twice.wgsl",
+            with("half.wgsl").replace("fn response", "fn half() -> f32 { return 0.5; }\nfn response"),
+        ),
+        ("half.wgsl", "fn half() -> f32 { return 0.5; }\n".to_owned()),
+    ] {
+        fs::write(elsewhere.join(name), text).unwrap();
+    }
+    fs::write(elsewhere.join("latin.wgsl"), b"// \xe9").unwrap();
+    for (id, expected) in [
+        ("imports", "--> elsewhere/latin.wgsl:1:4"),
+        ("lacks", "there is no file `none.wgsl` to import"),
+        ("round", "circular import: round.wgsl → round.wgsl"),
+        ("twice", "half.wgsl defines half too"),
+    ] {
+        let told = lcm_in(bench.folder.path(), &["evaluate", id, "--models", "elsewhere"], ANGLES.as_bytes());
+        assert!(told.status == Some(1) && told.err.contains(expected), "{}", told.err);
+        assert!(!told.err.contains("models/"), "{}", told.err);
+    }
     // A scene names it too.
     let told = bench.run("check -", &scene("nothing", &json!({}), None));
     assert_eq!(told.status, Some(1));

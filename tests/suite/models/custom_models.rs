@@ -228,7 +228,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         (r#""choices": ["a", "a"]"#, r#"choices has "a" twice"#),
         (
             r#""choices": ["one", "two"], "default": "on""#,
-            r#"default is "on", but the default must be "one" or "two"; did you mean "one"?"#,
+            r#"default is "on", but it must be "one" or "two"; did you mean "one"?"#,
         ),
         (
             r#""choices": ["maybe", "true"]"#,
@@ -823,7 +823,7 @@ fn parameters_of_custom_models_are_saved_and_kept() {
     assert_eq!(loaded.scene.objects[0].material, scene.objects[0].material);
     let wrong = text.replace("7.5", "10");
     let error = load::from_text(&wrong, "scene.json", &registry, Defaults::Refuse).unwrap_err().to_string();
-    assert!(error.contains("fuzz is 10, but the fuzz must be between 0 and 9"), "{error}");
+    assert!(error.contains("fuzz is 10, but it must be between 0 and 9"), "{error}");
     let error =
         load::from_text(&text, "scene.json", &Registry::builtin(), Defaults::Refuse).unwrap_err().to_string();
     assert!(error.contains("reflection_model is \"mine\", but"), "{error}");

@@ -75,7 +75,7 @@ fn mistakes_are_reported_where_they_are() {
         ),
         (
             format!("{head}#import \"none.wgsl\"\n{body}"),
-            "models/mine.wgsl:2:1: there is no file `models/none.wgsl` to import",
+            "models/mine.wgsl:2:1: there is no file `none.wgsl` to import",
         ),
     ] {
         check_wording(&said(&text));

@@ -886,7 +886,7 @@ fn a_custom_model_follows_the_files_that_it_shares() {
     // A helper that arrives later than the model that imports it.
     lab.save("own/tinted.wgsl", custom_model(RED, "").replace("help.wgsl", "late.wgsl"));
     assert!(lab.settled() == green);
-    assert!(lab.troubles()[0].problem.message.contains("there is no file `models/late.wgsl`"));
+    assert!(lab.troubles()[0].problem.message.contains("there is no file `late.wgsl`"));
     lab.save("own/late.wgsl", HELP);
     assert!(lab.settled() == red);
     assert_eq!(lab.troubles(), []);

@@ -130,11 +130,7 @@ fn every_constraint_has_its_message() {
             "lights[1].cone_angle is 0, but the cone angle must be greater than 0 and at most 90 degrees",
         ),
         ("/lights/1/cone_angle", json!(91), "lights[1].cone_angle is 91"),
-        (
-            "/lights/1/penumbra",
-            json!(1.1),
-            "lights[1].penumbra is 1.1, but the penumbra must be between 0 and 1",
-        ),
+        ("/lights/1/penumbra", json!(1.1), "lights[1].penumbra is 1.1, but it must be between 0 and 1"),
         (
             "/lights/2/position",
             json!([1, 1, 1]),
@@ -211,13 +207,13 @@ fn every_constraint_has_its_message() {
             json!(800),
             "lights[1].lumens is not a key of a light; did you mean \"luminous_flux\"?",
         ),
-        ("/lights/0/name", json!(7), "lights[0].name is 7, but the name must be text"),
+        ("/lights/0/name", json!(7), "lights[0].name is 7, but it must be text"),
         // Observer.
         ("/observer", json!([]), "observer is a list of 0, but a scene has exactly one observer"),
         (
             "/observer",
             json!(5),
-            "observer is 5, but the observer must be an object, with the keys position, direction and field_of_view",
+            "observer is 5, but it must be an object, with the keys position, direction and field_of_view",
         ),
         ("/observer/position", json!([5, 5, 31]), "observer.position is"),
         ("/observer/direction", json!([0, 0, 0]), "but a direction must not be zero"),
@@ -323,6 +319,12 @@ fn every_constraint_has_its_message() {
             "material.alpha is -1, but the shininess must be a whole number, 0 or more",
         ),
         (
+            "/objects/0/material/alpha",
+            json!(1e308),
+            "material.alpha is 1e308, but the shininess must be a whole number, 0 or more and at most 9007199254740992",
+        ),
+        ("/objects/0/material/metallic", json!(2), "material.metallic is 2, but it must be between 0 and 1"),
+        (
             "/objects/0/material/base_colour",
             json!([1, 2, 3, 4]),
             "but the base colour must be three whole numbers from 0 to 255",
@@ -334,11 +336,7 @@ fn every_constraint_has_its_message() {
             "material.wrap_exponent is 9, but the wrap exponent must be between 1 and 4",
         ),
         // Display.
-        (
-            "/display/exposure",
-            json!(16.5),
-            "display.exposure is 16.5, but the exposure must be between -16 and 16 EV",
-        ),
+        ("/display/exposure", json!(16.5), "display.exposure is 16.5, but it must be between -16 and 16 EV"),
         (
             "/display/tone_mapping",
             json!("ACES"),
@@ -347,17 +345,17 @@ fn every_constraint_has_its_message() {
         (
             "/display/encoding",
             json!("linear"),
-            "display.encoding is \"linear\", but the encoding must be \"srgb\" or \"off\"",
+            "display.encoding is \"linear\", but it must be \"srgb\" or \"off\"",
         ),
         (
             "/display/background",
             json!("white"),
-            "display.background is \"white\", but the background must be \"environment\", \"colour\" or \"gradient\"",
+            "display.background is \"white\", but it must be \"environment\", \"colour\" or \"gradient\"",
         ),
         (
             "/display/background",
             json!([255, 255, 255]),
-            "display.background is [255, 255, 255], but the background must be \"environment\", \"colour\" or \"gradient\"",
+            "display.background is [255, 255, 255], but it must be \"environment\", \"colour\" or \"gradient\"",
         ),
         (
             "/display/background_colour",
@@ -365,7 +363,7 @@ fn every_constraint_has_its_message() {
             "but the colour of the background must be three whole numbers from 0 to 255",
         ),
         ("/display/background_bottom", json!([0, 0, 256]), "display.background_bottom[2] is 256"),
-        ("/name", json!(1), "name is 1, but the name must be text"),
+        ("/name", json!(1), "name is 1, but it must be text"),
         ("/description", json!(["x"]), "the description must be text"),
     ];
     for (pointer, value, expected) in cases {
@@ -476,7 +474,7 @@ fn numbers_too_large_for_32_bits_break_the_rule_of_their_field() {
             ("\"size\":2", "but a size must be"),
             ("\"field_of_view\":45", "but the field of view must be between 1 and 170 degrees"),
             ("\"alpha\":32", "but the shininess must be a whole number, 0 or more"),
-            ("\"exposure\":-1.5", "but the exposure must be between"),
+            ("\"exposure\":-1.5", "but it must be between"),
             ("\"height\":10", "but the height of the room must be"),
         ] {
             let key = from.split(':').next().expect("a key");

@@ -122,7 +122,7 @@ fn each_mistake_of_a_picture_is_told_and_ends_with_status_1() {
         ),
         (good[..40].to_vec(), "x.png: the picture is truncated, and there is no scene in what is left"),
         (scene.clone().into_bytes(), "x.png: this is not a PNG picture, though its name ends in .png"),
-        (Vec::new(), "x.png: this is not a PNG picture"),
+        (Vec::new(), "x.png: the file is empty"),
         (with_text(SCENE_KEYWORD, b" "), "x.png: the scene in the picture is empty"),
         (
             with_text(SCENE_KEYWORD, b"{\n  \"name\": nobody\n}"),
@@ -178,7 +178,8 @@ fn each_mistake_of_a_linear_picture_is_told_and_ends_with_status_1() {
     let broken = scene.replace("\"height\": 10", "\"height\": 1000");
     assert_ne!(broken, scene);
     let cut = |whole: [Vec<u8>; 2]| whole.map(|bytes| bytes[..60].to_vec());
-    let cases: [([Vec<u8>; 2], &str); 7] = [
+    let cases: [([Vec<u8>; 2], &str); 8] = [
+        ([Vec::new(), Vec::new()], ": the file is empty"),
         (linear("comments", b"a"), "pictures that this program writes have one, unless --no-scene is given"),
         (
             cut(linear("comments", &[b'a'; 99])),

@@ -245,11 +245,13 @@ fn files_that_cannot_be_used_are_told_with_place_and_mistake() {
     let error = read(folder.path(), "model.obj").expect_err("it cannot be used");
     assert!(error.contains(&format!("{model}:2: a vertex (v) must be three numbers")), "{error}");
     fs::create_dir(folder.path().join("folder.obj")).expect("made");
+    fs::write(folder.path().join("nothing.glb"), "").expect("written");
     fs::File::create(folder.path().join("huge.obj")).and_then(|f| f.set_len(33 << 20)).expect("made");
     for (name, expected) in [
         ("missing.obj", "missing.obj: there is no such file"),
         ("folder.obj", "folder.obj: it is a folder, but it must be a file"),
         ("huge.obj", "huge.obj: it is larger than 32 MiB"),
+        ("nothing.glb", "nothing.glb: the file is empty"),
         ("", "the name is empty"),
         ("a\0b", "a\u{fffd}b"),
     ] {

@@ -76,6 +76,8 @@ fn scenes_lessons_models_and_parameters_are_found() {
     run(&mut bench, "1994 oren");
     run(&mut bench, "shininess phong 1975");
     assert_eq!(bench.session.document.reflection_model, "phong", "by a parameter and the year");
+    run(&mut bench, "ggx");
+    assert_eq!(bench.session.document.reflection_model, "microfacet", "before a scene called so");
     run(&mut bench, "furnace energy");
     assert!(bench.session.lesson.as_ref().is_some_and(|open| open.source == LessonSource::Shipped(7)));
     run(&mut bench, "leave the lesson");
