@@ -5,7 +5,7 @@ use bevy::{app::MainScheduleOrder, ecs::schedule::LogLevel, prelude::*, render::
 use super::{
     absorb::absorb,
     backdrop,
-    camera::follow_scene,
+    camera::{aim, follow_scene},
     converge::Convergence,
     entities::{CurrentScene, SceneEntities},
     file_buffers::FileBuffers,
@@ -26,7 +26,7 @@ use super::{
     swap::swap,
     tables,
     typed::know_types,
-    view,
+    view::{self, ViewSystems},
 };
 use crate::{
     document::PartId,
@@ -69,6 +69,7 @@ impl Plugin for ScenePlugin {
             .add_systems(LabFrame, absorb.in_set(Edit))
             .add_systems(LabFrame, (show_lights.before(exchange), swap.after(exchange)).in_set(Swap))
             .add_systems(LabFrame, (upload_lights, follow_scene).in_set(Upload))
+            .add_systems(PostUpdate, aim.in_set(ViewSystems).before(view::fit))
             .add_plugins((live::plugin, view::plugin, tables::plugin, StraightPlugin))
             .add_plugins((material::plugin, seen::plugin, mean::plugin, noise::plugin, backdrop::plugin));
         // Systems that access the same data must have a defined order.

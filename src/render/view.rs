@@ -21,7 +21,6 @@ use bevy::{
 use std::collections::HashSet;
 
 use super::{
-    camera::aim,
     converge::{Converged, Convergence, Part},
     drawn::{ByChance, Drawn},
     entities::CurrentScene,
@@ -42,7 +41,6 @@ const PICTURES: u32 = 2;
 pub(super) fn plugin(app: &mut App) {
     let rest = rest.after(AssetEventSystems).after(CameraUpdateSystems);
     let systems = (
-        aim.before(CameraUpdateSystems),
         fit.before(AssetEventSystems).before(CameraUpdateSystems),
         frame.after(VisibilitySystems::UpdateFrusta),
         rest.before(VisibilitySystems::CheckVisibility),
@@ -161,7 +159,7 @@ pub fn background_of(camera: &Camera) -> Option<Color> {
 }
 
 /// Gives every view a texture of its size.
-fn fit(
+pub(super) fn fit(
     mut images: ResMut<Assets<Image>>,
     mut views: Query<(&View, &mut Camera, &mut RenderTarget, &mut Projection), Changed<View>>,
 ) {

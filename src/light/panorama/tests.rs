@@ -448,7 +448,7 @@ fn illegal_radiance_files_are_told_what_is_wrong() {
         format!("the size of a Radiance picture must be given as “-Y height +X width”, not “{found}”")
     };
     for (bytes, expected) in [
-        (vec![], no_magic.to_owned()),
+        (vec![], "the file is empty".to_owned()),
         (head("#?RADI"), no_magic.to_owned()),
         (head("\u{89}PNG"), no_magic.to_owned()),
         (head("#?RADIANCE"), no_head.to_owned()),

@@ -40,7 +40,7 @@ fn wrong_usage_has_status_2() {
         (&["render", "--shading", "x"], "--shading is \"x\", but the shading model must be"),
         (&["render", "--tone-mapping", "acess"], "did you mean \"aces\"?"),
         (&["render", "--exposure", "17"], "--exposure is \"17\", but it must be between -16 and 16 EV"),
-        (&["render", "--exposure", "-17"], "the exposure must be between -16 and 16 EV"),
+        (&["render", "--exposure", "-17"], "it must be between -16 and 16 EV"),
         (&["render", "a.json", "b.json", "-o", "x.png"], "-o x.png is one file, but there are 2 scenes"),
         (&["render", "a/x.json", "b/x.json"], "would both be written to renders/x.png"),
         (

@@ -321,7 +321,7 @@ fn every_constraint_has_its_message() {
         (
             "/objects/0/material/alpha",
             json!(1e308),
-            "material.alpha is 1e308, but the shininess must be a whole number, 0 or more and at most 9007199254740992",
+            "material.alpha is 1e+308, but the shininess must be a whole number, 0 or more and at most 9007199254740992",
         ),
         ("/objects/0/material/metallic", json!(2), "material.metallic is 2, but it must be between 0 and 1"),
         (

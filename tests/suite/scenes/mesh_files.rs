@@ -218,7 +218,7 @@ fn files_that_cannot_be_used_are_told_with_place_and_mistake() {
     let model = folder.path().join("model.obj").display().to_string();
     let about = "objects[0].path is \"model.obj\", but the model file must be the name of a glTF binary, OBJ or PLY file: ";
     for (content, expected) in [
-        ("", ": it does not begin like binary glTF or PLY, and has no OBJ polygons (f)"),
+        ("", ": the file is empty"),
         (
             "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1/1 2/1 3/1\n",
             ":5: this face (f) names the texture coordinate 1, but the file has no",
