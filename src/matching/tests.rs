@@ -178,7 +178,7 @@ fn the_match_is_the_best_of_all_values_of_a_parameter() {
         let [a, b] = [0, 1].map(|view| Side::seen(&scene, view, &registry).expect("there is one"));
         let sides = [&a, &b];
         let there = [
-            rest(&mut Lobe::new(sides, &registry)),
+            rest(&mut Lobe::new(sides, Metric::Cosine, &registry)),
             rest(&mut Picture::new(sides, &registry).expect("it is in the picture")),
             rest(&mut Highlight::new(sides, &registry).unwrap_or_else(|_| panic!("it has one"))),
         ];
@@ -333,9 +333,9 @@ fn the_metrics_of_a_white_and_a_black_matte_surface_have_closed_values() {
 #[test]
 fn a_metric_that_sees_tails_widens_a_lobe_without_them() {
     let metal =
-        [("distribution", Value::Choice("ggx")), ("alpha_x", number(0.15)), ("alpha_y", number(0.15))];
+        [("distribution", Value::Choice("ggx".into())), ("alpha_x", number(0.15)), ("alpha_y", number(0.15))];
     let mut scene =
-        scene(("microfacet", &metal), ("microfacet", &[("distribution", Value::Choice("beckmann"))]));
+        scene(("microfacet", &metal), ("microfacet", &[("distribution", Value::Choice("beckmann".into()))]));
     for name in ["alpha_x", "alpha_y"] {
         scene.variants[0].material.set(name, number(0.4));
     }

@@ -65,7 +65,7 @@ fn one_click_fits_the_model_beside_a_measurement() {
     let mut bench = bench(scene(Some("lambert")));
     bench.click("Fit to it");
     let expected = Effect::Match { view: 1, measure: Measure::default(), parameters: vec!["base_colour"] };
-    assert_eq!(asked(&mut bench), [expected.clone()], "its colours are free too");
+    assert_eq!(asked(&mut bench), std::slice::from_ref(&expected), "its colours are free too");
     // Not twice.
     bench.session.facts.matching = Some(Running { label: 1, done: 0.4, step: String::new() });
     bench.apply(Action::Match(MatchCommand::Fit));
