@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     /// Scene file with variants; `-` is standard input
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
-    /// Match every model for opaque surfaces to view A, with all its numbers and colours free, and list them, the nearest first
+    /// Match every model for opaque surfaces to view A, with all its numbers, colours and choices free, and list them, the nearest first
     #[arg(long, conflicts_with_all = ["view", "free", "output"])]
     each: bool,
     /// The view whose parameters are searched: its letter, or its name

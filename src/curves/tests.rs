@@ -493,11 +493,12 @@ fn the_uncertainty_of_a_measurement_is_drawn_as_bars_and_written() {
         }
         let place = folder.path().join(name);
         std::fs::write(&place, rows).expect("written");
-        let scene = format!(
-            "{{\"lights\":[{{\"type\":\"point\"}}],\"objects\":[{{\"type\":\"sphere\",\"reflection_model\":\"measured_table\",\"material\":{{\"table_file\":\"{name}\"}}}}]}}"
-        );
+        let mut scene: serde_json::Value =
+            serde_json::from_str(include_str!("../../scenes/default.json")).expect("shipped");
+        scene["objects"][0]["reflection_model"] = "measured_table".into();
+        scene["objects"][0]["material"] = serde_json::json!({ "table_file": name });
         let file = folder.path().join("scene.json");
-        std::fs::write(&file, scene).expect("written");
+        std::fs::write(&file, scene.to_string()).expect("written");
         let loaded = crate::scene::load::file(&file, &registry, crate::scene::load::Defaults::Use);
         let material = loaded.expect("a scene").scene.objects[0].material.clone();
         Subject::model(registry.model("measured_table").expect("built in"), &material, Encoding::Srgb)

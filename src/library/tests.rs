@@ -150,7 +150,7 @@ fn a_custom_model_is_held_here_until_it_is_drawn_with() -> io::Result<()> {
 fn a_new_model_with_a_mistake_is_a_stand_in_and_mended_by_the_file_that_it_lacks() -> io::Result<()> {
     let mut bench = Bench::new()?;
     bench.save("models/matt.wgsl", &matt(0.25));
-    assert!(bench.problems()[0].contains("there is no file `models/help.wgsl`"), "{:?}", bench.problems());
+    assert!(bench.problems()[0].contains("there is no file `help.wgsl`"), "{:?}", bench.problems());
     assert_eq!(bench.registry.extent("matt"), Some(Extent::StandIn));
     bench.save("models/help.wgsl", HELP);
     assert_eq!(bench.adopt(), 1);

@@ -2,8 +2,9 @@
 
 use super::{Match, MatchError, Measure, Request, match_view, parameters};
 use crate::{
+    parameter::{Parameter, Value, Values},
     progress::Progress,
-    reflection::ModelEntry,
+    reflection::{ModelEntry, usage::unused},
     registry::Registry,
     scene::{Scene, Variant},
 };
@@ -33,8 +34,8 @@ pub fn candidates(registry: &Registry) -> impl Iterator<Item = &ModelEntry> {
     registry.models().iter().filter(|model| !model.declaration.measured && !model.declaration.transmits)
 }
 
-/// Matches models to view A, each with all its numbers and colours free, from its defaults: the other views do not matter.
-/// If the user cancels, what was matched until then is the result.
+/// Matches models to view A, each with all its numbers, colours and choices free, from its defaults: the other views do not
+/// matter. If the user cancels, what was matched until then is the result.
 pub fn match_each<'m>(
     scene: &Scene,
     models: impl IntoIterator<Item = &'m ModelEntry>,
@@ -46,18 +47,9 @@ pub fn match_each<'m>(
     let mut ranking = Ranking::default();
     for (i, model) in models.iter().enumerate() {
         let id = model.declaration.id;
-        let variant = Variant { reflection_model: Some(id.to_owned()), ..Variant::default() };
-        let mut scene = Scene { variants: vec![variant], ..scene.clone() };
-        // What view A has set is for its model.
-        for p in model.parameters {
-            scene.variants[0].material.set(p.name, p.default_value());
-        }
-        let free = parameters(&scene, 1, registry);
-        let free: Vec<_> = free.into_iter().map(|(parameter, _)| parameter.name).collect();
-        let request = Request { scene: &scene, view: 1, measure, parameters: &free };
         let name = |step: &str| format!("{}: {step}", model.declaration.name);
-        let found =
-            progress.part((i, models.len()), name, |progress| match_view(&request, registry, progress));
+        let found = progress
+            .part((i, models.len()), name, |progress| match_model(scene, model, measure, registry, progress));
         match found {
             Ok(found) => ranking.matched.push(Matched { model: id, found }),
             Err(MatchError::Cancelled) => {
@@ -69,4 +61,61 @@ pub fn match_each<'m>(
     }
     ranking.matched.sort_by(|a, b| a.found.after.total_cmp(&b.found.after));
     ranking
+}
+
+/// Matches a model with its default choices, then with every other choice, one after the other: one that comes nearer
+/// stays.
+fn match_model(
+    scene: &Scene,
+    model: &ModelEntry,
+    measure: Measure,
+    registry: &Registry,
+    progress: &Progress,
+) -> Result<Match, MatchError> {
+    /// The part of the error that must be left for a choice to stay, and that of the first error that counts as none.
+    const NEARER: f64 = 0.99;
+    const NOTHING: f64 = 1e-4;
+    // What view A has set is for its model.
+    let mut material = Values::default();
+    for p in model.parameters {
+        material.set(p.name, p.default_value());
+    }
+    let attempt = |material: &Values, progress: &Progress| {
+        let id = model.declaration.id.to_owned();
+        let variant =
+            Variant { reflection_model: Some(id), material: material.clone(), ..Variant::default() };
+        let scene = Scene { variants: vec![variant], ..scene.clone() };
+        let free = parameters(&scene, 1, registry);
+        let free: Vec<_> = free.into_iter().map(|(parameter, _)| parameter.name).collect();
+        match_view(&Request { scene: &scene, view: 1, measure, parameters: &free }, registry, progress)
+    };
+    let of =
+        |p: &'static Parameter| p.kind.options().iter().map(move |(id, _)| (p, Value::Choice((*id).into())));
+    let choices: Vec<_> =
+        model.parameters.iter().flat_map(of).filter(|(p, value)| *value != p.default_value()).collect();
+    let count = 1 + choices.len();
+    let mut best = progress.part((0, count), str::to_owned, |progress| attempt(&material, progress))?;
+    let mut chosen: Vec<(&'static str, Value)> = Vec::new();
+    for (i, (p, value)) in choices.into_iter().enumerate() {
+        if best.after <= NOTHING * best.before {
+            break;
+        }
+        if unused(model.parameters, p, &material).is_some() {
+            continue;
+        }
+        let mut other = material.clone();
+        other.set(p.name, value.clone());
+        match progress.part((i + 1, count), str::to_owned, |progress| attempt(&other, progress)) {
+            Ok(found) if found.after < NEARER * best.after => {
+                best = Match { before: best.before, ..found };
+                material = other;
+                chosen.retain(|(name, _)| *name != p.name);
+                chosen.push((p.name, value));
+            }
+            Err(MatchError::Cancelled) => return Err(MatchError::Cancelled),
+            _ => {}
+        }
+    }
+    best.values.splice(0..0, chosen);
+    Ok(best)
 }

@@ -331,17 +331,34 @@ fn the_metrics_of_a_white_and_a_black_matte_surface_have_closed_values() {
 }
 
 #[test]
-fn a_metric_that_sees_tails_widens_a_lobe_without_them() {
-    let metal =
-        [("distribution", Value::Choice("ggx".into())), ("alpha_x", number(0.15)), ("alpha_y", number(0.15))];
-    let mut scene =
-        scene(("microfacet", &metal), ("microfacet", &[("distribution", Value::Choice("beckmann".into()))]));
-    for name in ["alpha_x", "alpha_y"] {
-        scene.variants[0].material.set(name, number(0.4));
-    }
+fn a_metric_that_sees_less_of_highlights_ends_nearer_to_the_body() {
+    let white = ("base_colour", Value::Colour([255; 3]));
+    let glossy = [
+        white,
+        ("k_a", number(0.0)),
+        ("k_d", number(0.5)),
+        ("k_s", number(0.5)),
+        ("alpha", Value::Integer(20)),
+    ];
+    let scene = scene(("phong", &glossy), ("lambert", &[]));
     let [cosine, log, root] =
-        Metric::ALL.map(|metric| found(&by(&scene, metric, &["alpha_x", "alpha_y"]), "alpha_x"));
-    assert!(cosine < log && log < root, "{cosine} {log} {root}");
+        Metric::ALL.map(|metric| found(&by(&scene, metric, &["base_colour"]), "base_colour"));
+    assert!(cosine > log && log > root, "{cosine} {log} {root}");
+}
+
+#[test]
+fn choices_are_tried_and_named() {
+    let registry = Registry::builtin();
+    let model = registry.model("microfacet").expect("built in");
+    let default = model.parameter("distribution").expect("declared").default_value();
+    let other = ["ggx", "beckmann"].map(|id| Value::Choice(id.into())).into_iter().find(|v| *v != default);
+    let other = other.expect("one of them");
+    let wanted = [("distribution", other.clone()), ("alpha_x", number(0.25)), ("alpha_y", number(0.25))];
+    let scene = scene(("microfacet", &wanted), ("lambert", &[]));
+    let ranking = each::match_each(&scene, [model], What::Lobe.into(), &registry, &Progress::NONE);
+    let found = &ranking.matched[0].found;
+    assert!(found.values.contains(&("distribution", other)), "{found:?}");
+    assert!(found.after < 0.01 * found.before, "{found:?}");
 }
 
 #[test]

@@ -27,6 +27,7 @@ pub(super) fn buttons(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let every = ui.small_button("Fit every model…").on_hover_text(EVERY);
         context.on_click(&every, || Action::Match(MatchCommand::Every(Default::default())));
     });
+    ui.add_space(4.0);
 }
 
 /// The window.
@@ -42,8 +43,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
 fn content(ui: &mut Ui, fits: &Fits, context: &mut PanelContext<'_>) {
     let letter = LETTERS[fits.view.min(MAX_VARIANTS)];
     let about = format!(
-        "Every model for opaque surfaces, with all its numbers and colours free, and what remains of the difference from the \
-         measurement in view {letter}. A click on a model puts it into another view."
+        "Every model for opaque surfaces, with all its numbers, colours and choices free, and what remains of the difference from \
+         the measurement in view {letter}. A click on a model puts it into another view."
     );
     ui.add(Label::new(theme::small(ui, about)).wrap());
     let running = context.session().facts.ranking.is_some();

@@ -8,7 +8,10 @@ use super::{
 use crate::{
     document::{Edit, Extent},
     parameter::{Parameter, Values},
-    reflection::carry::{Carried, Journey, journey},
+    reflection::{
+        ModelEntry,
+        carry::{Carried, Journey, journey},
+    },
     registry::Registry,
     scene::{Part, Variant, variant::LETTERS},
     text::{capitalised, listed},
@@ -114,29 +117,32 @@ impl Session {
             });
         }
         let Some(to) = registry.model(&to) else { return };
-        let letter = LETTERS.get(variant + 1).copied().unwrap_or_default();
-        let mut said = Vec::new();
-        if !carried.is_empty() {
-            let words: Vec<_> = carried.iter().map(without_values).collect();
-            said.push(format!("{} in view {letter}: {}.", to.declaration.name, words.join(", ")));
-        }
-        if !left.is_empty() {
-            let from = registry.model(&from).map(|model| model.declaration.name);
-            said.push(left_behind(&left, from, to));
-        }
-        if !differ.is_empty() {
-            let names: Vec<_> = differ.iter().map(|p| p.label).collect();
-            let verb = if names.len() == 1 { "differs" } else { "differ" };
-            let names = listed(&names, "and");
-            said.push(format!(
-                "{} {verb} from object to object, and view {letter} has one value for all.",
-                capitalised(&names)
-            ));
-        }
+        let from = registry.model(&from).map(|model| model.declaration.name);
+        let view = LETTERS.get(variant + 1).copied().unwrap_or_default();
+        let said = words(view, from, to, &Common { carried: Some(carried), left, differ });
         if !said.is_empty() {
-            self.say(Severity::Info, said.join(" "));
+            self.say(Severity::Info, said);
         }
     }
+}
+
+/// The message: what went along, and what did not.
+fn words(view: &str, from: Option<&str>, to: &ModelEntry, common: &Common) -> String {
+    let mut said = Vec::new();
+    let carried: Vec<_> = common.carried.iter().flatten().map(without_values).collect();
+    if !carried.is_empty() {
+        said.push(format!("{} in view {view}: {}.", to.declaration.name, carried.join(", ")));
+    }
+    if !common.left.is_empty() {
+        said.push(left_behind(&common.left, from, to));
+    }
+    let differ: Vec<_> = common.differ.iter().map(|p| p.label).collect();
+    if !differ.is_empty() {
+        let verb = if differ.len() == 1 { "differs" } else { "differ" };
+        let names = capitalised(&listed(&differ, "and"));
+        said.push(format!("{names} {verb} from object to object, and view {view} has one value for all."));
+    }
+    said.join(" ")
 }
 
 #[cfg(test)]

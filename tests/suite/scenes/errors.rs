@@ -364,7 +364,7 @@ fn every_constraint_has_its_message() {
         ),
         ("/display/background_bottom", json!([0, 0, 256]), "display.background_bottom[2] is 256"),
         ("/name", json!(1), "name is 1, but it must be text"),
-        ("/description", json!(["x"]), "the description must be text"),
+        ("/description", json!(["x"]), "description is [\"x\"], but it must be text"),
     ];
     for (pointer, value, expected) in cases {
         let text = changed(|scene| put(scene, pointer, value.clone()));

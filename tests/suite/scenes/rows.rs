@@ -241,7 +241,7 @@ fn mistakes_are_reported_with_their_place_and_the_remedy() {
     );
     about(
         json!({ "columns": 3, "spacing": [0, 0, 0] }),
-        "the spacing must be three finite numbers of metres, not all of them 0",
+        "spacing is [0, 0, 0], but it must be three finite numbers of metres, not all of them 0",
     );
     about(
         json!({ "columns": 9, "spacing": [1.2, 0, 0] }),
