@@ -75,6 +75,8 @@ fn match_model(
     /// The part of the error that must be left for a choice to stay, and that of the first error that counts as none.
     const NEARER: f64 = 0.99;
     const NOTHING: f64 = 1e-4;
+    /// Maximum number of times that each choice is tried.
+    const ROUNDS: usize = 3;
     // What view A has set is for its model.
     let mut material = Values::default();
     for p in model.parameters {
@@ -91,31 +93,35 @@ fn match_model(
     };
     let of =
         |p: &'static Parameter| p.kind.options().iter().map(move |(id, _)| (p, Value::Choice((*id).into())));
-    let choices: Vec<_> =
-        model.parameters.iter().flat_map(of).filter(|(p, value)| *value != p.default_value()).collect();
-    let count = 1 + choices.len();
+    let choices: Vec<_> = model.parameters.iter().flat_map(of).collect();
+    let count = 1 + ROUNDS * choices.len();
     let mut best = progress.part((0, count), str::to_owned, |progress| attempt(&material, progress))?;
-    let mut chosen: Vec<(&'static str, Value)> = Vec::new();
-    for (i, (p, value)) in choices.into_iter().enumerate() {
-        if best.after <= NOTHING * best.before {
+    // A choice may come nearer only beside another one, so they are tried again until none does.
+    for round in 0..ROUNDS {
+        let before = best.after;
+        for (i, (p, value)) in choices.iter().enumerate() {
+            let is_new = material.get(p) != *value && unused(model.parameters, p, &material).is_none();
+            if !is_new || best.after <= NOTHING * best.before {
+                continue;
+            }
+            let mut other = material.clone();
+            other.set(p.name, value.clone());
+            let part = (1 + round * choices.len() + i, count);
+            match progress.part(part, str::to_owned, |progress| attempt(&other, progress)) {
+                Ok(found) if found.after < NEARER * best.after => {
+                    (best, material) = (Match { before: best.before, ..found }, other);
+                }
+                Err(MatchError::Cancelled) => return Err(MatchError::Cancelled),
+                _ => {}
+            }
+        }
+        if best.after >= before {
             break;
         }
-        if unused(model.parameters, p, &material).is_some() {
-            continue;
-        }
-        let mut other = material.clone();
-        other.set(p.name, value.clone());
-        match progress.part((i + 1, count), str::to_owned, |progress| attempt(&other, progress)) {
-            Ok(found) if found.after < NEARER * best.after => {
-                best = Match { before: best.before, ..found };
-                material = other;
-                chosen.retain(|(name, _)| *name != p.name);
-                chosen.push((p.name, value));
-            }
-            Err(MatchError::Cancelled) => return Err(MatchError::Cancelled),
-            _ => {}
-        }
     }
+    let chosen = model.parameters.iter().filter(|p| !p.kind.options().is_empty());
+    let chosen = chosen.map(|p| (p.name, material.get(p), p.default_value()));
+    let chosen = chosen.filter(|(_, now, default)| now != default).map(|(name, now, _)| (name, now));
     best.values.splice(0..0, chosen);
     Ok(best)
 }

@@ -24,14 +24,14 @@ struct Struck {
 pub(super) fn mend_input(
     mut contexts: Query<&mut EguiInput>,
     mut keyboard: MessageReader<KeyboardInput>,
-    mut clipboard: ResMut<EguiClipboard>,
+    mut clipboard: Option<ResMut<EguiClipboard>>,
     mut held: Local<egui::Modifiers>,
     mut running: Local<egui::Modifiers>,
 ) {
     let struck: Vec<_> = keyboard.read().filter_map(|message| follow(message, &mut running)).collect();
     for mut input in &mut contexts {
         if !struck.is_empty() {
-            mend(&mut input.events, &struck, || clipboard.get_text());
+            mend(&mut input.events, &struck, || clipboard.as_mut()?.get_text());
         }
         if input.events.contains(&egui::Event::WindowFocused(false)) {
             *running = egui::Modifiers::NONE;
