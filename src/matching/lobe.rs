@@ -56,22 +56,22 @@ pub(super) struct Lobe {
     terms: TermSelection,
 }
 
-/// The number of a metric for each pair of directions, three each.
+/// The number of a metric for each pair of directions, three each; with the ambient term or without it.
 fn numbers(
     surface: &dyn Surface,
     directions: &[(Vec3, Vec3)],
-    (metric, terms): (Metric, TermSelection),
+    (metric, terms, ambient): (Metric, TermSelection, bool),
     to: &mut [f64],
 ) {
     /// Minimum number of pairs that justifies a separate task.
     const AT_ONCE: usize = 128;
     to.par_chunks_mut(3 * AT_ONCE).zip(directions.par_chunks(AT_ONCE)).for_each(|(to, directions)| {
         for (to, (l, v)) in to.as_chunks_mut::<3>().0.iter_mut().zip(directions) {
-            *to = surface
-                .response(*l, *v, &Frame::LOCAL)
-                .select(terms)
-                .to_array()
-                .map(|own| metric.of(own.into()));
+            let mut response = surface.response(*l, *v, &Frame::LOCAL);
+            if !ambient {
+                response.ambient = Vec3::ZERO;
+            }
+            *to = response.select(terms).to_array().map(|own| metric.of(own.into()));
         }
     });
 }
@@ -84,7 +84,7 @@ impl Lobe {
             let all: Vec<_> =
                 azimuths.iter().flat_map(|azimuth| directions(*azimuth, LARGEST_ANGLE)).collect();
             let mut wanted = vec![0.0; 3 * all.len()];
-            numbers(&*pair.wanted, &all, (metric, a.terms), &mut wanted);
+            numbers(&*pair.wanted, &all, (metric, a.terms, !pair.is_measured), &mut wanted);
             (pair, all, wanted)
         };
         let lobes = Pair::all([a, b], registry).into_iter().map(lobe).collect();
@@ -100,7 +100,8 @@ impl Target for Lobe {
     fn differences(&mut self, values: &Given, mut to: &mut [f64]) {
         for (pair, directions, wanted) in &self.lobes {
             let (own, rest) = to.split_at_mut(wanted.len());
-            numbers(&*pair.with(values), directions, (self.metric, self.terms), own);
+            let how = (self.metric, self.terms, !pair.is_measured);
+            numbers(&*pair.with(values), directions, how, own);
             own.iter_mut().zip(wanted).for_each(|(to, wanted)| *to -= wanted);
             to = rest;
         }

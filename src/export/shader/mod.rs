@@ -112,7 +112,7 @@ pub fn compose(
     if let Some(file) = model.file() {
         let (name, label) = (model.declaration.id, file.label);
         return Err(ExportError::refused(format!(
-            "the {label} of {name} is a file of megabytes, which no uniform holds; fit another model to it with `lcm match`, \
+            "the {label} of {name} has more numbers than a uniform holds; fit another model to it with `lcm match`, \
              or export a program"
         )));
     }

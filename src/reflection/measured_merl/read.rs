@@ -82,7 +82,8 @@ fn numbers(bytes: &[u8]) -> Result<Vec<f32>, String> {
         return Err(format!("{colour} of entry ({place}) is {value}, but must be a finite number"));
     }
     if entries.iter().all(Option::is_none) {
-        return Err("every entry has a negative value, the mark of one that was not measured".to_owned());
+        return Err("every entry has a negative value in some colour, the mark of one that was not measured"
+            .to_owned());
     }
     Ok(half_difference::with_gaps(COUNTS, entries))
 }

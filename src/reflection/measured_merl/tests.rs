@@ -210,7 +210,10 @@ fn what_is_no_file_of_the_database_is_refused_with_the_reason() {
         assert_eq!(said(&wrong), format!("green of entry (1, 2, 3) is {value}, but must be a finite number"));
     }
     let negative = file(|_| [-1.0; 3], SCALES);
-    assert_eq!(said(&negative), "every entry has a negative value, the mark of one that was not measured");
+    assert_eq!(
+        said(&negative),
+        "every entry has a negative value in some colour, the mark of one that was not measured"
+    );
     // Enormous values stay finite.
     let numbers = (FORMAT.read)(&file(|_| [1e300; 3], SCALES)).expect("legal");
     assert!(Grid::new(&numbers).expect("a table").value([0.5, 0.5, 0.5]).is_finite());

@@ -168,11 +168,20 @@ fn weights(nm: &[f32]) -> Vec<DVec3> {
     all.into_iter().map(|weight| weight / white).collect()
 }
 
+/// Largest angle of a viewer in radians: 90°, and what rounding adds.
+const STEEPEST: f32 = 1.571;
+
 fn arrays(bytes: &[u8]) -> Result<Arrays, String> {
     let fields = Fields(fields(bytes)?);
     let (phi, theta) = (fields.ascending("phi_i")?, fields.ascending("theta_i")?);
+    if let Some(angle) = theta.iter().find(|angle| !(0.0..=STEEPEST).contains(*angle)) {
+        return Err(format!("theta_i has {angle}, but must be from 0 to π/2 in radians"));
+    }
     let grid = |name: &str| {
         let ([rows, columns], all) = fields.floats::<2>(name)?;
+        if all.iter().all(|number| *number <= 0.0) {
+            return Err(format!("{name} is nowhere above 0"));
+        }
         Ok::<_, String>(([columns, rows], from_zero(all)))
     };
     let ((ndf_size, ndf), (sigma_size, sigma)) = (grid("ndf")?, grid("sigma")?);

@@ -190,6 +190,9 @@ fn what_is_no_file_of_the_database_is_refused_with_the_reason() {
     assert!(changed(&|all| all[2].2 = 99).contains("unknown type, 99"));
     assert!(changed(&|all| all[2].1[0] = 0).contains("a side of the field ndf is 0"));
     assert!(changed(&|all| all[1].3.fill(0)).contains("theta_i must ascend"));
+    let steep = changed(&|all| all[1].3[12..].copy_from_slice(&2f32.to_le_bytes()));
+    assert!(steep.contains("theta_i has 2, but must be from 0 to π/2"), "{steep}");
+    assert!(changed(&|all| all[2].3.fill(0)).contains("ndf is nowhere above 0"));
     assert!(
         changed(&|all| all[4].3[..4].copy_from_slice(&f32::NAN.to_le_bytes()))
             .contains("number 0 of the field vndf is NaN")
