@@ -77,6 +77,8 @@ fn match_model(
     const NOTHING: f64 = 1e-4;
     /// Maximum number of times that each choice is tried.
     const ROUNDS: usize = 3;
+    /// A choice that stays as it is: it takes fifteen times as long to calculate, and changes a lobe little.
+    const COSTLY: &str = "multiple_scattering";
     // What view A has set is for its model.
     let mut material = Values::default();
     for p in model.parameters {
@@ -93,7 +95,7 @@ fn match_model(
     };
     let of =
         |p: &'static Parameter| p.kind.options().iter().map(move |(id, _)| (p, Value::Choice((*id).into())));
-    let choices: Vec<_> = model.parameters.iter().flat_map(of).collect();
+    let choices: Vec<_> = model.parameters.iter().filter(|p| p.name != COSTLY).flat_map(of).collect();
     let count = 1 + ROUNDS * choices.len();
     let mut best = progress.part((0, count), str::to_owned, |progress| attempt(&material, progress))?;
     // A choice may come nearer only beside another one, so they are tried again until none does.
