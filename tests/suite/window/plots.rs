@@ -439,7 +439,9 @@ fn files_that_are_something_else_stay() {
     assert!(refused(&at("a.csv"), false, &[]).contains("a.csv exists"));
     refused(&at("a.csv"), true, &[at("a.csv")]);
     assert_eq!(write(&request, &at("a.csv"), true, &[], &Progress::NONE), Ok(Vec::new()));
-    assert!(refused(&at("none/a.csv"), false, &[]).contains("could not be written"));
+    assert_eq!(write(&request, &at("new/a.csv"), false, &[], &Progress::NONE), Ok(Vec::new()));
+    assert!(at("new/a.csv").exists(), "folders are made");
+    refused(&at("a.csv/b.csv"), false, &[]);
     // A plot without curves is not a plot.
     let mut empty = request.clone();
     empty.entries.iter_mut().for_each(|entry| entry.shown = false);
