@@ -9,9 +9,8 @@ use clap::{
 use serde_json::{Value as Json, json};
 
 use super::{
-    FINE, Options, Outcome, gauged, outputs, print_json, print_text, progress,
+    Options, Outcome, gauged, gauged_until, outputs, print_json, print_text,
     scenes::Source,
-    style,
     views::find,
     workshop::{Workshop, drawable},
 };
@@ -25,7 +24,6 @@ use crate::{
         match_view,
     },
     parameter::Value,
-    progress::Progress,
     registry::Registry,
     scene::{
         Scene,
@@ -163,15 +161,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
 fn each(scene: &Scene, (measure, json): (Measure, bool), options: Options, registry: &Registry) -> Outcome {
     // Without it, Ctrl+C ends the program at once.
     let interrupt = Interrupt::listen(|| (), |_| ()).unwrap_or_default();
-    let bar = progress(FINE, options);
-    bar.set_style(style("{bar:30} {percent} % {msg}{left}; Ctrl+C ends it"));
-    let tell = |done: f32, step: &str| {
-        bar.set_position((f64::from(done) * FINE as f64) as u64);
-        bar.set_message(step.to_owned());
-    };
-    let progress = Progress { tell: &tell, cancelled: &|| interrupt.is_asked() };
-    let ranking = match_each(scene, candidates(registry), measure, registry, &progress);
-    bar.finish_and_clear();
+    let ranking = gauged_until("matching", options, &|| interrupt.is_asked(), |progress| {
+        match_each(scene, candidates(registry), measure, registry, progress)
+    });
     if json {
         print_json(&ranking_as_json(&ranking, measure))?;
     } else {

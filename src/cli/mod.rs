@@ -686,6 +686,16 @@ fn attended<T>(
 /// Runs some work and, if it takes long, shows its name on a terminal, with a progress bar if the work
 /// reports its progress.
 fn gauged<T>(what: &str, options: Options, work: impl FnOnce(&Progress) -> T) -> T {
+    gauged_until(what, options, &|| false, work)
+}
+
+/// Like [`gauged`], for work that ends early, with what it has, once it is cancelled.
+fn gauged_until<T>(
+    what: &str,
+    options: Options,
+    cancelled: &dyn Fn() -> bool,
+    work: impl FnOnce(&Progress) -> T,
+) -> T {
     let bar = ProgressBar::with_draw_target(Some(FINE), ProgressDrawTarget::hidden());
     let what = printable(what);
     bar.set_message(what.clone().into_owned());
@@ -706,7 +716,7 @@ fn gauged<T>(what: &str, options: Options, work: impl FnOnce(&Progress) -> T) ->
         }
         bar.finish_and_clear();
     };
-    let progress = Progress { tell: &tell, cancelled: &|| false };
+    let progress = Progress { tell: &tell, cancelled };
     attended(options, Duration::from_secs(1), watch, || work(&progress))
 }
 

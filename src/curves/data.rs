@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 const PAINT_TABLE: &str = include_str!("../../assets/data/cornell_paints.csv");
 const SGD: &str = include_str!("../../assets/data/sgd_merl100.csv");
@@ -119,11 +119,7 @@ impl Sgd {
     /// `f_r` in sr⁻¹ in the three channels; l and v are in the local frame. Zero below the surface.
     #[must_use]
     pub fn brdf(&self, l: Vec3, v: Vec3) -> [f64; 3] {
-        if l.z <= 0.0 || v.z <= 0.0 {
-            return [0.0; 3];
-        }
-        let (l, v) = (l.as_dvec3().normalize(), v.as_dvec3().normalize());
-        let h = (l + v).normalize();
+        let Some([l, v, h]) = with_half(l, v) else { return [0.0; 3] };
         let cos_d = h.dot(l).clamp(0.0, 1.0);
         let cos2 = h.z * h.z;
         std::array::from_fn(|c| {
@@ -195,11 +191,7 @@ impl Abc {
     /// `f_r` in sr⁻¹ in the three channels; l and v are in the local frame. Zero below the surface.
     #[must_use]
     pub fn brdf(&self, l: Vec3, v: Vec3) -> [f64; 3] {
-        if l.z <= 0.0 || v.z <= 0.0 {
-            return [0.0; 3];
-        }
-        let (l, v) = (l.as_dvec3().normalize(), v.as_dvec3().normalize());
-        let h = (l + v).normalize();
+        let Some([l, v, h]) = with_half(l, v) else { return [0.0; 3] };
         let cos_d = h.dot(l).clamp(1e-9, 1.0);
         let g = (2.0 * h.z / cos_d * l.z.min(v.z)).min(1.0);
         let lobe = reflectance(cos_d, self.ior) * g / (1.0 + self.b * (1.0 - h.z)).powf(self.c);
@@ -211,6 +203,15 @@ impl Abc {
     pub fn luminance(&self, l: Vec3, v: Vec3) -> f64 {
         luminance(self.brdf(l, v))
     }
+}
+
+/// Unit vectors to light and viewer and the half vector; `None` below the surface.
+fn with_half(l: Vec3, v: Vec3) -> Option<[DVec3; 3]> {
+    if l.z <= 0.0 || v.z <= 0.0 {
+        return None;
+    }
+    let (l, v) = (l.as_dvec3().normalize(), v.as_dvec3().normalize());
+    Some([l, v, (l + v).normalize()])
 }
 
 /// The reflectance of the boundary of a dielectric with refractive index n, unpolarised (A.-J. Fresnel 1823).

@@ -29,13 +29,33 @@ pub struct Ranking {
     pub unfinished: Vec<&'static str>,
 }
 
-/// Models that can be matched to a surface: of opaque surfaces, and with parameters rather than measurements.
+/// Models that can be matched to a surface: opaque with their default values, and with parameters rather than
+/// measurements.
 pub fn candidates(registry: &Registry) -> impl Iterator<Item = &ModelEntry> {
-    registry.models().iter().filter(|model| !model.declaration.measured && !model.declaration.transmits)
+    let opaque = |model: &&ModelEntry| !model.passage(&defaults(model)).transmits;
+    registry.models().iter().filter(|model| !model.declaration.measured).filter(opaque)
+}
+
+/// The default values of a model, whatever a scene has set for another.
+fn defaults(model: &ModelEntry) -> Values {
+    let mut values = Values::default();
+    for p in model.parameters {
+        values.set(p.name, p.default_value());
+    }
+    values
+}
+
+/// True if the surface stays opaque, whatever the value of a parameter.
+fn keeps_opaque(model: &ModelEntry, parameter: &Parameter) -> bool {
+    parameter.ends().into_iter().all(|end| {
+        let mut values = defaults(model);
+        values.set(parameter.name, end);
+        !model.passage(&values).transmits
+    })
 }
 
 /// Matches models to view A, each with all its numbers, colours and choices free, from its defaults: the other views do not
-/// matter. If the user cancels, what was matched until then is the result.
+/// matter. Parameters that would make a surface transmit light stay as they are. If the user cancels, what was matched until then is the result.
 pub fn match_each<'m>(
     scene: &Scene,
     models: impl IntoIterator<Item = &'m ModelEntry>,
@@ -77,25 +97,20 @@ fn match_model(
     const NOTHING: f64 = 1e-4;
     /// Maximum number of times that each choice is tried.
     const ROUNDS: usize = 3;
-    /// A choice that stays as it is: it takes fifteen times as long to calculate, and changes a lobe little.
-    const COSTLY: &str = "multiple_scattering";
-    // What view A has set is for its model.
-    let mut material = Values::default();
-    for p in model.parameters {
-        material.set(p.name, p.default_value());
-    }
+    let mut material = defaults(model);
     let attempt = |material: &Values, progress: &Progress| {
         let id = model.declaration.id.to_owned();
         let variant =
             Variant { reflection_model: Some(id), material: material.clone(), ..Variant::default() };
         let scene = Scene { variants: vec![variant], ..scene.clone() };
         let free = parameters(&scene, 1, registry);
-        let free: Vec<_> = free.into_iter().map(|(parameter, _)| parameter.name).collect();
+        let free = free.into_iter().map(|(parameter, _)| parameter).filter(|p| keeps_opaque(model, p));
+        let free: Vec<_> = free.map(|parameter| parameter.name).collect();
         match_view(&Request { scene: &scene, view: 1, measure, parameters: &free }, registry, progress)
     };
     let of =
         |p: &'static Parameter| p.kind.options().iter().map(move |(id, _)| (p, Value::Choice((*id).into())));
-    let choices: Vec<_> = model.parameters.iter().filter(|p| p.name != COSTLY).flat_map(of).collect();
+    let choices: Vec<_> = model.parameters.iter().filter(|p| !p.costly).flat_map(of).collect();
     let count = 1 + ROUNDS * choices.len();
     let mut best = progress.part((0, count), str::to_owned, |progress| attempt(&material, progress))?;
     // A choice may come nearer only beside another one, so they are tried again until none does.

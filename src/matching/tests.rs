@@ -375,3 +375,22 @@ fn what_was_matched_before_the_user_cancelled_is_kept() {
     let whole = each::match_each(&scene, models, What::Lobe.into(), &registry, &Progress::NONE);
     assert!(whole.unfinished.is_empty() && whole.matched[0].model == "phong", "{whole:?}");
 }
+
+#[test]
+fn every_opaque_model_is_matched_and_stays_opaque() {
+    let registry = Registry::builtin();
+    let ids: Vec<_> = each::candidates(&registry).map(|model| model.declaration.id).collect();
+    assert!(ids.contains(&"openpbr") && ids.contains(&"lambert"), "{ids:?}");
+    for other in ["thin_glass", "glass", "diffuse_transmission", "measured_merl"] {
+        assert!(registry.model(other).is_some() && !ids.contains(&other), "{ids:?}");
+    }
+    // Black: what goes through would help.
+    let scene = scene(("lambert", &[("base_colour", Value::Colour([5; 3]))]), ("lambert", &[]));
+    let model = registry.model("openpbr").expect("built in");
+    let ranking = each::match_each(&scene, [model], What::Lobe.into(), &registry, &Progress::NONE);
+    let found = &ranking.matched[0].found;
+    assert!(found.after < 0.2 * found.before, "{found:?}");
+    let through = |name: &str| name.starts_with("transmission");
+    assert!(found.values.iter().all(|(name, _)| !through(name)), "{found:?}");
+    assert!(!found.kept.iter().any(|name| through(name)), "{found:?}");
+}

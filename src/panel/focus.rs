@@ -113,7 +113,8 @@ pub(super) fn next_region(ctx: &Context, back: bool) {
                 w.layer_id.order == Order::Background
                     && w.interact_rect.is_positive()
                     && rect.contains(w.rect.center())
-                    // Excludes the edges of panels, which can be dragged.
+                    // Excludes the edges of panels, which can only be dragged.
+                    && w.sense.senses_click()
                     && !(*region == Region::Picture && w.sense.senses_drag())
             };
             // From the first widget over the picture, Tab reaches all others.

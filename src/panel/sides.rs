@@ -241,6 +241,9 @@ fn tabs(ui: &mut Ui, all: &[(PanelInfo, &mut Listed)], shown: usize, context: &m
             button = button.right_text(theme::strong(ui, note).color(palette.severity(severity)));
         }
         let button = ui.add(button);
+        if i == shown {
+            focus::first(ui.ctx(), button.id);
+        }
         point::tab(ui, info.id, button.rect);
         context.on_click(&button, || Action::View(ViewChange::BottomTab(info.id.to_owned())));
     }

@@ -8,7 +8,17 @@ impl Parameter {
     /// A parameter whose symbol and label are its name, without unit and help.
     #[must_use]
     pub const fn new(name: &'static str, kind: ParameterKind) -> Self {
-        Self { name, symbol: name, label: name, unit: "", help: "", kind, used_when: None, stands_for: None }
+        Self {
+            name,
+            symbol: name,
+            label: name,
+            unit: "",
+            help: "",
+            kind,
+            used_when: None,
+            stands_for: None,
+            costly: false,
+        }
     }
 
     setters! {

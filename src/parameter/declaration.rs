@@ -23,6 +23,13 @@ impl Parameter {
         Self { used_when: Some(UsedWhen { parameter, choices }), ..self }
     }
 
+    /// The parameter, whose values other than the default take many times as long to calculate: searches that try
+    /// all choices leave it alone.
+    #[must_use]
+    pub const fn costly(self) -> Self {
+        Self { costly: true, ..self }
+    }
+
     /// The value if the scene gives none.
     #[must_use]
     pub fn default_value(&self) -> Value {

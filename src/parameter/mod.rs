@@ -57,6 +57,8 @@ pub struct Parameter {
     pub used_when: Option<UsedWhen>,
     /// The quantity that it stands for, by which its value goes along to a model that has it under another name.
     pub stands_for: Option<&'static Meaning>,
+    /// True if other values than the default take many times as long to calculate. See [`Parameter::costly`].
+    pub costly: bool,
 }
 
 /// A condition for the use of a parameter: another parameter of the model has one of these choices.

@@ -76,6 +76,7 @@ const MULTIPLE_SCATTERING: Parameter = Parameter::choice(
 )
 .symbol("f_{ms}")
 .label("multiple scattering")
+.costly()
 .help("Light that bounces between microfacets is lost in the plain model, which darkens rough metals. Kulla and Conty add it as a lobe of its own, Turquin by scaling the highlight.");
 
 parameters! {

@@ -14,7 +14,7 @@ use bevy::{
         Extract, Render, RenderApp, RenderSystems,
         render_asset::RenderAssets,
         render_resource::{
-            binding_types::{texture_2d, uniform_buffer_sized},
+            binding_types::{storage_buffer_read_only_sized, texture_2d, uniform_buffer_sized},
             *,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
@@ -175,7 +175,7 @@ fn prepare(
 fn adding(device: &RenderDevice) -> Cover {
     let float = texture_2d(TextureSampleType::Float { filterable: false });
     let uniform = uniform_buffer_sized(false, None);
-    let entries = (float, float, float, uniform, uniform);
+    let entries = (float, float, float, uniform, storage_buffer_read_only_sized(false, None));
     let entries = BindGroupLayoutEntries::sequential(ShaderStages::FRAGMENT, entries);
     let text = format!("{}{}", wgsl!("terms.wgsl").text, include_str!("mean.wgsl"));
     Cover::new(device, "mean", (text.into(), "fragment"), &entries, (&[FRAME, MEAN, SQUARES], 1))
@@ -203,7 +203,7 @@ fn join(
     let weights = device.create_buffer_with_data(&BufferInitDescriptor {
         label: Some("mean"),
         contents: &blocks.weights(&joins.frame).map(f32::to_le_bytes).concat(),
-        usage: BufferUsages::UNIFORM,
+        usage: BufferUsages::STORAGE,
     });
     let frame = target.post_process_write();
     let group = device.create_bind_group(

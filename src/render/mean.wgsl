@@ -15,8 +15,9 @@ struct Header {
 @group(0) @binding(2) var known_squares: texture_2d<f32>;
 @group(0) @binding(3) var<uniform> illumination: Header;
 // The part that the frame has in the mean, 1 in a picture that begins; the weight of the square of the change of the
-// luminance since the last block began, 0 unless the frame completes it; and 1 if the frame ends it.
-@group(0) @binding(4) var<uniform> weights: vec4<f32>;
+// luminance since the last block began, 0 unless the frame completes it; and 1 if the frame ends it. No uniform buffer:
+// software Vulkan (Mesa) compiles a shader again for each value of a uniform that it branches on, and keeps them all.
+@group(0) @binding(4) var<storage, read> weights: vec4<f32>;
 
 // As in display.wgsl, whose last step this is for the mean.
 const CUT_OFF: f32 = 254.0 / 255.0;

@@ -8,7 +8,7 @@ use super::{
     camera::{aim, follow_scene},
     converge::Convergence,
     entities::{CurrentScene, SceneEntities},
-    file_buffers::FileBuffers,
+    file_buffers,
     illumination::{IlluminationBuffer, Lit, ShownTerms, illumination_bytes},
     live::{self, exchange},
     material, mean,
@@ -60,7 +60,6 @@ impl Plugin for ScenePlugin {
             .register_type::<parts::Animated>()
             .init_resource::<ShapeMeshes>()
             .init_resource::<Solids>()
-            .init_resource::<FileBuffers>()
             .init_resource::<ShownTerms>()
             .init_resource::<IlluminationBuffer>()
             .init_schedule(LabFrame)
@@ -70,7 +69,7 @@ impl Plugin for ScenePlugin {
             .add_systems(LabFrame, (show_lights.before(exchange), swap.after(exchange)).in_set(Swap))
             .add_systems(LabFrame, (upload_lights, follow_scene).in_set(Upload))
             .add_systems(PostUpdate, aim.in_set(ViewSystems).before(view::fit))
-            .add_plugins((live::plugin, view::plugin, tables::plugin, StraightPlugin))
+            .add_plugins((live::plugin, view::plugin, tables::plugin, file_buffers::plugin, StraightPlugin))
             .add_plugins((material::plugin, seen::plugin, mean::plugin, noise::plugin, backdrop::plugin));
         // Systems that access the same data must have a defined order.
         detect(app, LogLevel::Warn);

@@ -63,7 +63,7 @@ pub(super) struct MaterialPanel {
     found: Option<(String, Arc<Library>, Arc<Found>)>,
     /// The material that is being dragged.
     dragged: Option<Material>,
-    /// The meshes that its way over the picture meets.
+    /// The meshes that its way over the picture meets, until it is dropped.
     meshes: MeshStore,
 }
 
@@ -203,7 +203,10 @@ impl MaterialPanel {
     /// Paints the material that is dragged at the pointer with the name of the object there, and gives it to the object on
     /// which it is dropped.
     fn drag(&mut self, ui: &Ui, context: &mut PanelContext<'_>) {
-        let Some(material) = self.dragged.take() else { return };
+        let Some(material) = self.dragged.take() else {
+            self.meshes = MeshStore::default();
+            return;
+        };
         let ctx = ui.ctx();
         let (at, down, stop) =
             ui.input(|i| (i.pointer.latest_pos(), i.pointer.primary_down(), i.key_pressed(Key::Escape)));

@@ -4,7 +4,7 @@ use bevy_egui::egui::{self, Key, Modifiers, PointerButton, Popup, Rect, vec2};
 use lights_camera_models::{
     document::Selection,
     panel::{
-        state::{Action, Badge, Effect, Session, Severity, Steer, ViewChange},
+        state::{Action, Badge, Effect, MATERIALS_TAB, Session, Severity, Steer, ViewChange},
         theme::DARK,
     },
     scene::{Object, Scene},
@@ -62,6 +62,18 @@ fn f6_goes_from_panel_to_panel_and_back_to_the_picture() {
     assert_eq!(focused(&bench), None, "the picture has the keys again");
     bench.key(Key::F6, Modifiers::SHIFT);
     assert_eq!(focused(&bench).map(|r| r.center().y), Some(status.1), "backwards");
+}
+
+#[test]
+fn f6_finds_the_tab_that_is_shown_and_not_the_edge_of_its_panel() {
+    let mut bench = Bench::new(Session::default());
+    bench.apply(Action::View(ViewChange::Bottom(true)));
+    bench.apply(Action::View(ViewChange::BottomTab(MATERIALS_TAB.to_owned())));
+    bench.settle();
+    for _ in 0..4 {
+        bench.key(Key::F6, Modifiers::NONE);
+    }
+    assert_eq!(name(&bench), "Materials");
 }
 
 #[test]
