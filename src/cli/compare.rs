@@ -9,7 +9,7 @@ use clap::Args;
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use super::{
-    Options, Outcome, collected, gauged,
+    Options, Outcome, collected, finite, gauged,
     light_samples::{self, Sampling},
     one_of, outputs, pictures, print_json,
     render::{self, cpu_can_draw, samples},
@@ -22,6 +22,7 @@ use crate::files::Shown as _;
 use crate::{
     caption::{self, Sampled},
     compare::{Largest, Measured, Metric, Metrics, Pair, Shown, cells, compose, metric::Way, size_around},
+    explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
     picture::png::About,
@@ -342,7 +343,12 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let ([(shown_a, reached_a), (shown_b, reached_b)], beside) = drawn?;
     for (view, reached) in [(a, reached_a), (b, reached_b)] {
         let remark = reached.and_then(|reached| arguments.sampling.remark(reached));
-        remark.iter().for_each(|remark| options.tell(format_args!("{}: {remark}", view.input.name())));
+        let seen = view.input.scene().and_then(|scene| scene.seen(view.view, registry));
+        let odd = seen.and_then(|(seen, _)| finite::remark_on_scene(&seen, registry, &mut Tried::default()));
+        remark
+            .iter()
+            .chain(&odd)
+            .for_each(|remark| options.tell(format_args!("{}: {remark}", view.input.name())));
     }
     let mut shown = [shown_a, shown_b];
     if arguments.output.is_some() && comparison.layout.is_map() {

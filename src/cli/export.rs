@@ -8,14 +8,14 @@ use super::{
     Options, Outcome,
     engine::engine,
     explain::place,
-    outputs, progress,
+    finite, outputs, progress,
     scenes::Source,
     sides, views,
     workshop::{Workshop, drawable},
 };
 use crate::files::Shown as _;
 use crate::{
-    explain,
+    explain::{self, finite::Tried},
     export::{
         self, ExportError, FORMS, Form, Progress, Request,
         executable::{FORM as PROGRAM, WITHOUT_WINDOW},
@@ -94,6 +94,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         }
         None => scene.objects.iter().position(|object| object.visible).unwrap_or_default(),
     };
+    let odd = finite::remark_on_scene(&scene, &workshop.registry, &mut Tried::default());
+    odd.iter().for_each(|odd| options.tell(format_args!("{}: {odd}", source.name())));
     let bar = progress(100, options);
     let tell = |done: f32, what: &str| {
         bar.set_position((100.0 * done) as u64);

@@ -62,6 +62,14 @@ pub(super) fn remark_on_cpu(part: &Part, registry: &Registry) -> Option<String> 
     remark(part, registry, &reference::render_channel(&part.scene, registry, &settings(part), &setting))
 }
 
+/// The remark on a scene of which no picture says where its light is not finite: of that which this crate's tests do not cover.
+pub(super) fn remark_on_scene(scene: &Scene, registry: &Registry, tried: &mut Tried) -> Option<String> {
+    let found =
+        if has_untested(registry) { probe(scene, registry, Scope::Untested, tried) } else { Vec::new() };
+    (!found.is_empty())
+        .then(|| format!("some light is not finite, and drawn black or white:{}", listed(&found)))
+}
+
 fn settings(part: &Part) -> Settings {
     Settings { width: part.cell.width, height: part.cell.height, samples: 1, terms: part.terms }
 }

@@ -1,6 +1,9 @@
 //! `lcm sweep`: pictures of a scene with some of its values varied, in a folder, on a sheet or in a film.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Mutex,
+};
 
 use clap::Args;
 use glam::Vec3;
@@ -8,7 +11,7 @@ use glam::Vec3;
 use super::{
     Options, Outcome,
     changes::Changes,
-    gauged,
+    finite, gauged,
     light_samples::Sampling,
     outputs,
     render::{cpu_can_draw, samples},
@@ -19,6 +22,8 @@ use super::{
 };
 use crate::files::Shown as _;
 use crate::{
+    caught::lock,
+    explain::finite::Tried,
     export::write::inputs,
     failure::Failure,
     files,
@@ -156,7 +161,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let read = inputs(source.path(), [&scene], registry);
     let idle = arguments.sampling.idle(&scene, registry);
     idle.iter().for_each(|idle| options.tell(format_args!("{}: {idle}", source.name())));
-    let job = Job { arguments, sweep: &sweep, source: &source, options };
+    let job = Job { arguments, sweep: &sweep, source: &source, options, odd: Mutex::default() };
     match form {
         Form::Folder => job.folder(&read),
         Form::File(format) => job.file(format, &read),
@@ -218,7 +223,12 @@ struct Job<'a> {
     sweep: &'a Sweep<'a>,
     source: &'a Source,
     options: Options,
+    odd: Mutex<Odd>,
 }
+
+/// What was found of light that is not finite: the surfaces that were tried, and the first remark.
+#[derive(Default)]
+struct Odd(Tried, Option<String>);
 
 impl Job<'_> {
     fn settings(&self) -> Settings {
@@ -230,7 +240,21 @@ impl Job<'_> {
     /// Fails if a scene cannot be drawn by the CPU renderer.
     fn check(&self) -> impl Fn(&Scene) -> Outcome + Sync + use<'_> {
         let registry = self.sweep.registry;
-        move |scene| drawable(registry, scene).and_then(|()| cpu_can_draw(scene, registry))
+        move |scene| {
+            drawable(registry, scene).and_then(|()| cpu_can_draw(scene, registry))?;
+            let Odd(tried, first) = &mut *lock(&self.odd);
+            if first.is_none() {
+                *first = finite::remark_on_scene(scene, registry, tried);
+            }
+            Ok(())
+        }
+    }
+
+    /// Says that the light of a picture is not finite.
+    fn say_odd(&self) {
+        if let Odd(_, Some(remark)) = &*lock(&self.odd) {
+            self.options.tell(format_args!("{}: {remark}", self.source.name()));
+        }
     }
 
     fn what(&self) -> String {
@@ -246,6 +270,7 @@ impl Job<'_> {
             let into = (folder.as_path(), self.arguments.overwrite);
             sweep::files(self.sweep, &settings, into, &check, progress)
         })?;
+        self.say_odd();
         let kept = kept(written.kept);
         self.options.tell(format_args!(
             "wrote {} into {}{kept}",
@@ -289,6 +314,7 @@ impl Job<'_> {
         let written = gauged(&self.what(), *options, |progress| {
             plan.write(output, &self.source.name(), &check, progress)
         });
+        self.say_odd();
         let parts = Parts::beside(output);
         if written.is_err() && parts.folder().is_dir() {
             let folder = parts.folder().shown();

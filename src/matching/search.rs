@@ -25,8 +25,10 @@ const DESCENTS: usize = 4;
 const LIMITS: Limits = Limits { steps: 25, least_gain: 1e-7, least_move: 1e-6, first_step: 0.5 };
 /// Termination conditions of a short descent, which only shows which parameters are promising.
 const SHORT: Limits = Limits { steps: 8, ..LIMITS };
-/// Number of values tried for one parameter, in addition to the present one.
-const SCANNED: usize = 6;
+/// Least and greatest number of values tried for one parameter, in addition to the present one, and the part of all evaluations
+/// that those of all parameters may take in between.
+const SCANNED: [usize; 2] = [6, 24];
+const SCANS: f64 = 0.1;
 /// Maximum number of parameters that are added one by one.
 const GROWN: usize = 6;
 /// Maximum duration of a search; the best result until then counts.
@@ -285,12 +287,14 @@ impl<'a, T: Target> Search<'a, T> {
         let first: usize = self.free[..parameter].iter().map(|free| free.axes.len()).sum();
         let axes = &self.free[parameter].axes;
         let mut best = (f64::INFINITY, from.clone());
-        for step in 0..=SCANNED {
+        let [least, most] = SCANNED;
+        let scanned = ((SCANS * self.most as f64) as usize / self.free.len()).clamp(least, most);
+        for step in 0..=scanned {
             let mut point = from.clone();
             point.on[parameter] = true;
             // The first value is the present one.
             if let Some(step) = step.checked_sub(1) {
-                let at = (step as f64 + 0.5) / SCANNED as f64;
+                let at = (step as f64 + 0.5) / scanned as f64;
                 axes.iter().enumerate().for_each(|(k, axis)| point.numbers[first + k] = axis.value(at));
             }
             let error = self.noted(&point, &mut scratch)?;

@@ -1,6 +1,7 @@
 //! The folder of recovery copies: one folder per window, locked while that window runs.
 
 use std::{
+    ffi::OsStr,
     fs::{self, File, OpenOptions, TryLockError},
     io,
     path::{Path, PathBuf},
@@ -109,7 +110,8 @@ impl Store {
         let Ok(entries) = fs::read_dir(&self.folder) else { return Vec::new() };
         let folders = entries.flatten().take(MAX_ENTRIES);
         // A link may lead to a folder of somebody else.
-        let folders = folders.filter(|e| e.file_type().is_ok_and(|t| t.is_dir())).map(|e| e.path());
+        let folders = folders.filter(|e| e.file_type().is_ok_and(|t| t.is_dir()) && is_ours(&e.file_name()));
+        let folders = folders.map(|e| e.path());
         let mut found: Vec<_> = folders.filter_map(abandoned).collect();
         found.sort_by_key(|copy| std::cmp::Reverse(copy.when));
         found
@@ -130,7 +132,7 @@ fn abandoned(folder: PathBuf) -> Option<Abandoned> {
     let Some(scene) = scene else {
         let age = fs::metadata(&folder).and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
         if lock.is_ok() || age.is_some_and(|age| age > STARTING) {
-            let _ = fs::remove_dir_all(&folder);
+            remove_own(&folder);
         }
         return None;
     };
@@ -143,6 +145,26 @@ fn abandoned(folder: PathBuf) -> Option<Abandoned> {
     let when = scene.modified().unwrap_or(UNIX_EPOCH);
     let journal = Journal { folder, about: Some(about.clone()), _lock: lock.ok().flatten() };
     Some(Abandoned { journal, about, when })
+}
+
+/// True for the name of a journal's folder: seconds, process, and perhaps an attempt. Others are somebody else's.
+fn is_ours(name: &OsStr) -> bool {
+    let numbers =
+        name.to_str().map(|name| name.split('-').map(|n| n.parse::<u64>().is_ok()).collect::<Vec<_>>());
+    matches!(numbers.as_deref(), Some([true, true] | [true, true, true]))
+}
+
+/// Removes what a journal writes, and its folder if nothing else is in it. The scene goes first, so that an incomplete removal
+/// leaves no copy; the rest is removed at the next start.
+fn remove_own(folder: &Path) {
+    for name in [SCENE, ABOUT] {
+        let _ = remove_file(&folder.join(name));
+    }
+    let _ = files::tidy(folder);
+    for name in [format!(".{LOCK}"), LOCK.to_owned()] {
+        let _ = remove_file(&folder.join(name));
+    }
+    let _ = fs::remove_dir(folder);
 }
 
 /// Acquires the lock of a journal: `None` while another process holds it.
@@ -194,10 +216,7 @@ impl Journal {
 
     /// Removes the copy and everything that belongs to it.
     pub fn remove(self) {
-        // The scene file first, so that an incomplete removal leaves no copy. The rest is removed at the next
-        // start.
-        let _ = remove_file(&self.file());
-        let _ = fs::remove_dir_all(&self.folder);
+        remove_own(&self.folder);
     }
 }
 
@@ -344,6 +363,29 @@ mod tests {
         fs::create_dir(&starting).expect("made");
         assert!(store.abandoned().is_empty());
         assert!(running.folder.exists() && starting.exists() && !gone.exists());
+    }
+
+    #[test]
+    fn what_others_put_there_is_neither_offered_nor_removed() {
+        let (store, _folder) = store();
+        let mut journal = store.begin().expect("made");
+        journal.write(&about("room"), "{}").expect("written");
+        let (ours, precious) = (journal.folder.clone(), journal.folder.join("thesis.txt"));
+        drop(journal);
+        fs::write(&precious, "").expect("writable");
+        let long_ago = UNIX_EPOCH + Duration::from_secs(1000);
+        for name in ["notes", "1-2-x", "17"] {
+            let foreign = store.folder.join(name);
+            fs::create_dir(&foreign).expect("made");
+            [SCENE, LOCK].map(|file| fs::write(foreign.join(file), "{}").expect("writable"));
+            File::open(&foreign).and_then(|folder| folder.set_modified(long_ago)).expect("set");
+        }
+        let copies = store.abandoned();
+        assert_eq!(copies.len(), 1, "{copies:?}");
+        copies.into_iter().for_each(|copy| copy.journal.remove());
+        assert!(precious.exists() && !ours.join(SCENE).exists() && !ours.join(LOCK).exists());
+        assert!(store.abandoned().is_empty() && precious.exists());
+        assert!(["notes", "1-2-x", "17"].iter().all(|name| store.folder.join(name).join(SCENE).exists()));
     }
 
     #[test]
