@@ -25,7 +25,18 @@ impl Progress<'_> {
         name: impl Fn(&str) -> String,
         work: impl FnOnce(&Progress) -> T,
     ) -> T {
-        let tell = |done: f32, step: &str| (self.tell)((number as f32 + done) / count as f32, &name(step));
+        let at = |number: usize| number as f32 / count as f32;
+        self.stretch([at(number), at(number + 1)], name, work)
+    }
+
+    /// Does the work between two fractions of the whole, as [`part`](Self::part) does.
+    pub fn stretch<T>(
+        &self,
+        [from, to]: [f32; 2],
+        name: impl Fn(&str) -> String,
+        work: impl FnOnce(&Progress) -> T,
+    ) -> T {
+        let tell = |done: f32, step: &str| (self.tell)(from + done * (to - from), &name(step));
         work(&Progress { tell: &tell, cancelled: self.cancelled })
     }
 

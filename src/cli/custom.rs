@@ -23,7 +23,7 @@ use crate::{
         laws::{self, Effort},
     },
     registry::Registry,
-    scene::{Object, Scene},
+    scene::{Light, Object, Scene},
     text::{listed, quoted},
 };
 
@@ -87,7 +87,15 @@ fn write(id: &str, text: &str, options: Options, places: &Places, known: &Regist
 /// Tells of values of a model that are not finite on the CPU.
 fn on_cpu(id: &str, material: Values, registry: &Registry) -> Option<String> {
     let object = Object { material, ..Object::default() };
-    let scene = Scene { reflection_model: id.to_owned(), objects: vec![object], ..Scene::default() };
+    // So that light from everywhere is tried too.
+    let light =
+        Light { light_type: "ambient".to_owned(), position: None, direction: None, ..Light::default() };
+    let scene = Scene {
+        reflection_model: id.to_owned(),
+        objects: vec![object],
+        lights: vec![light],
+        ..Scene::default()
+    };
     let found = probe(&scene, registry, Scope::Untested, &mut Tried::default());
     found.first().map(|odd| odd.what.clone())
 }

@@ -51,7 +51,7 @@ pub(super) struct Arguments {
     /// The metric of the lobes: what the difference is taken of
     #[arg(long, value_parser = metric(), default_value = Metric::default().id())]
     metric: Metric,
-    /// The parameters that are free, such as alpha,k_s; by default every number
+    /// The parameters that are free, such as alpha,k_s; by default every number, and beside a measurement every colour too
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     free: Vec<String>,
     /// Write the scene with these parameters to this file, another one than the scene's
@@ -128,7 +128,14 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let free: Vec<&str> = match arguments.free.as_slice() {
         [] => {
             let all = matching::parameters(&scene, view, registry);
-            all.into_iter().filter(|(_, usual)| *usual).map(|(parameter, _)| parameter.name).collect()
+            // A measurement has no colours of a model to begin with.
+            let every = scene.shown().any(|object| {
+                registry.model(scene.model_of(object)).is_some_and(|model| model.declaration.measured)
+            });
+            all.into_iter()
+                .filter(|(_, usual)| *usual || every)
+                .map(|(parameter, _)| parameter.name)
+                .collect()
         }
         names => names.iter().map(|name| name.trim()).collect(),
     };

@@ -33,7 +33,7 @@ const PATIENCE: Duration = Duration::from_secs(600);
 pub(super) struct Arguments {
     /// Only materials with all of these words in their name, description, source or model
     #[arg(value_name = "WORDS")]
-    words: Option<String>,
+    words: Vec<String>,
     /// Print the list as JSON
     #[arg(long)]
     json: bool,
@@ -63,10 +63,10 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         library = Library::read(folder.as_deref(), &workshop.registry);
     }
     library.broken.iter().for_each(complain);
-    let words = arguments.words.as_deref().unwrap_or_default();
-    let materials: Vec<_> = library.materials.iter().filter(|m| m.matches(words)).collect();
+    let words = arguments.words.join(" ");
+    let materials: Vec<_> = library.materials.iter().filter(|m| m.matches(&words)).collect();
     if materials.is_empty() {
-        return Err(Failure::Usage(format!("no material has the words {}", quoted(words))));
+        return Err(Failure::Usage(format!("no material has the words {}", quoted(&words))));
     }
     let registry = &workshop.registry;
     let undrawn = match &arguments.output {

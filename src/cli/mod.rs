@@ -648,9 +648,12 @@ fn progress(steps: u64, options: Options) -> ProgressBar {
 /// The style of a progress bar; `{left}` is the remaining time, if known.
 fn style(template: &str) -> ProgressStyle {
     let remaining = |state: &ProgressState, text: &mut dyn fmt::Write| {
-        if state.pos() > 0 {
+        // By all of the time so far: the speed of the last moments is that of one step.
+        let done = state.fraction();
+        if done > 0.0 {
+            let left = state.elapsed().mul_f32((1.0 - done).max(0.0) / done);
             // Writing to a String cannot fail.
-            let _ = write!(text, ", {:#} left", HumanDuration(state.eta()));
+            let _ = write!(text, ", {:#} left", HumanDuration(left));
         }
     };
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());

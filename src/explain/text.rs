@@ -382,6 +382,9 @@ fn model(out: &mut Writer, seen: &Seen) {
     if d.family != Family::Basic && !d.equation.is_empty() {
         out.line(1, "I is the answer to light of unit intensity: for a BRDF f_r, π f_r N·L.");
     }
+    if d.measured {
+        out.line(1, "f is measured: there is no equation of it, but a table, read as below.");
+    }
     for setting in &seen.model.settings {
         out.line(1, lines::setting(setting));
     }

@@ -64,12 +64,16 @@ pub fn match_each<'m>(
     progress: &Progress,
 ) -> Ranking {
     let models: Vec<_> = models.into_iter().collect();
+    let whole: f32 = models.iter().map(|model| effort(model)).sum();
     let mut ranking = Ranking::default();
+    let mut done = 0.0;
     for (i, model) in models.iter().enumerate() {
         let id = model.declaration.id;
         let name = |step: &str| format!("{}: {step}", model.declaration.name);
+        let stretch = [done, done + effort(model)].map(|done| done / whole);
+        done += effort(model);
         let found = progress
-            .part((i, models.len()), name, |progress| match_model(scene, model, measure, registry, progress));
+            .stretch(stretch, name, |progress| match_model(scene, model, measure, registry, progress));
         match found {
             Ok(found) => ranking.matched.push(Matched { model: id, found }),
             Err(MatchError::Cancelled) => {
@@ -81,6 +85,18 @@ pub fn match_each<'m>(
     }
     ranking.matched.sort_by(|a, b| a.found.after.total_cmp(&b.found.after));
     ranking
+}
+
+/// The choices of a model that are tried, each with its parameter.
+fn choices(model: &ModelEntry) -> impl Iterator<Item = (&'static Parameter, Value)> {
+    let of =
+        |p: &'static Parameter| p.kind.options().iter().map(move |(id, _)| (p, Value::Choice((*id).into())));
+    model.parameters.iter().filter(|p| !p.costly).flat_map(of)
+}
+
+/// How long a model takes, beside others: it grows with its choices, and with its parameters.
+fn effort(model: &ModelEntry) -> f32 {
+    ((1 + choices(model).count()) * (10 + model.parameters.len())) as f32
 }
 
 /// Matches a model with its default choices, then with every other choice, one after the other: one that comes nearer
@@ -108,9 +124,7 @@ fn match_model(
         let free: Vec<_> = free.map(|parameter| parameter.name).collect();
         match_view(&Request { scene: &scene, view: 1, measure, parameters: &free }, registry, progress)
     };
-    let of =
-        |p: &'static Parameter| p.kind.options().iter().map(move |(id, _)| (p, Value::Choice((*id).into())));
-    let choices: Vec<_> = model.parameters.iter().filter(|p| !p.costly).flat_map(of).collect();
+    let choices: Vec<_> = choices(model).collect();
     let count = 1 + ROUNDS * choices.len();
     let mut best = progress.part((0, count), str::to_owned, |progress| attempt(&material, progress))?;
     // A choice may come nearer only beside another one, so they are tried again until none does.

@@ -402,7 +402,7 @@ impl<'a, T: Target> Search<'a, T> {
                 // This close to an end of the range, the end itself may be the best value.
                 (axis.coordinate(number) - end).abs() < 0.01
             });
-            let shorter = (2..=4).map(|digits| axis.legal(rounded(number, digits)));
+            let shorter = (2..=6).map(|digits| axis.legal(rounded(number, digits)));
             for simpler in end.map(|end| axis.value(end)).into_iter().chain(shorter) {
                 let mut shorter = point.clone();
                 shorter.numbers[at] = simpler;

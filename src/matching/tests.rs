@@ -394,3 +394,14 @@ fn every_opaque_model_is_matched_and_stays_opaque() {
     assert!(found.values.iter().all(|(name, _)| !through(name)), "{found:?}");
     assert!(!found.kept.iter().any(|name| through(name)), "{found:?}");
 }
+
+#[test]
+fn more_free_parameters_do_not_end_worse() {
+    let scene = scene(("lambert", &[("base_colour", Value::Colour([200; 3]))]), ("disney", &[]));
+    let after = |names: &[&str]| matched(&scene, What::Picture, names).expect("a match").after;
+    let alone = after(&["roughness"]);
+    for more in [&["roughness", "metallic"][..], &["metallic", "roughness", "specular"]] {
+        let together = after(more);
+        assert!(together <= 1.01 * alone, "{more:?} leave {together}, roughness alone {alone}");
+    }
+}

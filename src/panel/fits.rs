@@ -1,11 +1,14 @@
 //! Fits to a measurement: their buttons, and the window that lists every model by what remains.
 
 use super::{
-    draft, export, matching,
+    draft, export, kept, matching,
     prelude::*,
-    state::{Effect, Fits, MatchCommand},
+    state::{Effect, Fits, MatchCommand, Running},
 };
-use crate::matching::{digits, each::Matched};
+use crate::{
+    matching::{digits, each::Matched},
+    parameter::Value,
+};
 
 /// Id and title of the window.
 pub(super) const FITS: [&str; 2] = ["fits", "Fits to a measurement"];
@@ -57,6 +60,7 @@ fn content(ui: &mut Ui, fits: &Fits, context: &mut PanelContext<'_>) {
     ui.add_space(6.0);
     if running {
         ui.horizontal(|ui| strip(ui, context));
+        step(ui, context);
     }
     let Some(ranking) = &fits.ranking else { return };
     let list = ScrollArea::vertical().max_height(LIST).auto_shrink([false, true]);
@@ -76,7 +80,9 @@ fn content(ui: &mut Ui, fits: &Fits, context: &mut PanelContext<'_>) {
         }
     });
     if !ranking.unfinished.is_empty() {
-        let text = format!("Cancelled before {}.", plural(ranking.unfinished.len(), "model"));
+        let count = ranking.unfinished.len();
+        let are = if count == 1 { "is" } else { "are" };
+        let text = format!("Cancelled: {} {are} not in the list.", plural(count, "model"));
         ui.horizontal(|ui| {
             ui.label(theme::small(ui, text));
             let again = ui.small_button("Fit again");
@@ -89,10 +95,44 @@ fn name(context: &PanelContext<'_>, model: &'static str) -> &'static str {
     context.registry().model(model).map_or(model, |entry| entry.declaration.name)
 }
 
+/// The step of the fits, and the time that is left by the speed so far.
+fn step(ui: &mut Ui, context: &PanelContext<'_>) {
+    let Some(Running { done, step, .. }) = &context.session().facts.ranking else { return };
+    let now = ui.input(|i| i.time);
+    let begun = kept::with(ui.ctx(), |Begun(at, last): &mut Begun| {
+        if *done < *last {
+            *at = now;
+        }
+        *last = *done;
+        *at
+    });
+    let left = (now - begun) * f64::from(1.0 - done) / f64::from(*done);
+    let left = if left.is_finite() { format!(", about {left:.0} s left") } else { String::new() };
+    theme::note(ui, format!("{:.0} %{left} · {step}", 100.0 * done));
+}
+
+/// When the fits began, in seconds of the window, and how far they were in the last frame.
+#[derive(Clone, Copy)]
+struct Begun(f64, f32);
+
+impl Default for Begun {
+    fn default() -> Self {
+        Self(0.0, 1.0)
+    }
+}
+
+/// A parameter with its value, as in the inspector.
+fn said(name: &'static str, value: &Value, context: &PanelContext<'_>) -> String {
+    let Some(p) = context.registry().material_parameter(name) else { return format!("{name} {value}") };
+    let option =
+        p.kind.options().iter().find(|(id, _)| matches!(value, Value::Choice(chosen) if **chosen == **id));
+    option.map_or_else(|| format!("{} {value}", p.label), |(_, option)| format!("{} {option}", p.label))
+}
+
 /// A model with its error and its parameters.
 fn row(ui: &mut Ui, matched: &Matched, shown: Option<&str>, context: &mut PanelContext<'_>) {
     /// Width of the parameters, in points.
-    const WIDTH: f32 = 180.0;
+    const WIDTH: f32 = 260.0;
     let Matched { model, found } = matched;
     ui.label(digits(found.after));
     let label = name(context, model);
@@ -100,13 +140,11 @@ fn row(ui: &mut Ui, matched: &Matched, shown: Option<&str>, context: &mut PanelC
     let button = ui.add(Button::selectable(is_shown, label));
     theme::says_chosen(&button, WidgetType::Button, is_shown, format!("Show the fit of {label}"));
     context.on_click(&button, || Action::Match(MatchCommand::Show(model)));
-    let parameter =
-        |name: &'static str| context.registry().material_parameter(name).map_or(name, |p| p.label);
-    let values: Vec<_> =
-        found.values.iter().map(|(name, value)| format!("{} {value}", parameter(name))).collect();
+    let values: Vec<_> = found.values.iter().map(|(name, value)| said(name, value, context)).collect();
     let all = values.join(", ");
     let short = theme::elided(ui, &all, TextStyle::Small, Palette::here(ui).weak, WIDTH);
-    let label = ui.label(short);
+    let label = ui.add(Label::new(short).sense(Sense::click()).show_tooltip_when_elided(false));
+    context.on_click(&label, || Action::Match(MatchCommand::Show(model)));
     theme::tip(label, 320.0, |ui| _ = ui.label(all));
 }
 

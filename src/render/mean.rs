@@ -14,7 +14,7 @@ use bevy::{
         Extract, Render, RenderApp, RenderSystems,
         render_asset::RenderAssets,
         render_resource::{
-            binding_types::{storage_buffer_read_only_sized, texture_2d, uniform_buffer_sized},
+            binding_types::{storage_buffer_read_only_sized, texture_2d},
             *,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
@@ -174,8 +174,8 @@ fn prepare(
 /// The pass that adds a frame to a mean.
 fn adding(device: &RenderDevice) -> Cover {
     let float = texture_2d(TextureSampleType::Float { filterable: false });
-    let uniform = uniform_buffer_sized(false, None);
-    let entries = (float, float, float, uniform, storage_buffer_read_only_sized(false, None));
+    let buffer = storage_buffer_read_only_sized(false, None);
+    let entries = (float, float, float, buffer, buffer);
     let entries = BindGroupLayoutEntries::sequential(ShaderStages::FRAGMENT, entries);
     let text = format!("{}{}", wgsl!("terms.wgsl").text, include_str!("mean.wgsl"));
     Cover::new(device, "mean", (text.into(), "fragment"), &entries, (&[FRAME, MEAN, SQUARES], 1))

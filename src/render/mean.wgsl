@@ -13,10 +13,11 @@ struct Header {
 @group(0) @binding(1) var known: texture_2d<f32>;
 // The sum of squares about the mean luminance, and that before the last block of samples.
 @group(0) @binding(2) var known_squares: texture_2d<f32>;
-@group(0) @binding(3) var<uniform> illumination: Header;
+// No uniform buffers: software Vulkan (Mesa) compiles a shader again whenever a uniform is bound that it branches on, and
+// keeps every version.
+@group(0) @binding(3) var<storage, read> illumination: Header;
 // The part that the frame has in the mean, 1 in a picture that begins; the weight of the square of the change of the
-// luminance since the last block began, 0 unless the frame completes it; and 1 if the frame ends it. No uniform buffer:
-// software Vulkan (Mesa) compiles a shader again for each value of a uniform that it branches on, and keeps them all.
+// luminance since the last block began, 0 unless the frame completes it; and 1 if the frame ends it.
 @group(0) @binding(4) var<storage, read> weights: vec4<f32>;
 
 // As in display.wgsl, whose last step this is for the mean.

@@ -34,7 +34,7 @@ pub const MESH_BUDGET: u64 = 1 << 30;
 pub const WINDOW_BUDGET: u64 = 384 << 20;
 /// Maximum size of meshes on the GPU at once when nobody waits for the next frame, in bytes. If exceeded,
 /// shapes are drawn in batches: the same picture, later.
-pub const BATCH: u64 = 64 << 20;
+pub const BATCH: u64 = 32 << 20;
 /// Maximum number and size of unused meshes kept in case they are needed again.
 const SPARE: usize = 16;
 const SPARE_BYTES: u64 = 64 << 20;

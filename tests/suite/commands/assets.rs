@@ -130,6 +130,12 @@ fn a_broken_claim_is_found_with_numbers_and_a_kept_one_that_nobody_makes_too() {
     let told =
         "poles is finite on the GPU; on the CPU, an object has the reflection model poles, which gives (∞";
     assert!(poles.out.contains("finite: NOT everywhere") || poles.err.contains(told), "{}", poles.err);
+    let everywhere = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
+    return vec3(sqrt(m.base_colour.r - 2.0));\n}\n";
+    put(folder.path(), "haze.wgsl", &(model("cos_l * 0.5") + everywhere));
+    let haze = run(folder.path(), "models check haze --models models", "");
+    let told = "for light from everywhere and a viewer at 0°";
+    assert!(haze.status == Some(1) && haze.err.contains(told), "{}{}", haze.out, haze.err);
     let phong = run(folder.path(), "models check phong", "");
     assert_eq!(phong.status, Some(0));
     assert!(phong.out.contains("reciprocal: not claimed and broken"), "{}", phong.out);

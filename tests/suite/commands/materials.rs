@@ -48,7 +48,7 @@ fn the_list_has_names_models_and_values() {
     assert_eq!((&gold["name"], &gold["kind"]), (&"Gold".into(), &"measured".into()));
     assert_eq!(gold["reflection_model"], "microfacet");
     assert!(gold["material"]["ior"].is_array() && gold["material"]["alpha_x"].is_number(), "{gold}");
-    let run = materials(folder.path(), &["no such words"]);
+    let run = materials(folder.path(), &["no", "such words"]);
     assert_eq!(run.status, Some(2));
     assert!(run.err.contains("no material has the words \"no such words\""), "{}", run.err);
 }

@@ -107,6 +107,8 @@ fn every_model_is_listed_by_what_remains_and_a_click_shows_it_in_view_b() {
         Some(Running { label: (), done: 0.4, step: "Ward: trying α alone".to_owned() });
     bench.settle();
     assert!(bench.says("Fitting every model"));
+    let texts = bench.texts();
+    assert!(texts.iter().any(|t| t.starts_with("40 %") && t.ends_with("Ward: trying α alone")), "{texts:?}");
     bench.click("Cancel");
     assert_eq!(asked(&mut bench), [Effect::CancelMatch]);
     bench.session.facts.ranking = None;
@@ -119,7 +121,7 @@ fn every_model_is_listed_by_what_remains_and_a_click_shows_it_in_view_b() {
         "{}",
         last.text
     );
-    assert!(bench.says("Cancelled before 1 model."));
+    assert!(bench.says("Cancelled: 1 model is not in the list."));
     let before = (*bench.session.document).clone();
     bench.click("Show the fit of Ward");
     let variant = &bench.session.document.variants[0];

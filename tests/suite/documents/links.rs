@@ -166,6 +166,19 @@ fn every_name_and_path_that_a_page_quotes_is_there() {
 }
 
 #[test]
+fn the_line_that_a_crate_needs_for_derives_has_the_version_of_the_lab() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |file: &str| fs::read_to_string(root.join(file)).expect("readable");
+    let manifest = read("Cargo.toml");
+    let line = manifest.lines().find(|line| line.starts_with("bevy = {")).expect("a dependency");
+    let version = line.split('"').nth(1).expect("a version");
+    let wanted = format!("bevy = {{ version = \"{version}\", default-features = false }}");
+    for page in ["docs/extending.md", "docs/extending/another-crate.md"] {
+        assert!(read(page).contains(&wanted), "{page} lacks {wanted}");
+    }
+}
+
+#[test]
 fn every_command_of_the_documents_is_one_of_the_program() {
     let mut helps = HashMap::new();
     let mut count = 0;

@@ -356,7 +356,7 @@ fn a_scene_beyond_the_memory_for_meshes_is_drawn_and_so_is_a_later_one() {
         scene
     };
     let mut renderer = GpuRenderer::new(64, 64, 1, Output::Display).expect("a driver");
-    // Each takes 40 MB with a colour per polygon; a batch is 64 MiB.
+    // Each takes 40 MB with a colour per polygon; a batch is 32 MiB, and a larger mesh one of its own.
     renderer.set_scene(scene(5, 256));
     renderer.settle().expect("one after the other");
     assert!(middle(&renderer.read().expect("a picture")) > 0);

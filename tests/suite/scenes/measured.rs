@@ -278,6 +278,41 @@ fn tables_of_a_file_are_calculated_on_the_command_line() {
 }
 
 #[test]
+fn measurements_in_a_plot_are_told_apart_by_their_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let inner = place(&folder, "inner");
+    fs::create_dir(&inner).expect("created");
+    for (name, model) in [("paper.binary", "lambert"), ("inner/gloss.binary", "ward")] {
+        write(&place(&folder, name), model, &Values::default());
+    }
+    let of = |file: &str| format!("measured_merl:merl_file={file}");
+    let run =
+        lcm_in(folder.path(), &["plot", &of("paper.binary"), &of("inner/gloss.binary"), "-o", "p.csv"], b"");
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let csv = fs::read_to_string(place(&folder, "p.csv")).expect("written");
+    for name in ["Measured (MERL), paper.binary", "Measured (MERL), gloss.binary"] {
+        assert!(csv.contains(name), "{}", &csv[..csv.len().min(400)]);
+    }
+}
+
+#[test]
+fn beside_a_measurement_the_colours_of_the_model_are_free_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let colour = |rgb: [u8; 3]| Values([("base_colour".into(), Value::Colour(rgb))].into());
+    write(&place(&folder, "paint.binary"), "lambert", &colour([200, 120, 40]));
+    let mut scene = read(folder.path(), "paint.binary").expect("legal");
+    scene.variants = vec![Variant { reflection_model: Some("lambert".to_owned()), ..Variant::default() }];
+    let text = save::to_json(&scene, None, &Registry::builtin());
+    fs::write(place(&folder, "room.json"), text).expect("writable");
+    let run = lcm_in(folder.path(), &["match", "room.json", "--json"], b"");
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let found: serde_json::Value = serde_json::from_str(&run.out).expect("JSON");
+    let rgb = found["values"]["base_colour"].as_array().expect("it was searched").clone();
+    let near = rgb.iter().zip([200.0, 120.0, 40.0]).all(|(a, b)| (a.as_f64().unwrap_or(0.0) - b).abs() < 3.0);
+    assert!(rgb.len() == 3 && near, "{found}");
+}
+
+#[test]
 fn a_brushed_measurement_is_shown_by_both_renderers_and_evaluated() {
     let folder = tempfile::tempdir().expect("a folder");
     let scene_of = |name: &str, along: f32, across: f32| {
