@@ -195,7 +195,7 @@ fn sections() -> Vec<(&'static str, Vec<(&'static str, String)>)> {
             ],
         ),
         ("README.md", vec![("window.rs", example("window.rs", "rust"))]),
-        ("docs/README.md", vec![("window.rs", example("window.rs", "rust"))]),
+        ("docs/extending.md", vec![("window.rs", example("window.rs", "rust"))]),
         ("docs/architecture.md", vec![("modules", modules())]),
     ]
 }
