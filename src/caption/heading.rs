@@ -6,7 +6,7 @@ use super::{
     words::{differing, exposure, groups, shadings, spread, terms_alone},
 };
 use crate::{
-    optics::{colour::Encoding, tone::ToneMapping},
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::ParameterKind,
     registry::Registry,
     scene::{Scene, variant::LETTERS},
@@ -24,20 +24,26 @@ pub fn header(scene: &Scene, view: usize, registry: &Registry) -> String {
 #[must_use]
 pub fn header_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part> {
     let letter = LETTERS.get(view).copied().unwrap_or_default();
-    let parts = view_parts(scene, view, registry);
+    let terms = scene.overrides(view).and_then(|variant| variant.terms).unwrap_or_default();
+    let parts = view_parts(scene, (view, terms), registry);
     let letter = (!parts.is_empty()).then(|| Part::new(0, letter));
     letter.into_iter().chain(parts).collect()
 }
 
-/// The heading of a view without its letter.
+/// The heading of a view that shows these terms, without its letter.
 #[must_use]
-pub fn view_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part> {
-    parts_of(scene, view, &Said::in_heading(scene, view), registry)
+pub fn view_parts(scene: &Scene, view: (usize, TermSelection), registry: &Registry) -> Vec<Part> {
+    parts_of(scene, view, &Said::in_heading(scene, view.0), registry)
 }
 
-/// The parts of a view's caption, as selected by `said`.
-pub(super) fn parts_of(scene: &Scene, view: usize, said: &Said, registry: &Registry) -> Vec<Part> {
-    let Some((seen, terms)) = scene.seen(view, registry) else { return Vec::new() };
+/// The parts of the caption of a view that shows these terms, as selected by `said`.
+pub(super) fn parts_of(
+    scene: &Scene,
+    (view, terms): (usize, TermSelection),
+    said: &Said,
+    registry: &Registry,
+) -> Vec<Part> {
+    let Some((seen, _)) = scene.seen(view, registry) else { return Vec::new() };
     let mut parts = Vec::new();
     let mut say = |text: String| parts.push(Part::new(0, text).continued());
     let groups = groups(&seen);
@@ -124,7 +130,6 @@ fn tessellation(seen: &Scene, registry: &Registry) -> Option<String> {
 mod tests {
     use super::*;
     use crate::{
-        optics::TermSelection,
         parameter::{Value, Values},
         scene::{Display, Variant},
     };

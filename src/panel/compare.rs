@@ -209,7 +209,7 @@ fn fitting(ui: &Ui, mut parts: Vec<Part>, size: f32, ink: Color32, room: f32) ->
 
 /// A view in words: its name, unless the description already contains it, and its description.
 fn in_parts(session: &Session, view: usize, registry: &Registry) -> Vec<Part> {
-    let shown = view_parts(&session.document, view, registry);
+    let shown = view_parts(&session.document, (view, session.terms_of(view)), registry);
     let said = line(&shown).to_lowercase();
     let name = view.checked_sub(1).and_then(|i| session.document.variants.get(i)?.name.as_deref());
     let name = name.filter(|name| !said.contains(&name.to_lowercase()));

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
     caption::header,
     channel::DebugChannel,
@@ -12,15 +12,17 @@ use lights_camera_models::{
     panel::marks::Lens,
     panel::state::{Action, Clipping, CompareCommand, Converging, Numbers, Session, ViewChange},
     parameter::{Value, Values},
+    registry::Registry,
     scene::{
         Comparison, Part, Scene, Variant,
         comparison::{Compared, Layout},
+        examples::EXAMPLES,
     },
 };
 
 use crate::{
     helpers::screen::{Picture, Screen},
-    window::panels::Bench,
+    window::panels::{Bench, Seen},
 };
 
 /// A red sphere that view B shows in blue.
@@ -379,7 +381,7 @@ fn each_view_has_its_badges_in_every_layout() {
         bench.apply(Action::Edit(terms));
         bench.session.facts.clipping = [clipped(2), clipped(20), None, None];
         bench.settle();
-        let is_sign = |s: &&crate::window::panels::Seen| s.label.contains(" · Clipped: ");
+        let is_sign = |s: &&Seen| s.label.contains(" · Clipped: ");
         let mut all: Vec<_> = bench.tree.iter().filter(is_sign).cloned().collect();
         all.sort_by_key(|sign| sign.label.clone());
         let letters: String = all.iter().filter_map(|s| s.label.chars().next()).collect();
@@ -547,6 +549,34 @@ fn a_presentation_of_two_views_says_both_and_their_difference_and_covers_nothing
     }
 }
 
+/// A scene that comes with the program, in a window of 1280 × 720 pixels.
+fn shipped(file: &str) -> Bench {
+    let example = EXAMPLES.iter().find(|example| example.file == file).expect("shipped");
+    let mut bench = Bench::new(Session::new(example.scene(&Registry::builtin()).expect("it is valid")));
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    bench
+}
+
+#[test]
+fn headings_say_the_terms_that_their_views_show() {
+    let mut bench = shipped("compare_phong_blinn_phong.json");
+    bench.letter(Key::T, "t");
+    bench.letter(Key::T, "t");
+    assert_eq!(bench.session.terms_of(0), TermSelection::Diffuse);
+    click(&mut bench, "B · Only the diffuse term");
+    for presenting in [false, true] {
+        bench.apply(Action::View(ViewChange::Presenting(presenting)));
+        let heading = |view: &str| {
+            let is = |s: &&Seen| s.role == Role::RadioButton && s.label.starts_with(view);
+            &bench.tree.iter().find(is).expect("its heading").label
+        };
+        let (a, b) = (heading("View A: "), heading("View B: "));
+        assert!(a.contains("diffuse term alone") && !a.contains("all terms"), "{a}");
+        assert!(b.contains("all terms"), "{b}");
+    }
+}
+
 #[test]
 fn headings_of_compared_views_say_the_same_things() {
     let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
@@ -557,7 +587,7 @@ fn headings_of_compared_views_say_the_same_things() {
         Variant { exposure: Some(1.0), ..Variant::default() },
         Variant::default(),
     ];
-    let registry = lights_camera_models::registry::Registry::builtin();
+    let registry = Registry::builtin();
     let said: Vec<_> = (0..4).map(|view| header(&scene, view, &registry)).collect();
     assert_eq!(said, ["A · α 32, 0 EV", "B · α 80, 0 EV", "C · α 32, +1 EV", "D · as A"]);
 }
