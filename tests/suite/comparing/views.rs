@@ -559,6 +559,27 @@ fn shipped(file: &str) -> Bench {
 }
 
 #[test]
+fn headings_keep_what_differs_and_drop_the_same_where_space_is_short() {
+    let mut said = Vec::new();
+    for scale in [100, 150, 200] {
+        let mut bench = shipped("compare_phong_blinn_phong.json");
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        let headings = [0, 1].map(|i| {
+            let place = bench.area.cells[i].rect;
+            let above = Rect::from_min_max(place.min - vec2(0.0, 28.0), place.right_top());
+            let texts = crate::window::layout::texts(&mut bench).into_iter();
+            texts.filter(|(_, rect)| above.contains(rect.center())).map(|(text, _)| text).collect::<Vec<_>>()
+        });
+        let has = |i: usize, words: &str| headings[i].iter().any(|text| text.contains(words));
+        assert!(has(0, "Phong") && has(1, "Blinn–Phong"), "{scale} %: {headings:?}");
+        assert_eq!(has(0, "0.05"), has(1, "0.05"), "{scale} %, k_a: {headings:?}");
+        assert_eq!(has(0, "15"), has(1, "60"), "{scale} %, α: {headings:?}");
+        said.push((has(0, "15"), has(0, "0.05")));
+    }
+    assert_eq!(said[..2], [(true, true), (true, false)], "α differs, and outlasts k_a");
+}
+
+#[test]
 fn headings_say_the_terms_that_their_views_show() {
     let mut bench = shipped("compare_phong_blinn_phong.json");
     bench.letter(Key::T, "t");
