@@ -559,6 +559,36 @@ fn shipped(file: &str) -> Bench {
 }
 
 #[test]
+fn a_presentation_of_two_views_shows_the_equations_of_both_on_the_same_baselines() {
+    for scale in [100, 200] {
+        let mut bench = shipped("compare_gold.json");
+        bench.size = vec2(1920.0, 1080.0);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let said: Vec<_> = bench.tree.iter().flat_map(|s| s.label.split("; ")).collect();
+        for total in ["I = I_a + I_d + I_s", "I = I_d + I_s"] {
+            assert!(said.contains(&total), "{scale} %: {total} is not among {said:?}");
+        }
+    }
+    // One of the lines has a power, and others stand beside it.
+    let mut bench = shipped("compare_phong_blinn_phong.json");
+    bench.size = vec2(1920.0, 1080.0);
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    let below = bench.area.cells[0].rect.bottom();
+    let mut lines: Vec<_> = (bench.shapes().into_iter())
+        .filter_map(|shape| match shape {
+            Shape::Text(text) if text.galley.text() == "=" && text.pos.y > below => Some(text.pos.y),
+            _ => None,
+        })
+        .collect();
+    lines.sort_by(f32::total_cmp);
+    assert_eq!(lines.len(), 8, "four definitions for each");
+    let steps: Vec<_> = lines.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert!(steps.iter().any(|step| *step < 0.5), "some stand side by side");
+    assert!(steps.iter().all(|step| *step < 0.5 || *step > 30.0), "{steps:?}");
+}
+
+#[test]
 fn headings_keep_what_differs_and_drop_the_same_where_space_is_short() {
     let mut said = Vec::new();
     for scale in [100, 150, 200] {
