@@ -10,6 +10,7 @@ use lights_camera_models::{
     document::Edit,
     optics::TermSelection,
     panel::marks::Lens,
+    panel::picture::letters_of_map,
     panel::state::{Action, Clipping, CompareCommand, Converging, Numbers, Session, ViewChange},
     parameter::{Value, Values},
     registry::Registry,
@@ -314,6 +315,24 @@ fn a_presentation_of_views_has_equation_and_caption_and_no_handles() {
         crate::window::layout::texts(&mut bench).into_iter().map(|(text, _)| text).collect();
     let written = written.join(" ");
     assert!(written.contains("A:") && written.contains("Phong"), "{written}");
+}
+
+#[test]
+fn the_legend_of_a_map_is_as_large_as_other_text() {
+    let mut bench = three();
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
+    for scale in [100, 150, 200] {
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        let zoom = bench.area.zoom;
+        let height = zoom * bench.area.map.expect("there is a map").height();
+        let letters = letters_of_map(&bench.area, height, false).expect("a legend");
+        assert!((letters - 11.5 * zoom).abs() < 0.1, "{scale} %: {letters}");
+    }
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    let height = bench.area.zoom * bench.area.map.expect("there is a map").height();
+    let letters = letters_of_map(&bench.area, height, true).expect("a legend");
+    assert!(letters > 0.03 * height, "{letters} of {height}");
 }
 
 #[test]
