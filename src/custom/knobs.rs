@@ -90,6 +90,7 @@ impl Reader<'_> {
             kind: kind?,
             used_when: self.used_when(&fields),
             stands_for,
+            costly: shared.is_some_and(|s| s.costly),
         };
         self.same_unit_elsewhere(named, &parameter);
         (self.mistakes.len() == before).then_some(parameter)
