@@ -94,10 +94,12 @@ pub fn show(ui: &mut Ui, arrangement: &Arrangement, context: &mut PanelContext<'
         }
     }
     if let Some(rect) = arrangement.vacant {
-        let font = TextStyle::Body.resolve(ui.style());
         ui.painter().rect_filled(rect, 0.0, palette.panel);
-        let words = format!("{} adds a view", keys::word(ui.ctx(), "add_view"));
-        ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, font, palette.weak);
+        if !session.view.presenting {
+            let font = TextStyle::Body.resolve(ui.style());
+            let words = format!("{} adds a view", keys::word(ui.ctx(), "add_view"));
+            ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, font, palette.weak);
+        }
         places.push(rect);
     }
     if several && !session.view.presenting {

@@ -608,6 +608,16 @@ fn a_presentation_of_two_views_shows_the_equations_of_both_on_the_same_baselines
 }
 
 #[test]
+fn the_empty_place_beside_three_views_says_nothing_in_a_presentation() {
+    let mut bench = bench();
+    (0..2).for_each(|_| bench.apply(Action::Compare(CompareCommand::Add)));
+    let said = |bench: &mut Bench| bench.texts().iter().any(|text| text.ends_with("adds a view"));
+    assert!(said(&mut bench));
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    assert!(!said(&mut bench));
+}
+
+#[test]
 fn headings_keep_what_differs_and_drop_the_same_where_space_is_short() {
     let mut said = Vec::new();
     for scale in [100, 150, 200] {
