@@ -6,11 +6,20 @@ use super::{
     words::{differing, exposure, groups, shadings, spread, terms_alone},
 };
 use crate::{
-    optics::{colour::Encoding, tone::ToneMapping},
+    optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     parameter::ParameterKind,
     registry::Registry,
     scene::{Scene, variant::LETTERS},
 };
+
+/// Ranks of the parts of a heading.
+const MODEL: u8 = 1;
+const SHADING: u8 = 2;
+const DIFFERS: u8 = 3;
+const DISPLAY: u8 = DIFFERS + MOST + 1;
+const SAME: u8 = DISPLAY + 1;
+/// Maximum number of parameters with ranks of their own.
+const MOST: u8 = 120;
 
 /// The heading of a view in one line: "B · Phong, α 27". It gives every value that any view overrides, so
 /// that all headings give the same ones, and "as A" for a view that overrides nothing. Empty if the view does
@@ -20,26 +29,33 @@ pub fn header(scene: &Scene, view: usize, registry: &Registry) -> String {
     line(&header_parts(scene, view, registry))
 }
 
-/// The heading of a view, in parts.
+/// The heading of a view, in parts, of which none may be dropped.
 #[must_use]
 pub fn header_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part> {
     let letter = LETTERS.get(view).copied().unwrap_or_default();
-    let parts = view_parts(scene, view, registry);
+    let terms = scene.overrides(view).and_then(|variant| variant.terms).unwrap_or_default();
+    let parts = view_parts(scene, (view, terms), registry);
     let letter = (!parts.is_empty()).then(|| Part::new(0, letter));
-    letter.into_iter().chain(parts).collect()
+    letter.into_iter().chain(parts.into_iter().map(|part| Part { rank: 0, ..part })).collect()
 }
 
-/// The heading of a view without its letter.
+/// The heading of a view that shows these terms, without its letter. What differs between views comes first, and parts
+/// about the same have the same rank in all headings.
 #[must_use]
-pub fn view_parts(scene: &Scene, view: usize, registry: &Registry) -> Vec<Part> {
-    parts_of(scene, view, &Said::in_heading(scene, view), registry)
+pub fn view_parts(scene: &Scene, view: (usize, TermSelection), registry: &Registry) -> Vec<Part> {
+    parts_of(scene, view, &Said::in_heading(scene, view.0), registry)
 }
 
-/// The parts of a view's caption, as selected by `said`.
-pub(super) fn parts_of(scene: &Scene, view: usize, said: &Said, registry: &Registry) -> Vec<Part> {
-    let Some((seen, terms)) = scene.seen(view, registry) else { return Vec::new() };
+/// The parts of the caption of a view that shows these terms, as selected by `said`.
+pub(super) fn parts_of(
+    scene: &Scene,
+    (view, terms): (usize, TermSelection),
+    said: &Said,
+    registry: &Registry,
+) -> Vec<Part> {
+    let Some((seen, _)) = scene.seen(view, registry) else { return Vec::new() };
     let mut parts = Vec::new();
-    let mut say = |text: String| parts.push(Part::new(0, text).continued());
+    let mut say = |rank, text: String| parts.push(Part::new(rank, text).continued());
     let groups = groups(&seen);
     let model =
         |id: &str| registry.model(id).map_or_else(|| id.to_owned(), |m| m.declaration.name.to_owned());
@@ -49,15 +65,15 @@ pub(super) fn parts_of(scene: &Scene, view: usize, said: &Said, registry: &Regis
         several => format!("{} models", several.len()),
     };
     if said.over.reflection_model.is_some() {
-        say(models());
+        say(MODEL, models());
     }
     if said.over.shading_model.is_some()
         && let Some(names) = shadings(&seen, registry)
     {
-        say(format!("{names} shading"));
+        say(SHADING, format!("{names} shading"));
     }
     parts.extend(values(&seen, said, registry));
-    let mut say = |text: String| parts.push(Part::new(0, text).continued());
+    let mut say = |text: String| parts.push(Part::new(DISPLAY, text).continued());
     if said.over.terms.is_some() {
         say(terms_alone(terms).map_or_else(|| "all terms".to_owned(), |part| part.text));
     }
@@ -80,6 +96,7 @@ pub(super) fn parts_of(scene: &Scene, view: usize, said: &Said, registry: &Regis
     if parts.is_empty() {
         parts.push(Part::new(0, if view == 0 { models() } else { "as A".to_owned() }));
     }
+    parts.sort_by_key(|part| part.rank);
     parts[0].continues = false;
     let name = view.checked_sub(1).and_then(|i| scene.variants.get(i)?.name.clone());
     // A name that repeats the first words adds nothing.
@@ -88,7 +105,7 @@ pub(super) fn parts_of(scene: &Scene, view: usize, said: &Said, registry: &Regis
     name.map(|name| Part::new(0, name)).into_iter().chain(parts).collect()
 }
 
-/// The values in a heading.
+/// The values in a heading, ranked in the order in which models declare them.
 fn values(seen: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for (id, objects) in groups(seen) {
@@ -105,8 +122,12 @@ fn values(seen: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
                 continue;
             }
             let part = spread(model, parameter, &objects).and_then(|spread| spread.part(parameter, ""));
+            let at = registry.material_parameters().position(|known| known.name == parameter.name);
+            let least = if said.over.material.0.contains_key(parameter.name) { DIFFERS } else { SAME };
+            let rank = least + at.map_or(MOST, |at| at.min(MOST.into()) as u8);
+            let part = part.map(|part| Part { rank, ..part.continued() });
             // Several models may share a parameter.
-            parts.extend(part.map(Part::continued).filter(|part| !parts.contains(part)));
+            parts.extend(part.filter(|part| !parts.contains(part)));
         }
     }
     parts
@@ -124,7 +145,6 @@ fn tessellation(seen: &Scene, registry: &Registry) -> Option<String> {
 mod tests {
     use super::*;
     use crate::{
-        optics::TermSelection,
         parameter::{Value, Values},
         scene::{Display, Variant},
     };

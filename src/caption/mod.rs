@@ -81,16 +81,13 @@ fn of_seen(
     Caption { title: title(scene, view), ..caption }
 }
 
-/// The caption of a picture with several views: first the common facts, then the differences of each. `terms`
-/// are the terms shown in every view that does not set others.
+/// The caption of a picture with several views, each with the terms that it shows: first the common facts, then
+/// the differences of each.
 #[must_use]
-pub fn of_views(
-    scene: &Scene,
-    views: &[usize],
-    terms: Option<TermSelection>,
-    registry: &Registry,
-) -> Caption {
+pub fn of_views(scene: &Scene, views: &[(usize, TermSelection)], registry: &Registry) -> Caption {
     let said = Said::of(scene, 0);
+    let terms = views.first().map(|(_, terms)| *terms);
+    let terms = terms.filter(|terms| views.iter().all(|(_, own)| own == terms));
     let mut facts = words::surfaces(scene, &said, registry);
     facts.extend(terms.and_then(terms_alone));
     let (mut shared, usual) = (scene.display, Display::default());
@@ -100,12 +97,12 @@ pub fn of_views(
     }
     facts.extend(display(shared));
     for view in views {
-        let mut of_view = Said::of(scene, *view);
+        let mut of_view = Said::of(scene, view.0);
         of_view.over.terms.take_if(|_| terms.is_some());
         // The values are given nowhere else.
         (of_view.values, of_view.colours) = (said.over.reflection_model.is_some(), true);
         let parts = heading::parts_of(scene, *view, &of_view, registry);
-        let letter = LETTERS.get(*view).copied().unwrap_or_default();
+        let letter = LETTERS.get(view.0).copied().unwrap_or_default();
         facts.push(Part::new(0, format!("{letter}:")));
         facts.extend(parts.into_iter().map(|part| Part { rank: 0, ..part.continued() }));
     }
@@ -118,10 +115,8 @@ pub fn of_picture(scene: &Scene, shown: &[(usize, &Scene, TermSelection)], regis
     match shown {
         [one] => of_seen(scene, *one, registry),
         all => {
-            let views: Vec<_> = all.iter().map(|(view, ..)| *view).collect();
-            let terms = all.first().map(|(.., terms)| *terms);
-            let terms = terms.filter(|terms| all.iter().all(|(.., own)| own == terms));
-            let caption = of_views(scene, &views, terms, registry);
+            let views: Vec<_> = all.iter().map(|(view, _, terms)| (*view, *terms)).collect();
+            let caption = of_views(scene, &views, registry);
             // The background may be of the picture alone.
             let ground = all.first().map_or(caption.ground, |(_, seen, _)| Ground::of(&seen.display));
             Caption { ground, ..caption }
@@ -239,25 +234,30 @@ mod tests {
             ..Variant::default()
         };
         scene.variants = vec![sharp, terms];
-        let said = |scene: &Scene, views: &[usize], terms| {
-            line(&of_views(scene, views, terms, &Registry::builtin()).facts)
+        let said = |scene: &Scene, views: &[(usize, TermSelection)]| {
+            line(&of_views(scene, views, &Registry::builtin()).facts)
         };
+        let [all, highlight] = [TermSelection::All, TermSelection::Specular];
         let common = "Phong · Gouraud shading · k_s = 0.25";
         let [a, b] = ["A: α 20, all terms, no tone mapping", "B: α 80, AgX"];
         assert_eq!(
-            said(&scene, &[0, 1, 2], None),
+            said(&scene, &[(0, all), (1, all), (2, highlight)]),
             format!("{common} · +1 EV · {a} · {b} · C: Highlight, specular term alone")
         );
         // Terms shared by all views are given once.
+        let diffuse = TermSelection::Diffuse;
         assert_eq!(
-            said(&scene, &[0, 1], Some(TermSelection::Diffuse)),
+            said(&scene, &[(0, diffuse), (1, diffuse)]),
             format!("{common} · diffuse term alone · +1 EV · A: α 20, no tone mapping · B: α 80, AgX")
         );
+        // Those of A are the window's.
+        let both = said(&scene, &[(0, diffuse), (2, highlight)]);
+        assert!(both.contains("A: α 20, diffuse term alone, no tone mapping"), "{both}");
         // Different models have only the display and the shading in common.
         scene.variants[1].reflection_model = Some("blinn_phong".to_owned());
-        let all = said(&scene, &[0, 2], None);
-        assert!(all.starts_with("Gouraud shading · +1 EV · A: Phong, k_s 0.25, α 20, "), "{all}");
-        assert!(all.ends_with(" · C: Highlight, Blinn–Phong, k_s 0.25, α 20, specular term alone"), "{all}");
+        let all = said(&scene, &[(0, all), (2, highlight)]);
+        assert!(all.contains("+1 EV · A: Phong, α 20, all terms, no tone mapping, k_s 0.25 · "), "{all}");
+        assert!(all.ends_with(" · C: Highlight, Blinn–Phong, specular term alone, k_s 0.25, α 20"), "{all}");
     }
 
     #[test]

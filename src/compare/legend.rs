@@ -15,6 +15,9 @@ use crate::{
     text::trimmed,
 };
 
+/// Size of the letters of a legend at scale 1.
+const LETTERS_PX: f32 = 16.0;
+
 /// The value at full scale.
 pub(super) fn full(values: Compared) -> f32 {
     match values {
@@ -81,25 +84,20 @@ pub(super) struct Plate<'a> {
 }
 
 impl<'a> Plate<'a> {
-    /// Lays out a legend, with so many gaps above the bar and below its numbers; a title that is too wide is broken into
-    /// lines. `None` without room.
-    pub(super) fn new(
-        canvas: &Canvas,
-        [across, down]: [u32; 2],
-        legend: &'a Legend,
-        gaps: u32,
-    ) -> Option<Self> {
-        let Legend { title, scale, colours } = legend;
-        let (px, style) = (16.0 * canvas.scale(), Lettering::Regular);
-        let [margin, gap, bar] = [10.0, 4.0, 14.0].map(|v| (v * canvas.scale()).round() as u32);
+    /// Lays out a legend at a scale, with so many gaps above the bar and below its numbers; a title that is too wide is
+    /// broken into lines. `None` without room.
+    pub(super) fn new(scale: f32, [across, down]: [u32; 2], legend: &'a Legend, gaps: u32) -> Option<Self> {
+        let Legend { title, scale: numbers, colours } = legend;
+        let (px, style) = (LETTERS_PX * scale, Lettering::Regular);
+        let [margin, gap, bar] = [10.0, 4.0, 14.0].map(|v| (v * scale).round() as u32);
         let line = style.height(px);
         let of_colours = colours.iter().map(|(_, text)| bar + 2 * gap + style.width(px, text));
         let of_numbers =
             |numbers: &[String; 3]| numbers.iter().map(|n| style.width(px, n)).sum::<u32>() + 4 * gap;
-        let least = of_colours.fold(scale.as_ref().map_or(0, of_numbers), u32::max);
+        let least = of_colours.fold(numbers.as_ref().map_or(0, of_numbers), u32::max);
         let width = style.width(px, title).max(least).min(across.saturating_sub(4 * margin));
         let title = style.lines(px, title, width, 3);
-        let of_scale = scale.as_ref().map_or(0, |_| gaps * gap + bar + line);
+        let of_scale = numbers.as_ref().map_or(0, |_| gaps * gap + bar + line);
         let height = line * (title.len() + colours.len()) as u32 + of_scale;
         let is_wide = title.iter().any(|text| style.width(px, text) > width);
         let fits = width > 0 && width >= least && !is_wide && height + 4 * margin <= down;
@@ -152,7 +150,7 @@ pub fn legend_alone(
 ) -> Vec<u8> {
     let mut canvas = Canvas { size, rgb8: ground.repeat(size[0] as usize * size[1] as usize) };
     let legend = legend_between(comparison, amplification, names.each_ref().map(String::as_str));
-    if let Some(plate) = Plate::new(&canvas, size, &legend, 1) {
+    if let Some(plate) = Plate::new(canvas.scale(), size, &legend, 1) {
         let [width, height] = plate.size;
         let place = [(size[0] - width) / 2, (size[1] - height) / 2, width, height];
         plate.draw(&mut canvas, place, |at| Colours::of(comparison.sign).at(at));
@@ -160,10 +158,19 @@ pub fn legend_alone(
     canvas.rgb8
 }
 
-/// Draws the legend in a lower corner where it does not cover the largest difference, if there is room.
-pub(super) fn draw(canvas: &mut Canvas, comparison: &Comparison, factor: f32, largest: Option<&Largest>) {
+/// Draws the legend in a lower corner where it does not cover the largest difference, if there is room; in letters of
+/// `px` pixels, if there is room for them.
+pub(super) fn draw(
+    canvas: &mut Canvas,
+    comparison: &Comparison,
+    factor: f32,
+    largest: Option<&Largest>,
+    px: Option<f32>,
+) {
     let legend = legend_of(comparison, factor);
-    let Some(plate) = Plate::new(canvas, canvas.size, &legend, 1) else { return };
+    let scaled = |scale: f32| Plate::new(scale, canvas.size, &legend, 1);
+    let wanted = px.and_then(|px| scaled(px / LETTERS_PX));
+    let Some(plate) = wanted.or_else(|| scaled(canvas.scale())) else { return };
     let [across, down] = canvas.size;
     let place = |at_right| in_corner([0, 0, across, down], [at_right, true], plate.size, plate.margin);
     let hides = |[left, top, width, height]: Rect, mark: &Largest| {

@@ -48,9 +48,17 @@ impl Pair<'_> {
     /// # Errors
     /// Returns an error if light is to be compared, and one picture has none.
     pub fn map(&self, comparison: &Comparison) -> Result<Vec<u8>, Unequal> {
+        self.map_in_letters(comparison, None)
+    }
+
+    /// Like [`map`](Self::map), with a legend in letters of `px` pixels, if there is room for them.
+    ///
+    /// # Errors
+    /// Returns the errors of [`map`](Self::map).
+    pub fn map_in_letters(&self, comparison: &Comparison, px: Option<f32>) -> Result<Vec<u8>, Unequal> {
         let (mut canvas, differences) = self.marked(comparison)?;
         let factor = differences.amplification(comparison);
-        legend::draw(&mut canvas, comparison, factor, differences.largest.as_ref());
+        legend::draw(&mut canvas, comparison, factor, differences.largest.as_ref(), px);
         Ok(canvas.rgb8)
     }
 

@@ -1,5 +1,7 @@
 //! The views of a comparison in the picture: their arrangement, headers, and the edge of a wipe.
 
+use std::collections::BTreeSet;
+
 use bevy_egui::egui::Layout as Direction;
 
 mod bar;
@@ -78,9 +80,11 @@ pub fn show(ui: &mut Ui, arrangement: &Arrangement, context: &mut PanelContext<'
     }
     let palette = Palette::here(ui);
     let several = arrangement.cells.len() > 1;
-    for (view, rect) in &arrangement.headers {
+    let headers = arrangement.headers.iter();
+    let said: Vec<_> = headers.map(|(view, _)| in_parts(session, *view, context.registry())).collect();
+    for (i, (view, rect)) in arrangement.headers.iter().enumerate() {
         places.push(*rect);
-        header(ui, *view, *rect, several, context);
+        header(ui, (*view, *rect), (&said, i), several, context);
     }
     let comparison = &session.document.comparison;
     if several && comparison.layout.is_beside() {
@@ -90,10 +94,12 @@ pub fn show(ui: &mut Ui, arrangement: &Arrangement, context: &mut PanelContext<'
         }
     }
     if let Some(rect) = arrangement.vacant {
-        let font = TextStyle::Body.resolve(ui.style());
         ui.painter().rect_filled(rect, 0.0, palette.panel);
-        let words = format!("{} adds a view", keys::word(ui.ctx(), "add_view"));
-        ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, font, palette.weak);
+        if !session.view.presenting {
+            let font = TextStyle::Body.resolve(ui.style());
+            let words = format!("{} adds a view", keys::word(ui.ctx(), "add_view"));
+            ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, font, palette.weak);
+        }
         places.push(rect);
     }
     if several && !session.view.presenting {
@@ -106,8 +112,14 @@ pub fn show(ui: &mut Ui, arrangement: &Arrangement, context: &mut PanelContext<'
     places
 }
 
-/// Header of a view: its letter, its difference from A, and its menu.
-fn header(ui: &mut Ui, view: usize, rect: Rect, several: bool, context: &mut PanelContext<'_>) {
+/// Header of a view: its letter, its difference from A, and its menu. `said` is what all headers say, and its place in it.
+fn header(
+    ui: &mut Ui,
+    (view, rect): (usize, Rect),
+    said: (&[Vec<Part>], usize),
+    several: bool,
+    context: &mut PanelContext<'_>,
+) {
     let session = context.session();
     let palette = Palette::here(ui);
     let active = session.active() == view;
@@ -116,8 +128,7 @@ fn header(ui: &mut Ui, view: usize, rect: Rect, several: bool, context: &mut Pan
     let stroke = Stroke::new(if active { 2.0 } else { 1.0 }, rule);
     ui.painter().hline(rect.x_range(), rect.bottom() - 1.0, stroke);
     let letter = LETTERS[view.min(MAX_VARIANTS)];
-    let parts = in_parts(session, view, context.registry());
-    let text = line(&parts);
+    let text = line(&said.0[said.1]);
     let click = ui.interact(rect, Id::new(("view header", view)), Sense::click());
     theme::says_chosen(&click, WidgetType::RadioButton, active, format!("View {letter}: {text}"));
     context.on_click(&click, || Action::Compare(CompareCommand::Activate(view)));
@@ -130,7 +141,7 @@ fn header(ui: &mut Ui, view: usize, rect: Rect, several: bool, context: &mut Pan
             switches(ui, view, context);
         }
         ui.with_layout(Direction::left_to_right(Align::Center), |ui| {
-            title(ui, rect, view, parts, &text, session);
+            title(ui, (view, rect), said, &text, session);
         });
     });
     theme::tip(click, 320.0, |ui| {
@@ -156,7 +167,13 @@ fn switches(ui: &mut Ui, view: usize, context: &mut PanelContext<'_>) {
 }
 
 /// The letter of a view, and how it differs from A.
-fn title(ui: &mut Ui, header: Rect, view: usize, parts: Vec<Part>, text: &str, session: &Session) {
+fn title(
+    ui: &mut Ui,
+    (view, header): (usize, Rect),
+    (said, at): (&[Vec<Part>], usize),
+    text: &str,
+    session: &Session,
+) {
     let palette = Palette::here(ui);
     let comparison = &session.document.comparison;
     // When views alternate, the visible one stands out.
@@ -174,42 +191,46 @@ fn title(ui: &mut Ui, header: Rect, view: usize, parts: Vec<Part>, text: &str, s
     let letter = LETTERS[view.min(MAX_VARIANTS)];
     ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, on);
     let room = (ui.max_rect().width() - 30.0 * scale).max(0.0);
-    let at = badge.right_center() + vec2(8.0, 0.0) * scale;
+    let left = badge.right_center() + vec2(8.0, 0.0) * scale;
     // With symbols as in the equation, if there is room. A presentation says the rest below.
-    let dots = theme::elided(ui, ", …", FontId::proportional(size), ink, room);
-    let less = if session.view.presenting { 0.0 } else { dots.size().x };
-    let all = parts.len();
-    let parts = fitting(ui, parts, size, ink, room - less);
-    let cut = parts.len() < all && !session.view.presenting;
+    let rank = rank_that_fits(said, |parts| {
+        let lines = Lines::within(ui, parts, size, ink, room, 1);
+        lines.size.y < 1.9 * size && lines.size.x <= room
+    });
+    let parts = up_to(&said[at], rank);
+    let cut = parts.len() < said[at].len() && !session.view.presenting;
     let lines = Lines::within(ui, parts, size, ink, room, 1);
     if lines.size.y < 1.9 * size && lines.size.x <= room {
-        let place = Align2::LEFT_CENTER.anchor_size(at, lines.size);
-        if cut {
+        let place = Align2::LEFT_CENTER.anchor_size(left, lines.size);
+        let dots = theme::elided(ui, ", …", FontId::proportional(size), ink, room);
+        if cut && lines.size.x + dots.size().x <= room {
             ui.painter().galley(place.right_top(), dots, ink);
         }
         lines.paint(ui, place.min, ink);
     } else {
         let galley = theme::elided(ui, text, FontId::proportional(size), ink, room);
-        let at = Align2::LEFT_CENTER.anchor_size(at, galley.size());
+        let at = Align2::LEFT_CENTER.anchor_size(left, galley.size());
         ui.painter().galley(at.min, galley, ink);
     }
 }
 
-/// The leading parts that fit into one line.
-fn fitting(ui: &Ui, mut parts: Vec<Part>, size: f32, ink: Color32, room: f32) -> Vec<Part> {
-    while parts.len() > 1 {
-        let lines = Lines::within(ui, parts.clone(), size, ink, room, 1);
-        if lines.size.y < 1.9 * size && lines.size.x <= room {
-            break;
-        }
-        parts.pop();
-    }
-    parts
+/// The rank up to which the parts of every header fit, so that all headers say the same things; each keeps its first part.
+fn rank_that_fits(said: &[Vec<Part>], fits: impl Fn(Vec<Part>) -> bool) -> u8 {
+    let least = said.iter().filter_map(|parts| Some(parts.first()?.rank)).max().unwrap_or_default();
+    let ranks: BTreeSet<_> = said.iter().flatten().map(|part| part.rank).filter(|r| *r > least).collect();
+    let whole = |rank: &u8| said.iter().all(|parts| fits(up_to(parts, *rank)));
+    ranks.into_iter().rev().find(whole).unwrap_or(least)
+}
+
+/// The parts up to a rank, none of which may be dropped.
+fn up_to(parts: &[Part], rank: u8) -> Vec<Part> {
+    let within = parts.iter().filter(|part| part.rank <= rank);
+    within.map(|part| Part { rank: 0, ..part.clone() }).collect()
 }
 
 /// A view in words: its name, unless the description already contains it, and its description.
 fn in_parts(session: &Session, view: usize, registry: &Registry) -> Vec<Part> {
-    let shown = view_parts(&session.document, view, registry);
+    let shown = view_parts(&session.document, (view, session.terms_of(view)), registry);
     let said = line(&shown).to_lowercase();
     let name = view.checked_sub(1).and_then(|i| session.document.variants.get(i)?.name.as_deref());
     let name = name.filter(|name| !said.contains(&name.to_lowercase()));

@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use bevy_egui::egui::{Event, LayerId, Modifiers, Order, containers::panel::PanelState};
+use bevy_egui::egui::{Event, LayerId, Margin, Modifiers, Order, containers::panel::PanelState};
 use egui_file_dialog::{DialogMode, DialogState, FileDialog, FileDialogLabels, FileDialogStorage};
 
 use super::{
@@ -79,9 +79,9 @@ fn picker(title: &str) -> FileDialog {
 
 /// Makes a dialog offer the formats of scenes, starting with that of `file`, which may not exist yet.
 fn offering(mut dialog: FileDialog, file: &Path, registry: &Registry) -> FileDialog {
+    // There is no room for all extensions.
+    let filter = "Scenes".to_owned();
     let extensions = formats::extensions(registry);
-    let all: Vec<_> = extensions.iter().map(|extension| format!("*.{extension}")).collect();
-    let filter = format!("Scenes ({})", all.join(", "));
     let mut config = std::mem::take(dialog.config_mut()).add_file_filter_extensions(&filter, extensions);
     // The dialog shows the extension itself, and appends it to what is typed.
     let name = |format: &dyn SceneFormat| match format.name() {
@@ -251,10 +251,15 @@ impl Dialogs {
         }
         self.pass_keys_on(ctx);
         let plain = ctx.global_style();
-        let palette = Palette::of(&session.settings);
+        let (palette, narrow) = (Palette::of(&session.settings), is_narrow(ctx));
         ctx.global_style_mut(|style| {
             let selection = &mut style.visuals.selection;
             (selection.bg_fill, selection.stroke) = (palette.accent, Stroke::new(1.0, palette.panel));
+            // The buttons would seem to touch the edge of their panel.
+            style.visuals.panel_fill = style.visuals.window_fill;
+            if narrow {
+                style.spacing.window_margin = Margin::same(theme::UNIT as i8);
+            }
         });
         self.arrange(ctx);
         if self.asked == Some(Pick::Open) {
@@ -283,14 +288,12 @@ impl Dialogs {
     /// Fits the dialog to the window.
     fn arrange(&mut self, ctx: &Context) {
         let screen = ctx.content_rect().size();
-        let narrow = screen.x < NARROW;
+        let narrow = is_narrow(ctx);
         let size = if narrow { ALL } else { SHARE } * screen;
         let config = self.dialog.config_mut();
         (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
         // Leaves enough width for the buttons below the list.
         config.right_panel_width = Some(if narrow { 0.28 } else { 0.34 } * size.x);
-        // The confirm button repeats the title.
-        config.title_bar = !narrow;
     }
 
     /// Adds to the dialog, once shown, what it lacks.
@@ -365,6 +368,10 @@ impl Dialogs {
             input.events.retain(|_| !drop.next().unwrap_or(false));
         });
     }
+}
+
+fn is_narrow(ctx: &Context) -> bool {
+    ctx.content_rect().width() < NARROW
 }
 
 /// The areas of a dialog.

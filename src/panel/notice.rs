@@ -6,6 +6,8 @@ use super::{prelude::*, state::Messages};
 
 /// Time for which a message is shown, in seconds; twice as long for problems.
 const MOMENT: f64 = 5.0;
+/// Time for which the presentation says how to leave it, in seconds: it may cover an object.
+const HINT: f64 = 3.0;
 /// Maximum width, as a fraction of the picture.
 const WIDTH: f32 = 0.55;
 
@@ -46,7 +48,11 @@ pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, messages: &Messag
 
 /// Time for which a message is shown, in seconds.
 fn moment(severity: Option<Severity>) -> f64 {
-    if severity.is_some_and(|severity| severity > Severity::Info) { 2.0 * MOMENT } else { MOMENT }
+    match severity {
+        None => HINT,
+        Some(Severity::Info) => MOMENT,
+        Some(_) => 2.0 * MOMENT,
+    }
 }
 
 /// Redraws the panels after a number of seconds: nothing else wakes an idle window.

@@ -69,6 +69,14 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     context.picture = (area, places);
 }
 
+/// Size of the letters of the legend that a difference map contains, in pixels of the map, which is so many pixels high:
+/// as large as in other legends.
+#[must_use]
+pub fn letters_of_map(area: &PictureArea, height: f32, presenting: bool) -> Option<f32> {
+    let map = area.map?;
+    Some(if presenting { CAPTION * height } else { theme::SMALL * height / map.height() })
+}
+
 /// The overlays of a picture, as far as they are painted.
 struct Overlaid<'c, 'a> {
     context: &'c mut PanelContext<'a>,

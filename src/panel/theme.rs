@@ -132,7 +132,8 @@ pub fn scale_here(ui: &Ui) -> f32 {
 
 /// Opacity of scroll bars relative to the text's colour while the pointer is elsewhere.
 const SCROLL_BAR: f32 = 0.55;
-const SMALL: f32 = 11.5;
+/// Size of secondary text, in points.
+pub(super) const SMALL: f32 = 11.5;
 const BODY: f32 = 13.0;
 const HEADING: f32 = 16.0;
 

@@ -24,7 +24,10 @@ use crate::{
         short,
     },
     optics::TermSelection,
-    panel::state::{LARGEST, Numbers, Session},
+    panel::{
+        picture::letters_of_map,
+        state::{LARGEST, Numbers, Session},
+    },
     progress::Progress,
     registry::Registry,
     render::view::ViewSystems,
@@ -51,6 +54,8 @@ struct Question {
     /// The view compared with A.
     with: usize,
     size: UVec2,
+    /// Size of the letters of the legend, in pixels.
+    letters: Option<f32>,
     /// Number of pictures drawn of each view.
     drawn: [u64; 2],
     textures: [Handle<Image>; 2],
@@ -82,7 +87,7 @@ impl Question {
         let pair = Pair::new(&a, &b).ok()?;
         let largest = pair.differences(&Comparison { sign: Default::default(), ..comparison }).ok();
         let largest = largest.and_then(|d| d.largest).map(|l| (l.difference.abs(), [l.x, l.y]));
-        let map = is_map.then(|| pair.map(&comparison).ok()).flatten();
+        let map = is_map.then(|| pair.map_in_letters(&comparison, self.letters).ok()).flatten();
         Some(Answer { measured: pair.measure(), largest, map })
     }
 }
@@ -124,6 +129,7 @@ fn compare(
         map.0 = None;
         return forget(&mut comparing, &mut commands);
     };
+    let presenting = session.view.presenting;
     let rest = a.drawing.rests() && b.drawing.rests();
     if rest && let (Some(texture_a), Some(texture_b)) = (a.texture(), b.texture()) {
         comparing.ask(
@@ -132,6 +138,7 @@ fn compare(
                 comparison: Comparison { split: 0.0, ..comparison },
                 with,
                 size: a.view.size,
+                letters: views.area().and_then(|area| letters_of_map(area, a.view.size.y as f32, presenting)),
                 drawn: [a.drawing.drawn(), b.drawing.drawn()],
                 textures: [texture_a.clone(), texture_b.clone()],
             },

@@ -147,12 +147,17 @@ pub(super) struct ShownViews<'w, 's> {
 impl ShownViews<'_, '_> {
     /// Areas of the visible views; empty if there is only one view.
     pub(super) fn cells(&self) -> &[Cell] {
-        self.area.as_deref().map_or(&[], |area| &area.cells)
+        self.area().map_or(&[], |area| &area.cells)
+    }
+
+    /// Area of the picture.
+    pub(super) fn area(&self) -> Option<&PictureArea> {
+        self.area.as_deref()
     }
 
     /// The view with the given number.
     pub(super) fn find(&self, number: usize) -> Option<ShownView<'_>> {
-        let own = self.area.as_deref().map_or(0, first);
+        let own = self.area().map_or(0, first);
         let is = |other: Option<&OtherView>| other.map_or(own, |other| other.0) == number;
         let (entity, view, drawing, target, _) = self.views.iter().find(|(.., other)| is(*other))?;
         Some(ShownView { entity, view, drawing, target })

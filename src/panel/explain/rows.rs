@@ -235,7 +235,7 @@ pub(super) type Name<'a> = &'a dyn Fn(&str) -> Option<String>;
 
 /// An equation, symbolic or with numbers, over the remaining width.
 pub(super) fn equation(ui: &mut Ui, term: Term, line: &str, indent: bool, name: Name<'_>) {
-    let sizes = Sizes { column: true, even: true };
+    let sizes = Sizes { column: true, even: true, level: false };
     let line = &braced(line);
     indented(ui, if indent { INDENT } else { 0.0 }, |ui| {
         maths::equation_of(ui, &[(term, line)], sizes, name)

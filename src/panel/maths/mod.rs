@@ -50,6 +50,8 @@ pub struct Sizes {
     pub column: bool,
     /// True if terms are as small as definitions.
     pub even: bool,
+    /// True if lines are equally high with and without scripts, so that those of two columns share their baselines.
+    pub level: bool,
 }
 
 /// An equation, one line per definition, coloured by term. `name` gives the meaning of a symbol for its tooltip. The
@@ -103,7 +105,8 @@ pub(super) fn calculation(
 ) -> Option<String> {
     let palette = Palette::here(ui);
     let width = ui.available_width();
-    let (lines, height) = set(ui, &[(Term::Total, text)], Sizes { column: true, even: true }, width);
+    let (lines, height) =
+        set(ui, &[(Term::Total, text)], Sizes { column: true, even: true, level: false }, width);
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     theme::says(&response, WidgetType::Label, text);
     let mut clicked = None;
@@ -160,10 +163,15 @@ fn set(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, width: f32) -> Lines {
         let size = if alone { SIZE } else { size_of(*term, text) };
         let helper = size < SIZE;
         let size = if sizes.even { HELPER } else { size };
-        let leading = if helper { 6.0 } else { 8.0 };
+        let leading = if helper || sizes.level { 6.0 } else { 8.0 };
         let colour = if helper { palette.text } else { palette.term_text(*term) };
         let setter = Setter { ui, size: size * scale, colour, stacked: true, shrinks: !sizes.column };
-        for line in setter.lines(&formula::tree(text), width) {
+        let scripts = setter.row(&formula::tree("x_x^x"));
+        for mut line in setter.lines(&formula::tree(text), width) {
+            if sizes.level {
+                line.ascent = line.ascent.max(scripts.ascent);
+                line.descent = line.descent.max(scripts.descent);
+            }
             let baseline = height + line.ascent + 0.5 * leading * scale;
             height = baseline + line.descent + 0.5 * leading * scale;
             lines.push((line, baseline, colour));
@@ -179,6 +187,8 @@ pub struct Measured {
     pub width: f32,
     /// Height of all lines.
     pub height: f32,
+    /// Distance from the top to the baseline of the first line.
+    pub baseline: f32,
     /// The worst line break.
     pub broken: Break,
 }
@@ -189,7 +199,8 @@ pub fn measured(ui: &Ui, parts: &[(Term, &str)], sizes: Sizes, most: f32) -> Mea
     let (lines, height) = set(ui, parts, sizes, most);
     let width = lines.iter().map(|(line, ..)| line.width).fold(0.0, f32::max);
     let broken = lines.iter().map(|(line, ..)| line.broken).max().unwrap_or_default();
-    Measured { width, height, broken: if width > most { Break::Anywhere } else { broken } }
+    let baseline = lines.first().map_or(0.0, |(_, baseline, _)| *baseline);
+    Measured { width, height, baseline, broken: if width > most { Break::Anywhere } else { broken } }
 }
 
 /// Font size of the terms of an equation.

@@ -8,14 +8,17 @@ use crate::{
     caption::{Part, single},
     panel::{
         caption::{Lines, parts_of},
-        maths, notice,
+        maths::{self, Sizes},
+        notice,
         prelude::*,
     },
     scene::comparison::Layout,
 };
 
-/// Maximum height of all equations, as a fraction of the screen; larger equations are left out.
+/// Maximum height of all equations, as a fraction of the screen; larger ones become smaller, and end early.
 const MOST: f32 = 0.34;
+/// Size of equations for which there is no room otherwise.
+const SMALLER: f32 = 0.8;
 
 /// The texts about a view.
 #[derive(Clone, Debug)]
@@ -38,6 +41,8 @@ struct Set {
 pub struct Footer {
     sides: Vec<Side>,
     equations: Vec<Set>,
+    /// Size of the equations.
+    scale: f32,
     /// Upper left corners of the captions, and their width.
     captions: (Vec<Pos2>, f32),
     /// Distance from the top to the line with the statistics, if there is one.
@@ -87,8 +92,14 @@ impl Footer {
             |side: &Side| Lines::of(ui, side.parts.clone(), CAPTION * height, Palette::here(ui).text, half);
         let words = sides.iter().map(|side| words(side).size.y).fold(0.0, f32::max);
         let mut trial = ui.new_child(UiBuilder::new().id_salt("footer trial").max_rect(whole).invisible());
-        trial.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * height));
-        let (equations, high) = equations(&trial, &sides, [half, most], left, padding.y, MOST * height);
+        let room = Room { half, most, left, space: padding.y, limit: MOST * height };
+        let mut in_size = |scale: f32| {
+            let font = FontId::proportional(scale * BODY * height);
+            trial.style_mut().text_styles.insert(TextStyle::Body, font);
+            room.for_all(&trial, &sides).map(|all| (all, scale))
+        };
+        let all = in_size(1.0).or_else(|| in_size(SMALLER));
+        let ((equations, high), scale) = all.unwrap_or_else(|| (room.for_the_first(&trial, &sides), SMALLER));
         let mut at = padding.y;
         if high > 0.0 {
             at += high + padding.y;
@@ -99,7 +110,7 @@ impl Footer {
         if several {
             at += 1.3 * CAPTION * height + padding.y;
         }
-        Self { sides, equations, captions: (captions, half), numbers, height: at }
+        Self { sides, equations, scale, captions: (captions, half), numbers, height: at }
     }
 
     /// Paints the footer at the lower end of the screen.
@@ -112,7 +123,7 @@ impl Footer {
             let Side { equation, model, .. } = &self.sides[*side];
             let model = model.as_deref().and_then(|id| registry.model(id));
             ui.push_id(("equation", side), |ui| {
-                columns(ui, block, equation, model, place.min + at.to_vec2(), height);
+                columns(ui, block, equation, model, place.min + at.to_vec2(), self.scale * height);
             });
         }
         let (corners, width) = &self.captions;
@@ -131,51 +142,84 @@ impl Footer {
     }
 }
 
-/// The equations and their total height: side by side, or stacked if that is lower. An equation that both views share
-/// appears once; if there is no room for all, the highest is left out.
-fn equations(
-    ui: &Ui,
-    sides: &[Side],
-    [half, most]: [f32; 2],
+/// The room for equations.
+struct Room {
+    /// Width for one of two equations side by side.
+    half: f32,
+    /// Width for one equation.
+    most: f32,
+    /// Left edges of both sides.
     left: [f32; 2],
+    /// Space around equations.
     space: f32,
+    /// Maximum height of all equations.
     limit: f32,
-) -> (Vec<Set>, f32) {
+}
+
+impl Room {
+    /// The equations and their total height: side by side, or stacked if that is lower; `None` if they are too high.
+    fn for_all(&self, ui: &Ui, sides: &[Side]) -> Option<(Vec<Set>, f32)> {
+        let wanted = wanted(sides);
+        let blocks = |width: f32| wanted.iter().map(move |i| (*i, block(ui, &sides[*i].equation, width)));
+        let (narrow, wide): (Vec<_>, Vec<_>) = (blocks(self.half).collect(), blocks(self.most).collect());
+        let fits = narrow.iter().all(|(_, b)| b.size.x <= self.half + 1.0);
+        let above = wide.iter().map(|(_, b)| b.size.y + self.space).sum::<f32>() - self.space;
+        if wanted.len() > 1 && fits {
+            let beside = self.beside(narrow);
+            if beside.1 <= above.min(self.limit) {
+                return Some(beside);
+            }
+        }
+        let mut top = self.space;
+        let mut sets = Vec::new();
+        for (side, block) in wide {
+            let at = pos2(self.left[0], top);
+            top += block.size.y + self.space;
+            sets.push(Set { side, block, at });
+        }
+        (above <= self.limit).then_some((sets, above.max(0.0)))
+    }
+
+    /// The first definitions of each equation, as many as there is room for but at least one, and their height.
+    fn for_the_first(&self, ui: &Ui, sides: &[Side]) -> (Vec<Set>, f32) {
+        let wanted = wanted(sides);
+        let width = if wanted.len() > 1 { self.half } else { self.most };
+        let first = |i: usize| {
+            let all = &sides[i].equation;
+            let fits = |b: &Block| b.size.x <= width + 1.0 && b.size.y <= self.limit;
+            let more = (2..=all.len()).map(|count| block(ui, &all[..count], width)).take_while(fits);
+            (i, more.last().unwrap_or_else(|| block(ui, &all[..1], width)))
+        };
+        self.beside(wanted.iter().map(|i| first(*i)).collect())
+    }
+
+    /// Equations side by side, with their first lines on one baseline, and their height.
+    fn beside(&self, blocks: Vec<(usize, Block)>) -> (Vec<Set>, f32) {
+        let baseline = blocks.iter().map(|(_, b)| b.baseline).fold(0.0, f32::max);
+        let (mut height, several) = (0.0f32, blocks.len() > 1);
+        let set = |(side, block): (usize, Block)| {
+            let lower = baseline - block.baseline;
+            height = height.max(lower + block.size.y);
+            Set { side, at: pos2(self.left[if several { side } else { 0 }], self.space + lower), block }
+        };
+        (blocks.into_iter().map(set).collect(), height)
+    }
+}
+
+/// The sides whose equations are shown: one that both share appears once.
+fn wanted(sides: &[Side]) -> Vec<usize> {
     let shared = sides.windows(2).all(|pair| pair[0].model == pair[1].model);
     let mut wanted: Vec<usize> = (0..sides.len()).filter(|i| !sides[*i].equation.is_empty()).collect();
     wanted.truncate(if shared { 1 } else { sides.len() });
-    let block = |i: usize, width: f32| {
-        let blocks = (1..=4).map(|columns| Block::of(ui, &sides[i].equation, columns, width, true));
-        let order = |a: &Block, b: &Block| a.broken.cmp(&b.broken).then(a.size.y.total_cmp(&b.size.y));
-        blocks.min_by(order).unwrap_or_default()
-    };
-    let narrow: Vec<_> = wanted.iter().map(|i| block(*i, half)).collect();
-    let wide: Vec<_> = wanted.iter().map(|i| block(*i, most)).collect();
-    let beside = narrow.iter().map(|b| b.size.y).fold(0.0, f32::max);
-    let fits = narrow.iter().all(|b| b.size.x <= half + 1.0);
-    let above = wide.iter().map(|b| b.size.y + space).sum::<f32>() - space;
-    if wanted.len() > 1 && fits && beside <= above.min(limit) {
-        let sets = narrow.into_iter().zip(&wanted);
-        let sets = sets.map(|(block, side)| Set { side: *side, block, at: pos2(left[*side], space) });
-        return (sets.collect(), beside);
-    }
-    let mut blocks: Vec<_> = wanted.into_iter().zip(wide).collect();
-    while !blocks.is_empty() && blocks.iter().map(|(_, b)| b.size.y + space).sum::<f32>() - space > limit {
-        let highest = |(_, a): &(usize, &(usize, Block)), (_, b): &(usize, &(usize, Block))| {
-            a.1.size.y.total_cmp(&b.1.size.y)
-        };
-        let Some((i, _)) = blocks.iter().enumerate().max_by(highest) else { break };
-        blocks.remove(i);
-    }
-    let mut top = space;
-    let mut sets = Vec::new();
-    for (side, block) in blocks {
-        let at = pos2(left[0], top);
-        top += block.size.y + space;
-        sets.push(Set { side, block, at });
-    }
-    let height = if sets.is_empty() { 0.0 } else { top - 2.0 * space };
-    (sets, height)
+    wanted
+}
+
+/// An equation in as many columns as suit it.
+fn block(ui: &Ui, equation: &[Definition], width: f32) -> Block {
+    let sizes = Sizes { column: true, even: true, level: true };
+    let blocks = (1..=4).map(|columns| Block::of(ui, equation, columns, width, sizes));
+    let order = |a: &Block, b: &Block| a.broken.cmp(&b.broken).then(a.size.y.total_cmp(&b.size.y));
+    blocks.min_by(order).unwrap_or_default()
 }
 
 /// The statistics of the difference in one line, as many as fit, or why there are none.

@@ -53,10 +53,11 @@ type Definition = (Term, &'static str);
 /// The equation, arranged in columns.
 #[derive(Clone, Debug, Default)]
 struct Block {
-    /// Definitions, left edge and width of each column.
-    columns: Vec<(Range<usize>, f32, f32)>,
-    /// True if terms are as small as definitions.
-    even: bool,
+    /// Definitions, upper left corner and width of each column.
+    columns: Vec<(Range<usize>, Vec2, f32)>,
+    /// Distance from the top to the first baseline, which all columns share if lines are level.
+    baseline: f32,
+    sizes: Sizes,
     /// The worst line break.
     broken: Break,
     size: Vec2,
@@ -107,7 +108,9 @@ impl Stage {
         let room = whole.with_max_y(caption.top());
         let mut ui = ui.new_child(UiBuilder::new().id_salt("trial").max_rect(whole).invisible());
         ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * whole.height()));
-        let block = |columns, width, even| Block::of(&ui, &equation, columns, width, even);
+        let block = |columns, width, even| {
+            Block::of(&ui, &equation, columns, width, Sizes { column: true, even, level: false })
+        };
         let tall = TALLEST * whole.height() - 2.0 * padding.y;
         let narrow = BESIDE.map(|(part, even)| block(1, part * whole.width(), even));
         let narrow = narrow.iter().min_by_key(|b| (b.broken, b.size.y > tall)).unwrap_or(&narrow[0]).clone();
@@ -192,12 +195,11 @@ fn columns(
     at: Pos2,
     height: f32,
 ) {
-    for (i, (which, start, width)) in block.columns.iter().enumerate() {
-        let place = Rect::from_min_size(at + vec2(*start, 0.0), vec2(*width, block.size.y));
+    for (i, (which, corner, width)) in block.columns.iter().enumerate() {
+        let place = Rect::from_min_size(at + *corner, vec2(*width, block.size.y));
         let mut ui = ui.new_child(UiBuilder::new().id_salt(("column", i)).max_rect(place));
         ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * height));
-        let sizes = Sizes { column: true, even: block.even };
-        maths::equation_of(&mut ui, &equation[which.clone()], sizes, |symbol| meaning(model?, symbol));
+        maths::equation_of(&mut ui, &equation[which.clone()], block.sizes, |symbol| meaning(model?, symbol));
     }
 }
 
@@ -208,8 +210,7 @@ fn padding(whole: Rect) -> Vec2 {
 impl Block {
     /// Arranges an equation in at most `columns` columns, each as wide as its lines. If that is too wide, long columns
     /// share the space that short ones leave, and are as narrow as possible without becoming higher.
-    fn of(ui: &Ui, all: &[Definition], columns: usize, most: f32, even: bool) -> Self {
-        let sizes = Sizes { column: true, even };
+    fn of(ui: &Ui, all: &[Definition], columns: usize, most: f32, sizes: Sizes) -> Self {
         let gap = 0.04 * most;
         let measure = |range: &Range<usize>, width| maths::measured(ui, &all[range.clone()], sizes, width);
         let each = (most - gap * (columns - 1) as f32) / columns as f32;
@@ -226,8 +227,8 @@ impl Block {
             let room = most - gap * (ranges.len() - 1) as f32;
             let widths: Vec<f32> = ranges.iter().map(|r| measure(r, f32::INFINITY).width + 1.0).collect();
             let cut = shared(&widths, room);
-            let mut block = Self { even, ..Self::default() };
-            let mut at = 0.0;
+            let mut block = Self { sizes, ..Self::default() };
+            let (mut at, mut heights) = (0.0, Vec::new());
             for (range, natural) in ranges.into_iter().zip(widths) {
                 let wide = measure(&range, natural.min(cut));
                 let (mut narrow, mut width) = (0.0, natural.min(cut));
@@ -238,10 +239,17 @@ impl Block {
                     let same = (here.height - wide.height).abs() < 0.5 && here.broken <= wide.broken;
                     *(if same { &mut width } else { &mut narrow }) = middle;
                 }
-                block.columns.push((range, at, width));
-                block.size = vec2(at + width, block.size.y.max(wide.height));
+                let baseline = measure(&range, width).baseline;
+                heights.push(wide.height);
+                block.columns.push((range, vec2(at, baseline), width));
+                block.baseline = block.baseline.max(baseline);
+                block.size.x = at + width;
                 block.broken = block.broken.max(wide.broken);
                 at += width + gap;
+            }
+            for ((_, corner, _), height) in block.columns.iter_mut().zip(heights) {
+                corner.y = if sizes.level { block.baseline - corner.y } else { 0.0 };
+                block.size.y = block.size.y.max(corner.y + height);
             }
             block
         });

@@ -360,6 +360,15 @@ fn legend_and_mark_give_way_to_each_other_and_to_small_pictures() {
         let dark = (1..40).filter(|d| at(&map, x, 340 - d).iter().all(|code| *code < 30)).count();
         assert!(ring > 0 && dark > 0, "a bright and a dark ring: {ring}, {dark}");
     }
+    // Larger letters make a larger plate, as far as there is room.
+    let b = with_dot(20, 340);
+    let pair = Pair::new(&a, &b).expect("of one size");
+    let rows = |px: Option<f32>| {
+        let map = pair.map_in_letters(&Comparison::default(), px).expect("known");
+        (50..height).filter(|y| at(&map, width - 30, *y) != ground).count()
+    };
+    assert!(rows(Some(30.0)) > 2 * rows(None) && rows(None) > 0, "{} and {}", rows(Some(30.0)), rows(None));
+    assert_eq!(rows(Some(1000.0)), rows(None));
     let pair = Pair::new(&a, &a).expect("of one size");
     let map = pair.map(&Comparison::default()).expect("known");
     assert_eq!(at(&map, 320, 100), ground);

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
     caption::header,
     channel::DebugChannel,
@@ -10,17 +10,20 @@ use lights_camera_models::{
     document::Edit,
     optics::TermSelection,
     panel::marks::Lens,
+    panel::picture::letters_of_map,
     panel::state::{Action, Clipping, CompareCommand, Converging, Numbers, Session, ViewChange},
     parameter::{Value, Values},
+    registry::Registry,
     scene::{
         Comparison, Part, Scene, Variant,
         comparison::{Compared, Layout},
+        examples::EXAMPLES,
     },
 };
 
 use crate::{
     helpers::screen::{Picture, Screen},
-    window::panels::Bench,
+    window::panels::{Bench, Seen},
 };
 
 /// A red sphere that view B shows in blue.
@@ -315,6 +318,24 @@ fn a_presentation_of_views_has_equation_and_caption_and_no_handles() {
 }
 
 #[test]
+fn the_legend_of_a_map_is_as_large_as_other_text() {
+    let mut bench = three();
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
+    for scale in [100, 150, 200] {
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        let zoom = bench.area.zoom;
+        let height = zoom * bench.area.map.expect("there is a map").height();
+        let letters = letters_of_map(&bench.area, height, false).expect("a legend");
+        assert!((letters - 11.5 * zoom).abs() < 0.1, "{scale} %: {letters}");
+    }
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    let height = bench.area.zoom * bench.area.map.expect("there is a map").height();
+    let letters = letters_of_map(&bench.area, height, true).expect("a legend");
+    assert!(letters > 0.03 * height, "{letters} of {height}");
+}
+
+#[test]
 fn the_amplification_is_fitted_to_the_largest_difference() {
     for (largest, expected) in [(255.0, 1.0), (128.0, 1.0), (100.0, 2.0), (12.0, 20.0), (0.5, 100.0)] {
         assert_eq!(fitting_amplification(Compared::Codes, largest), expected, "{largest}");
@@ -379,7 +400,7 @@ fn each_view_has_its_badges_in_every_layout() {
         bench.apply(Action::Edit(terms));
         bench.session.facts.clipping = [clipped(2), clipped(20), None, None];
         bench.settle();
-        let is_sign = |s: &&crate::window::panels::Seen| s.label.contains(" · Clipped: ");
+        let is_sign = |s: &&Seen| s.label.contains(" · Clipped: ");
         let mut all: Vec<_> = bench.tree.iter().filter(is_sign).cloned().collect();
         all.sort_by_key(|sign| sign.label.clone());
         let letters: String = all.iter().filter_map(|s| s.label.chars().next()).collect();
@@ -547,6 +568,95 @@ fn a_presentation_of_two_views_says_both_and_their_difference_and_covers_nothing
     }
 }
 
+/// A scene that comes with the program, in a window of 1280 × 720 pixels.
+fn shipped(file: &str) -> Bench {
+    let example = EXAMPLES.iter().find(|example| example.file == file).expect("shipped");
+    let mut bench = Bench::new(Session::new(example.scene(&Registry::builtin()).expect("it is valid")));
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    bench
+}
+
+#[test]
+fn a_presentation_of_two_views_shows_the_equations_of_both_on_the_same_baselines() {
+    for scale in [100, 200] {
+        let mut bench = shipped("compare_gold.json");
+        bench.size = vec2(1920.0, 1080.0);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let said: Vec<_> = bench.tree.iter().flat_map(|s| s.label.split("; ")).collect();
+        for total in ["I = I_a + I_d + I_s", "I = I_d + I_s"] {
+            assert!(said.contains(&total), "{scale} %: {total} is not among {said:?}");
+        }
+    }
+    // One of the lines has a power, and others stand beside it.
+    let mut bench = shipped("compare_phong_blinn_phong.json");
+    bench.size = vec2(1920.0, 1080.0);
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    let below = bench.area.cells[0].rect.bottom();
+    let mut lines: Vec<_> = (bench.shapes().into_iter())
+        .filter_map(|shape| match shape {
+            Shape::Text(text) if text.galley.text() == "=" && text.pos.y > below => Some(text.pos.y),
+            _ => None,
+        })
+        .collect();
+    lines.sort_by(f32::total_cmp);
+    assert_eq!(lines.len(), 8, "four definitions for each");
+    let steps: Vec<_> = lines.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert!(steps.iter().any(|step| *step < 0.5), "some stand side by side");
+    assert!(steps.iter().all(|step| *step < 0.5 || *step > 30.0), "{steps:?}");
+}
+
+#[test]
+fn the_empty_place_beside_three_views_says_nothing_in_a_presentation() {
+    let mut bench = bench();
+    (0..2).for_each(|_| bench.apply(Action::Compare(CompareCommand::Add)));
+    let said = |bench: &mut Bench| bench.texts().iter().any(|text| text.ends_with("adds a view"));
+    assert!(said(&mut bench));
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    assert!(!said(&mut bench));
+}
+
+#[test]
+fn headings_keep_what_differs_and_drop_the_same_where_space_is_short() {
+    let mut said = Vec::new();
+    for scale in [100, 150, 200] {
+        let mut bench = shipped("compare_phong_blinn_phong.json");
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        let headings = [0, 1].map(|i| {
+            let place = bench.area.cells[i].rect;
+            let above = Rect::from_min_max(place.min - vec2(0.0, 28.0), place.right_top());
+            let texts = crate::window::layout::texts(&mut bench).into_iter();
+            texts.filter(|(_, rect)| above.contains(rect.center())).map(|(text, _)| text).collect::<Vec<_>>()
+        });
+        let has = |i: usize, words: &str| headings[i].iter().any(|text| text.contains(words));
+        assert!(has(0, "Phong") && has(1, "Blinn–Phong"), "{scale} %: {headings:?}");
+        assert_eq!(has(0, "0.05"), has(1, "0.05"), "{scale} %, k_a: {headings:?}");
+        assert_eq!(has(0, "15"), has(1, "60"), "{scale} %, α: {headings:?}");
+        said.push((has(0, "15"), has(0, "0.05")));
+    }
+    assert_eq!(said[..2], [(true, true), (true, false)], "α differs, and outlasts k_a");
+}
+
+#[test]
+fn headings_say_the_terms_that_their_views_show() {
+    let mut bench = shipped("compare_phong_blinn_phong.json");
+    bench.letter(Key::T, "t");
+    bench.letter(Key::T, "t");
+    assert_eq!(bench.session.terms_of(0), TermSelection::Diffuse);
+    click(&mut bench, "B · Only the diffuse term");
+    for presenting in [false, true] {
+        bench.apply(Action::View(ViewChange::Presenting(presenting)));
+        let heading = |view: &str| {
+            let is = |s: &&Seen| s.role == Role::RadioButton && s.label.starts_with(view);
+            &bench.tree.iter().find(is).expect("its heading").label
+        };
+        let (a, b) = (heading("View A: "), heading("View B: "));
+        assert!(a.contains("diffuse term alone") && !a.contains("all terms"), "{a}");
+        assert!(b.contains("all terms"), "{b}");
+    }
+}
+
 #[test]
 fn headings_of_compared_views_say_the_same_things() {
     let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
@@ -557,7 +667,7 @@ fn headings_of_compared_views_say_the_same_things() {
         Variant { exposure: Some(1.0), ..Variant::default() },
         Variant::default(),
     ];
-    let registry = lights_camera_models::registry::Registry::builtin();
+    let registry = Registry::builtin();
     let said: Vec<_> = (0..4).map(|view| header(&scene, view, &registry)).collect();
     assert_eq!(said, ["A · α 32, 0 EV", "B · α 80, 0 EV", "C · α 32, +1 EV", "D · as A"]);
 }

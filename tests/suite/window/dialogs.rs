@@ -3,14 +3,14 @@
 use std::fs;
 
 use bevy_egui::egui::{
-    Color32, Event, Id, Key, Modifiers, Order, Shape, containers::panel::PanelState, vec2,
+    Color32, Event, Id, Key, Modifiers, Order, Rect, Shape, containers::panel::PanelState, vec2,
 };
 use lights_camera_models::{
     document::Edit,
     optics::colour::srgb_decode,
     panel::{
         caption::caption_text,
-        state::{Action, Effect, Session, ThemeChoice, ViewChange},
+        state::{Action, Effect, SCALES, Session, ThemeChoice, ViewChange},
         theme::Palette,
     },
     registry::Registry,
@@ -63,6 +63,33 @@ fn the_dialog_takes_seventy_per_cent_of_the_window_and_nearly_all_of_a_scaled_on
             "{percent} %: {share:?}"
         );
         assert!(bench.ctx.content_rect().contains_rect(rect));
+    }
+}
+
+#[test]
+fn a_dialog_is_whole_at_every_size_of_type() {
+    for percent in SCALES {
+        let (mut bench, _folder) = open(ThemeChoice::Dark, percent);
+        let whole = bench.ctx.memory(|m| m.area_rect(Id::new("open dialog"))).expect("open");
+        assert!(bench.ctx.content_rect().contains_rect(whole), "{percent} %: {whole:?}");
+        let texts: Vec<_> = (bench.shapes().into_iter())
+            .filter_map(|shape| match shape {
+                Shape::Text(text) if !text.galley.elided => Some(text),
+                _ => None,
+            })
+            .collect();
+        for words in ["Open a scene", "Scenes", "Cancel", "Open"] {
+            let is_whole = |rect: Rect| whole.shrink(8.0).contains_rect(rect);
+            let mut found = texts.iter().filter(|text| text.galley.text().ends_with(words));
+            assert!(found.any(|text| is_whole(text.visual_bounding_rect())), "{percent} %: no {words}");
+        }
+        let panel = PanelState::load(&bench.ctx, Id::new("open dialog").with("bottom_panel")).expect("shown");
+        let ground = Palette::of(&bench.session.settings).panel;
+        let edge = bench.shapes().into_iter().any(|shape| match shape {
+            Shape::Rect(r) => r.fill == ground && (r.rect.max - panel.outer_rect.max).length() < 2.0,
+            _ => false,
+        });
+        assert!(!edge, "{percent} %: the buttons stand on an edge");
     }
 }
 

@@ -261,6 +261,17 @@ fn a_presentation_says_for_a_moment_what_happened() {
 }
 
 #[test]
+fn a_presentation_soon_stops_to_say_how_to_leave_it() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    bench.key(Key::F5, Modifiers::NONE);
+    let said = |bench: &mut Bench| bench.texts().iter().any(|text| text == "Esc leaves the presentation");
+    assert!(said(&mut bench));
+    // A frame takes a thirtieth of a second.
+    (0..100).for_each(|_| drop(bench.frame(Vec::new())));
+    assert!(!said(&mut bench), "it may cover an object");
+}
+
+#[test]
 fn the_chooser_of_a_presentation_comes_without_the_bar() {
     let mut bench = bench((1280.0, 720.0), "phong");
     bench.key(Key::F5, Modifiers::NONE);
