@@ -133,15 +133,24 @@ fn empty(path: &Path, text: &str) -> ShaderProblem {
     problem(path, text, (0, message.to_owned()))
 }
 
+/// The file of a problem that was found in a model's file: that one, or one that it shares with others, beside it.
+#[must_use]
+pub fn file_with(problem: &ShaderProblem, path: &Path) -> PathBuf {
+    match problem.file.strip_prefix(MODELS) {
+        Some(name) => files::folder_of(path).join(name),
+        // The folder itself, or a file given to the command.
+        None if problem.file == MODELS.trim_end_matches('/') || path.ends_with(&problem.file) => {
+            path.to_owned()
+        }
+        None => PathBuf::from(&problem.file),
+    }
+}
+
 /// Records why a file does not contain a valid model.
 fn broken(id: &str, problems: Problems, registry: &mut Registry) -> Reading {
     if let Some((path, problem)) = problems.first() {
-        // The error may be in an imported file.
-        let other = (problem.file != source_path(id)).then_some(&problem.file);
-        let file = other.map_or(path.shown().to_string(), |source| {
-            registry.path_on_disk(source).map_or(source.clone(), |path| path.shown().to_string())
-        });
-        let place = format!("{file}:{}:{}", problem.line, problem.column);
+        let file = file_with(problem, path);
+        let place = format!("{}:{}:{}", file.shown(), problem.line, problem.column);
         registry.mark_broken(id, format!("{place}: {}", problem.message));
     }
     Reading::Broken(problems)

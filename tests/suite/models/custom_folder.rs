@@ -252,6 +252,13 @@ fn a_bad_file_is_an_error_for_whoever_names_it() {
         assert!(told.status == Some(1) && told.err.contains(expected), "{}", told.err);
         assert!(!told.err.contains("models/"), "{}", told.err);
     }
+    // So does the scene that names a model with a mistake in a file that it imports.
+    fs::write(elsewhere.join("lib.wgsl"), "\nfn lib() -> f32 { return gone; }\n").unwrap();
+    fs::write(elsewhere.join("of_lib.wgsl"), with("lib.wgsl")).unwrap();
+    let text = scene("of_lib", &json!({}), None);
+    let told = lcm_in(bench.folder.path(), &["check", "-", "--models", "elsewhere"], text.as_bytes());
+    let said = "the file of that custom model has an error: elsewhere/lib.wgsl:2:";
+    assert!(told.status == Some(1) && told.err.contains(said), "{}", told.err);
     // A scene names it too.
     let told = bench.run("check -", &scene("nothing", &json!({}), None));
     assert_eq!(told.status, Some(1));
