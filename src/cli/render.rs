@@ -38,7 +38,7 @@ use crate::{
     picture::png::About,
     program::HAS_WINDOW,
     progress::Progress,
-    reference::{self, Reached},
+    reference::{self, MAX_SIDE, Reached},
     registry::Registry,
     scene::{Comparison, Scene, comparison::Layout, variant::LETTERS},
     text::{listed, quoted},
@@ -333,10 +333,18 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
 fn fits(arguments: &Arguments, file: &Path) -> Outcome {
     let usage = |why: String| Err(Failure::Usage(why));
     let (name, png) = (file.shown(), file.with_extension("png"));
+    let [width, height] = arguments.size;
     let Some(format) = Format::of(file) else {
-        return match arguments.layers {
-            Some(_) => usage("--layers needs an OpenEXR file, e.g. -o room.exr".to_owned()),
-            None => Ok(()),
+        if arguments.layers.is_some() {
+            return usage("--layers needs an OpenEXR file, e.g. -o room.exr".to_owned());
+        }
+        let rows = if arguments.caption { caption::most_rows(arguments.size) } else { 0 };
+        return match height + rows > MAX_SIDE {
+            true => usage(format!(
+                "{width}x{height} with a caption of up to {rows} rows is too high: a picture has at most {MAX_SIDE} rows; \
+                 choose a smaller --size"
+            )),
+            false => Ok(()),
         };
     };
     if format == Format::Hdr && arguments.layers.is_some() {
@@ -353,7 +361,6 @@ fn fits(arguments: &Arguments, file: &Path) -> Outcome {
     if arguments.caption {
         return usage(format!("--caption draws display codes, but {name} holds light; use -o {png}"));
     }
-    let [width, height] = arguments.size;
     if width as usize * height as usize > MAX_PIXELS {
         return usage(format!(
             "{width}x{height} are more pixels than {name} can hold; at most {MAX_PIXELS} are possible"

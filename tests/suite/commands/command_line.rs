@@ -417,3 +417,16 @@ fn a_new_scene_is_no_stream() {
         ran.err
     );
 }
+
+#[test]
+fn a_picture_with_a_caption_is_no_higher_than_a_picture_may_be() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let draw = |size: &str| {
+        let arguments = ["render", "-o", "x.png", "--renderer", "cpu", "--caption", "--size", size];
+        lcm_in(folder.path(), &arguments, b"")
+    };
+    let run = draw("1x16384");
+    assert_eq!(run.status, Some(2), "{}", run.err);
+    assert!(run.err.contains("1x16384 with a caption of up to "), "{}", run.err);
+    assert_eq!(draw("1x16000").status, Some(0));
+}
