@@ -8,7 +8,7 @@ use super::{
     Options, Outcome, gauged,
     light_samples::{self, Sampling},
     outputs, print_json, print_text,
-    render::{cpu_can_draw, term},
+    render::{cpu_can_draw, one_picture, term},
     scenes::Source,
     sides,
     views::{Plan, find},
@@ -88,6 +88,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let scene = source.open(workshop, options)?;
     let registry = &workshop.registry;
     if let Some(file) = &arguments.hemisphere {
+        one_picture("--hemisphere", file)?;
         outputs::picture(file, arguments.scene.as_slice())?;
     }
     // Many samples of light take a while.

@@ -19,13 +19,16 @@ use crate::{
     },
 };
 
-/// Parser of all files and folders that commands write. `-` is refused: where standard output is allowed, it
+/// Parser of all files and folders that commands write. An empty path is refused, and so is `-`: where standard output is allowed, it
 /// has a name.
 pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|text: OsString| {
         if text == "-" {
             let rule = "results go to files; name one (./- for one called -). For pictures, /dev/stdout is standard output";
             return Err(rule);
+        }
+        if text.is_empty() {
+            return Err("the path is empty; name a file or a folder");
         }
         Ok(PathBuf::from(text))
     })

@@ -179,9 +179,13 @@ impl From<FileError> for io::Error {
 /// The message for a file without a byte, such as one whose writing failed.
 pub const EMPTY: &str = "the file is empty";
 
-/// A limit as displayed.
+/// A limit as displayed; that of a format of one length is its length.
 fn size(bytes: u64) -> String {
-    if bytes >= 1 << 20 { format!("{} MiB", bytes >> 20) } else { format!("{} KiB", bytes >> 10) }
+    match bytes {
+        _ if !bytes.is_multiple_of(1 << 10) => format!("{bytes} bytes"),
+        _ if bytes >= 1 << 20 => format!("{} MiB", bytes >> 20),
+        _ => format!("{} KiB", bytes >> 10),
+    }
 }
 
 /// The kind of file to which a path leads, links followed.

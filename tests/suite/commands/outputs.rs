@@ -83,6 +83,7 @@ fn where_a_result_cannot_be_written_its_command_says_so_before_it_draws() {
         &["materials", "--size", "1024", "-o", "/proc/m.png"],
         &["compare", "s.json", "--size", "4096x4096", "-o", "/proc/c.png"],
         &["match", "s.json", "--free", "alpha", "-o", "/proc/m.json"],
+        &["manual", "/proc/man"],
     ] {
         let start = Instant::now();
         let run = lcm_in(folder.path(), arguments, b"");

@@ -528,6 +528,12 @@ fn of_ten_thousand_broken_objects_some_are_reported_and_the_rest_is_counted_quic
 }
 
 #[test]
+fn half_a_character_is_named_as_what_it_is() {
+    let said = said("{\"name\": \"\\ud800\"}");
+    assert!(said.contains("an escape from \\ud800 to \\udfff is half a character"), "{said}");
+}
+
+#[test]
 fn hostile_files_do_not_take_all_memory() {
     let lights = format!("[{}1]", "1,".repeat(3_000_000));
     let said_of =
