@@ -2,7 +2,7 @@
 // direction; the twin of src/reference/visible.rs. Drawn only where a scene has such lights.
 #import bevy_pbr::mesh_view_bindings::view
 
-@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> illumination: Illumination;
+@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
 @group(#{MATERIAL_BIND_GROUP}) @binding(2) var<storage, read> light_words: array<u32>;
 
 struct SeenStages {

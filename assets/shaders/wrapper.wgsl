@@ -6,7 +6,7 @@
 // The parameters of all objects with the model, and values derived from them; an object's row is its
 // mesh tag.
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> parameter_table: array<Row>;
-@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<uniform> illumination: Illumination;
+@group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
 // The parameters of the lights one after the other, and behind them the numbers of the files that they name.
 @group(#{MATERIAL_BIND_GROUP}) @binding(2) var<storage, read> light_words: array<u32>;
 

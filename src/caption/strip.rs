@@ -31,6 +31,15 @@ pub fn line_width(parts: &[Part], px: f32) -> u32 {
     Line::of(parts, px).width
 }
 
+/// The most rows that a caption adds to a picture of this size.
+#[must_use]
+pub fn most_rows(size: [u32; 2]) -> u32 {
+    let px = type_size(size);
+    let row = |px: f32| Lettering::Regular.height(px) + (0.12 * px).round() as u32;
+    // The facts, and the name of the program alone.
+    1 + 2 * (0.6 * px).round() as u32 + row((1.15 * px).round()) + (LINES as u32 + 1) * row(px)
+}
+
 /// The picture with its caption in a strip below it, and the size of the whole. `size` is the size of the
 /// picture; the height of the strip is added to it.
 #[must_use]
@@ -177,7 +186,7 @@ fn facts(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
         let mut shown: Vec<_> = left.iter().map(|(i, part)| (*i, (*part).clone())).chain(marks).collect();
         shown.sort_by_key(|(i, _)| *i);
         let shown: Vec<_> = shown.into_iter().map(|(_, part)| part).collect();
-        let lines = broken(&shown, px, room);
+        let mut lines = broken(&shown, px, room);
         // The first part always stays.
         let least = left.iter().skip(1).map(|(_, part)| part.rank).max();
         match left.iter().rposition(|(i, part)| *i > 0 && Some(part.rank) == least) {
@@ -185,7 +194,10 @@ fn facts(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
                 let (i, part) = left.remove(at);
                 gaps.insert(part.rank, i);
             }
-            _ => return lines,
+            _ => {
+                lines.truncate(LINES);
+                return lines;
+            }
         }
     }
 }
@@ -288,6 +300,7 @@ mod tests {
             let picture: Vec<u8> = (0..size[0] * size[1] * 3).map(|i| (i % 249) as u8).collect();
             let (whole, [width, height]) = draw(&caption, picture.clone(), size);
             assert!(width == size[0] && height > size[1], "{size:?}");
+            assert!(height <= size[1] + most_rows(size), "{size:?}");
             assert_eq!(whole.len(), (width * height * 3) as usize);
             assert_eq!(whole[..picture.len()], picture);
             // The right and lower edges keep a margin.
@@ -301,6 +314,18 @@ mod tests {
             heights.push(height - size[1]);
         }
         assert!(heights[0] < 60 && heights[1] < 80, "{heights:?}");
+    }
+
+    #[test]
+    fn a_strip_has_no_more_rows_than_it_may_have() {
+        for size in [[1, 16_384], [40, 40], [300, 300], [700, 300], [4000, 3000]] {
+            for facts in [0, 3, 40].map(parts) {
+                let title = "A title that is rather long".to_owned();
+                let caption = Caption { title, facts, program: "A program 1.2", ground: Ground::DARK };
+                assert!(Strip::of(&caption, size).height <= most_rows(size), "{size:?}");
+            }
+        }
+        assert!(facts(&parts(40), 12.0, 1).len() <= LINES);
     }
 
     #[test]

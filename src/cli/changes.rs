@@ -26,12 +26,20 @@ pub(super) struct Changes {
     tone_mapping: Option<String>,
     /// Use this exposure in EV instead of the scene's; each step up doubles the light
     #[arg(long, value_name = "EV", allow_hyphen_values = true, value_parser = exposure)]
-    exposure: Option<f32>,
+    exposure: Option<Exposure>,
+}
+
+/// An exposure, with the text that was given.
+#[derive(Clone, Debug)]
+struct Exposure {
+    ev: f32,
+    written: String,
 }
 
 /// Parser of the exposure; its range is checked with those of all changes.
-fn exposure(text: &str) -> Result<f32, String> {
-    text.trim().parse().map_err(|_| "it must be a number of EV, e.g. -1.5".to_owned())
+fn exposure(text: &str) -> Result<Exposure, String> {
+    let ev = text.trim().parse().map_err(|_| "it must be a number of EV, e.g. -1.5".to_owned())?;
+    Ok(Exposure { ev, written: text.to_owned() })
 }
 
 impl Changes {
@@ -50,8 +58,8 @@ impl Changes {
         if let Some(id) = &self.shading {
             Ids::ShadingModel.check(&workshop.registry, id).map_err(|rule| usage("shading", id, rule))?;
         }
-        if let Some(ev) = self.exposure {
-            Display::exposure.check_number(ev).map_err(|rule| usage("exposure", &ev.to_string(), rule))?;
+        if let Some(Exposure { ev, written }) = &self.exposure {
+            Display::exposure.check_number(*ev).map_err(|rule| usage("exposure", written, rule))?;
         }
         if let Some(id) = &self.tone_mapping {
             Display::tone_mapping.check_text(id).map_err(|rule| usage("tone-mapping", id, rule))?;
@@ -88,7 +96,8 @@ impl Changes {
     /// The scene with the changes. A model from the command line also replaces the overrides of objects and
     /// views: the purpose is to see the whole scene with it. The materials go along as in the window.
     fn apply(&self, mut scene: Scene, registry: &Registry) -> Scene {
-        let Self { reflection, shading, exposure, .. } = self;
+        let Self { reflection, shading, .. } = self;
+        let exposure = self.exposure.as_ref().map(|exposure| exposure.ev);
         let tone_mapping = self.tone_mapping.as_deref().and_then(ToneMapping::from_id);
         if let Some(id) = reflection {
             scene.show_with(id, registry);

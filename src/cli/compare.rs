@@ -294,7 +294,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         return Err(Failure::Usage("with two files, view A of each is compared; omit --with".to_owned()));
     }
     if let Some(output) = &arguments.output {
-        render::one_picture(output)?;
+        render::one_picture("-o", output)?;
     }
     let mut read = collected(paths.iter().map(|path| Input::read(path, workshop, options)))?;
     // A linear picture beside a scene is shown like the scene.

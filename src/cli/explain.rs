@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::{
-    Options, Outcome,
+    Options, Outcome, gauged,
     light_samples::{self, Sampling},
     outputs, print_json, print_text,
-    render::{cpu_can_draw, term},
+    render::{cpu_can_draw, one_picture, term},
     scenes::Source,
     sides,
     views::{Plan, find},
@@ -88,16 +88,21 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let scene = source.open(workshop, options)?;
     let registry = &workshop.registry;
     if let Some(file) = &arguments.hemisphere {
+        one_picture("--hemisphere", file)?;
         outputs::picture(file, arguments.scene.as_slice())?;
     }
-    let first = explained(arguments, &source, &scene, &arguments.view, options, registry)?;
-    if let Some(file) = &arguments.hemisphere {
-        hemisphere(file, &first, registry)?;
-    }
-    let influences = arguments.derivatives.then(|| influences(arguments, &first, registry)).transpose()?;
-    let beside = arguments.beside.as_ref();
-    let other =
-        beside.map(|name| explained(arguments, &source, &scene, name, options, registry)).transpose()?;
+    // Many samples of light take a while.
+    let (first, influences, other) = gauged("explaining the pixel", options, |_| -> Result<_, Failure> {
+        let explained = |view: &str| explained(arguments, &source, &scene, view, options, registry);
+        let first = explained(&arguments.view)?;
+        if let Some(file) = &arguments.hemisphere {
+            hemisphere(file, &first, registry)?;
+        }
+        let influences =
+            arguments.derivatives.then(|| influences(arguments, &first, registry)).transpose()?;
+        let other = arguments.beside.as_deref().map(explained).transpose()?;
+        Ok((first, influences, other))
+    })?;
     if arguments.json {
         let mut json = first.explanation.to_json();
         if let Some(influences) = &influences {

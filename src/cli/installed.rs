@@ -8,7 +8,6 @@ use clap_mangen::Man;
 
 use super::{Options, Outcome, named, outputs, print, print_paths};
 use crate::{
-    failure::Failure,
     files::{self, FileError, Shown as _, Signature},
     program::{self, in_own_words},
 };
@@ -41,7 +40,7 @@ pub(super) fn manual(folder: &Path, options: Options) -> Outcome {
     }
     let documents = pages.iter().map(|(path, text)| (path.clone(), text.as_bytes()));
     files::in_folder(folder, || files::write_all(documents))
-        .map_err(|error: FileError| Failure::Write(error.to_string()))?;
+        .map_err(|error: FileError| outputs::unwritten(folder, &error.into()))?;
     print_paths(pages.iter().map(|(path, _)| path.as_path()))?;
     options.tell(format_args!("wrote {} pages; man -l {} shows one", pages.len(), pages[0].0.shown()));
     Ok(())

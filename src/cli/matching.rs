@@ -118,6 +118,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if let Some(file) = arguments.output.as_deref().filter(|file| !arguments.overwrite && file.exists()) {
         return Err(unwritten(&SaveError { path: file.to_owned(), why: Unwritten::Exists }));
     }
+    arguments.output.as_deref().map_or(Ok(()), outputs::can_begin)?;
     let registry = &workshop.registry;
     drawable(registry, &scene)?;
     let invalid = |why: &dyn std::fmt::Display| Failure::Invalid(format!("{}: {why}", source.name()));

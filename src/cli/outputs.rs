@@ -19,13 +19,16 @@ use crate::{
     },
 };
 
-/// Parser of all files and folders that commands write. `-` is refused: where standard output is allowed, it
+/// Parser of all files and folders that commands write. An empty path is refused, and so is `-`: where standard output is allowed, it
 /// has a name.
 pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|text: OsString| {
         if text == "-" {
             let rule = "results go to files; name one (./- for one called -). For pictures, /dev/stdout is standard output";
             return Err(rule);
+        }
+        if text.is_empty() {
+            return Err("the path is empty; name a file or a folder");
         }
         Ok(PathBuf::from(text))
     })
@@ -42,9 +45,20 @@ pub(super) fn picture(output: &Path, inputs: &[PathBuf]) -> Outcome {
     of_format(output, files::PNG, inputs)
 }
 
-/// Refuses a file of some format that would replace an input, or a file of another format.
+/// Refuses a file of some format that would replace an input, or a file of another format, or that cannot be written.
 pub(super) fn of_format(output: &Path, format: files::Signature, inputs: &[PathBuf]) -> Outcome {
+    replaces_nothing(output, format, inputs)?;
+    can_begin(output)
+}
+
+/// Refuses a file of some format that would replace an input, or a file of another format.
+pub(super) fn replaces_nothing(output: &Path, format: files::Signature, inputs: &[PathBuf]) -> Outcome {
     files::may_overwrite(output, format, inputs.iter().map(PathBuf::as_path)).map_err(refused)
+}
+
+/// Refuses a file that cannot be written. Called before anything is calculated.
+pub(super) fn can_begin(output: &Path) -> Outcome {
+    files::can_begin(output).map_err(|error| unwritten(output, &error.into()))
 }
 
 fn refused(refused: files::Refused) -> Failure {

@@ -38,7 +38,7 @@ use crate::{
     picture::png::About,
     program::HAS_WINDOW,
     progress::Progress,
-    reference::{self, Reached},
+    reference::{self, MAX_SIDE, Reached},
     registry::Registry,
     scene::{Comparison, Scene, comparison::Layout, variant::LETTERS},
     text::{listed, quoted},
@@ -333,10 +333,18 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
 fn fits(arguments: &Arguments, file: &Path) -> Outcome {
     let usage = |why: String| Err(Failure::Usage(why));
     let (name, png) = (file.shown(), file.with_extension("png"));
+    let [width, height] = arguments.size;
     let Some(format) = Format::of(file) else {
-        return match arguments.layers {
-            Some(_) => usage("--layers needs an OpenEXR file, e.g. -o room.exr".to_owned()),
-            None => Ok(()),
+        if arguments.layers.is_some() {
+            return usage("--layers needs an OpenEXR file, e.g. -o room.exr".to_owned());
+        }
+        let rows = if arguments.caption { caption::most_rows(arguments.size) } else { 0 };
+        return match height + rows > MAX_SIDE {
+            true => usage(format!(
+                "{width}x{height} with a caption of up to {rows} rows is too high: a picture has at most {MAX_SIDE} rows; \
+                 choose a smaller --size"
+            )),
+            false => Ok(()),
         };
     };
     if format == Format::Hdr && arguments.layers.is_some() {
@@ -353,7 +361,6 @@ fn fits(arguments: &Arguments, file: &Path) -> Outcome {
     if arguments.caption {
         return usage(format!("--caption draws display codes, but {name} holds light; use -o {png}"));
     }
-    let [width, height] = arguments.size;
     if width as usize * height as usize > MAX_PIXELS {
         return usage(format!(
             "{width}x{height} are more pixels than {name} can hold; at most {MAX_PIXELS} are possible"
@@ -736,7 +743,7 @@ fn cpu_can_draw_or(scene: &Scene, registry: &Registry, instead: &str) -> Outcome
 fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
     let folder = match output {
         None => Path::new(RENDERS_DIR),
-        Some(path) => match (is_file(path, true)?, sources) {
+        Some(path) => match (is_file("-o", path, true)?, sources) {
             (true, [_]) => return Ok(vec![path.to_owned()]),
             (true, _) => {
                 let (file, count) = (path.shown(), sources.len());
@@ -759,25 +766,25 @@ fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Fail
     Ok(files)
 }
 
-/// Fails unless `-o` is a single picture, next to the numbers on standard output.
-pub(super) fn one_picture(path: &Path) -> Outcome {
-    let usage = |why: &str| Failure::Usage(format!("-o {}: {why}", path.shown()));
+/// Fails unless an option is a single picture, next to the numbers on standard output.
+pub(super) fn one_picture(option: &str, path: &Path) -> Outcome {
+    let usage = |why: &str| Failure::Usage(format!("{option} {}: {why}", path.shown()));
     let stdout = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
     if stdout.iter().any(|name| path == Path::new(name)) {
         return Err(usage("standard output is for the numbers; name a PNG file"));
     }
-    if is_file(path, false)? { Ok(()) } else { Err(usage("name a PNG file")) }
+    if is_file(option, path, false)? { Ok(()) } else { Err(usage("name a PNG file")) }
 }
 
-/// True if `-o` is a file, and not a folder. A path that ends in `.png` is one, unless it is an existing folder, and so
+/// True if an option is a file, and not a folder. A path that ends in `.png` is one, unless it is an existing folder, and so
 /// is one of a linear picture, where these are possible, and a device or a pipe. Other picture formats are refused;
 /// anything else is a folder.
-fn is_file(path: &Path, linear: bool) -> Result<bool, Failure> {
+fn is_file(option: &str, path: &Path, linear: bool) -> Result<bool, Failure> {
     match kind(path) {
         Ok(Kind::Folder) => return Ok(false),
         Ok(Kind::Device | Kind::Pipe) => return Ok(true),
         Ok(Kind::Socket | Kind::Unknown) => {
-            return Err(Failure::Write(format!("-o {} is neither a file nor a folder", path.shown())));
+            return Err(Failure::Write(format!("{option} {} is neither a file nor a folder", path.shown())));
         }
         Ok(Kind::File) if is_descriptor(path) => return Ok(true),
         Ok(Kind::File) | Err(_) => {}
@@ -791,11 +798,12 @@ fn is_file(path: &Path, linear: bool) -> Result<bool, Failure> {
             let (file, png) = (path.shown(), path.with_extension("png"));
             let hint = format!("did you mean {}?", png.shown());
             let formats = if linear { "PNG, OpenEXR and Radiance" } else { "PNG" };
-            Err(Failure::Usage(format!("-o {file}: only {formats} files can be written; {hint}")))
+            Err(Failure::Usage(format!("{option} {file}: only {formats} files can be written; {hint}")))
         }
-        _ if path.is_file() => {
-            Err(Failure::Write(format!("-o {} is not a PNG file; name a PNG file or a folder", path.shown())))
-        }
+        _ if path.is_file() => Err(Failure::Write(format!(
+            "{option} {} is not a PNG file; name a PNG file or a folder",
+            path.shown()
+        ))),
         _ => Ok(false),
     }
 }
@@ -833,6 +841,6 @@ mod tests {
         assert!(said(&["a.json", "b.json"], Some("x.png")).contains("is one file, but there are 2 scenes"));
         assert!(said(&["a/x.json", "b/x.json"], None).contains("would both be written to renders/x.png"));
         assert!(said(&["a.json"], Some("x.jpg")).contains("did you mean x.png?"));
-        assert!(one_picture(Path::new("x.exr")).is_err(), "numbers have no linear picture beside them");
+        assert!(one_picture("-o", Path::new("x.exr")).is_err(), "numbers have no linear picture beside them");
     }
 }

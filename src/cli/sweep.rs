@@ -263,7 +263,9 @@ impl Job<'_> {
 
     fn folder(&self, read: &[PathBuf]) -> Outcome {
         let folder = &self.arguments.output;
-        (0..self.sweep.count()).try_for_each(|i| outputs::picture(&folder.join(self.sweep.file(i)), read))?;
+        let file = |i| folder.join(self.sweep.file(i));
+        (0..self.sweep.count()).try_for_each(|i| outputs::replaces_nothing(&file(i), files::PNG, read))?;
+        outputs::can_begin(&file(0))?;
         let (settings, check) = (self.settings(), self.check());
         files::tidy(folder).iter().for_each(super::complain);
         let written = gauged(&self.what(), self.options, |progress| {

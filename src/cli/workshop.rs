@@ -9,7 +9,7 @@ use std::{
 use clap::Args;
 
 use super::{Options, Outcome, complain};
-use crate::files::{self, Shown as _};
+use crate::files::Shown as _;
 use crate::{
     custom::folder::{self, Reading},
     export::payload::{Payload, PayloadError},
@@ -17,7 +17,7 @@ use crate::{
     library::assets::{self, Folders},
     program::{HAS_WINDOW, without_window},
     reflection::ModelEntry,
-    registry::{MODELS, Registry, check::wgsl, compose::compose},
+    registry::{Registry, check::wgsl, compose::compose},
     scene::{
         Scene,
         error::LoadError,
@@ -92,7 +92,8 @@ impl Workshop {
                 self.registry.remove_model(id);
                 // The problems have been reported by now; their position is as good as a name.
                 if let Some((path, first)) = problems.first() {
-                    let place = format!("{}:{}:{}", path.shown(), first.line, first.column);
+                    let file = folder::file_with(first, path);
+                    let place = format!("{}:{}:{}", file.shown(), first.line, first.column);
                     self.registry.mark_broken(id, place);
                 }
                 true
@@ -287,18 +288,7 @@ fn report(problems: &[(PathBuf, ShaderProblem)]) -> bool {
 pub(super) fn all_annotated(problems: &[(PathBuf, ShaderProblem)]) -> String {
     let mut each: Vec<_> = problems
         .iter()
-        .map(|(path, problem)| {
-            // A model may be broken because of a file that it shares with others, beside it.
-            let file = match problem.file.strip_prefix(MODELS) {
-                Some(name) => files::folder_of(path).join(name),
-                // The folder itself, or a file given to the command.
-                None if problem.file == MODELS.trim_end_matches('/') || path.ends_with(&problem.file) => {
-                    path.clone()
-                }
-                None => PathBuf::from(&problem.file),
-            };
-            annotated(problem, &file.shown().to_string())
-        })
+        .map(|(path, problem)| annotated(problem, &folder::file_with(problem, path).shown().to_string()))
         .collect();
     each.dedup();
     each.join("\n")

@@ -151,7 +151,8 @@ impl Reader<'_> {
                 self.mistake(property.start(), format!("curves: {}: {problem}", quoted(name)));
                 continue;
             }
-            curves.extend(self.curve(value.holding(&property.value), property, parameters));
+            let entry = value.entry(intern::text(name), &property.value);
+            curves.extend(self.curve(entry, property, parameters));
         }
         curves
     }
@@ -169,7 +170,7 @@ impl Reader<'_> {
             self.mistake(property.start(), format!("{at}: {rule}"));
             return None;
         };
-        let id = self.word(of.holding(&model.value), "the model of a curve", &known)?;
+        let id = self.word(of.entry("model", &model.value), "the model of a curve", &known)?;
         let model = self.registry.model(id)?.clone();
         let mut settings: Vec<(&'static Parameter, Setting)> = Vec::new();
         if let Some(twice) = properties.iter().filter(|p| p.name.as_str() == "model").nth(1) {

@@ -3,7 +3,7 @@
 use std::{fs, io, path::Path};
 
 use crate::{
-    files::{self, FileError},
+    files::{self, FileError, Shown as _},
     shader::check::ShaderProblem,
 };
 
@@ -16,6 +16,28 @@ pub const MAX_BYTES: u64 = 1 << 20;
 /// # Errors
 /// Returns an error if the file is missing, cannot be read, is larger than [`MAX_BYTES`], or is not UTF-8.
 pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
+    text_of(files::read(file, MAX_BYTES), file, name)
+}
+
+/// Like [`read`], for files in the folder of custom models: a link must not lead out of that folder.
+///
+/// # Errors
+/// Returns an error if [`read`] does, or if the file is a link to a file in another folder.
+pub fn read_model(file: &Path, name: &str) -> Result<String, ShaderProblem> {
+    let read = files::inside(files::folder_of(file), file).and_then(|end| files::read(&end, MAX_BYTES));
+    let read = match read {
+        // What is neither a file nor a link to one is named as what it is.
+        Err(FileError::Outside(folder)) => match files::kind(file) {
+            Ok(files::Kind::File) | Err(_) => Err(FileError::Outside(folder)),
+            Ok(kind) => Err(FileError::Kind(kind)),
+        },
+        read => read,
+    };
+    text_of(read, file, name)
+}
+
+/// The text of a file, from its bytes.
+fn text_of(read: Result<Vec<u8>, FileError>, file: &Path, name: &str) -> Result<String, ShaderProblem> {
     let failed = |message: String| ShaderProblem {
         file: name.to_owned(),
         line: 1,
@@ -23,13 +45,16 @@ pub fn read(file: &Path, name: &str) -> Result<String, ShaderProblem> {
         source: String::new(),
         message,
     };
-    let bytes = files::read(file, MAX_BYTES).map_err(|error| {
+    let bytes = read.map_err(|error| {
         failed(match error {
             FileError::Io(e) if e.kind() == io::ErrorKind::NotFound && fs::symlink_metadata(file).is_ok() => {
                 "this is a link to a file that is missing".to_owned()
             }
             FileError::Io(e) if e.kind() == io::ErrorKind::NotFound => {
                 "the file is missing; it reloads when restored".to_owned()
+            }
+            FileError::Outside(folder) => {
+                format!("this is a link that leads out of the folder {}; copy the file there", folder.shown())
             }
             FileError::Kind(kind) => format!("this is {kind}, not a regular file"),
             FileError::TooLarge(_) => {

@@ -76,7 +76,7 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
     if let Some(print) = Print::of(&path) {
         registry.note_seen(&path, print);
     }
-    let text = match file::read(&path, &named(&path)) {
+    let text = match file::read_model(&path, &named(&path)) {
         Ok(text) => text,
         Err(problem) => return broken(id, vec![(path, problem)], registry),
     };
@@ -88,14 +88,17 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
         registry.sources_mut().edit(named(&path), text);
         return Reading::Missing;
     }
-    let mut problems = import(&source_path(id), &text, registry);
+    let unread = import(&source_path(id), &text, registry);
+    if !unread.is_empty() {
+        return broken(id, unread, registry);
+    }
     match read(&path, &text, registry) {
         Ok(model) => {
             registry.put_custom_model(model);
             Reading::Read
         }
         Err(found) => {
-            problems.extend(found.into_iter().map(|problem| (path.clone(), problem)));
+            let problems = found.into_iter().map(|problem| (path.clone(), problem)).collect();
             broken(id, problems, registry)
         }
     }
@@ -108,7 +111,7 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
 pub fn sources_with(id: &str, registry: &Registry) -> Result<Sources, ShaderProblem> {
     let mut sources = registry.sources().clone();
     if let Some(path) = registry.unread_file(id) {
-        sources.edit(source_path(id), file::read(path, &named(path))?);
+        sources.edit(source_path(id), file::read_model(path, &named(path))?);
     }
     Ok(sources)
 }
@@ -130,15 +133,24 @@ fn empty(path: &Path, text: &str) -> ShaderProblem {
     problem(path, text, (0, message.to_owned()))
 }
 
+/// The file of a problem that was found in a model's file: that one, or one that it shares with others, beside it.
+#[must_use]
+pub fn file_with(problem: &ShaderProblem, path: &Path) -> PathBuf {
+    match problem.file.strip_prefix(MODELS) {
+        Some(name) => files::folder_of(path).join(name),
+        // The folder itself, or a file given to the command.
+        None if problem.file == MODELS.trim_end_matches('/') || path.ends_with(&problem.file) => {
+            path.to_owned()
+        }
+        None => PathBuf::from(&problem.file),
+    }
+}
+
 /// Records why a file does not contain a valid model.
 fn broken(id: &str, problems: Problems, registry: &mut Registry) -> Reading {
     if let Some((path, problem)) = problems.first() {
-        // The error may be in an imported file.
-        let other = (problem.file != source_path(id)).then_some(&problem.file);
-        let file = other.map_or(path.shown().to_string(), |source| {
-            registry.path_on_disk(source).map_or(source.clone(), |path| path.shown().to_string())
-        });
-        let place = format!("{file}:{}:{}", problem.line, problem.column);
+        let file = file_with(problem, path);
+        let place = format!("{}:{}:{}", file.shown(), problem.line, problem.column);
         registry.mark_broken(id, format!("{place}: {}", problem.message));
     }
     Reading::Broken(problems)
@@ -162,10 +174,13 @@ fn import(path: &str, text: &str, registry: &mut Registry) -> Problems {
         let Some(file) = file.filter(|file| file.extension().is_some_and(|e| e == EXTENSION)) else {
             continue;
         };
-        if registry.sources().get(&source).is_some() || !visited.insert(source.clone()) || !file.is_file() {
+        if registry.sources().get(&source).is_some() || !visited.insert(source.clone()) {
             continue;
         }
-        match file::read(&file, &source) {
+        if fs::symlink_metadata(&file).is_err() {
+            continue;
+        }
+        match file::read_model(&file, &source) {
             Ok(text) => {
                 wanted.extend(imports_of(&source, &text));
                 registry.sources_mut().edit(source, text);
@@ -227,7 +242,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
     let files = found.len();
     let mut problems = Problems::new();
     for path in others {
-        let Err(problem) = file::read(&path, &named(&path)) else { continue };
+        let Err(problem) = file::read_model(&path, &named(&path)) else { continue };
         problems.push((path.clone(), problem.clone()));
         if let Some(id) = id_of(&path) {
             broken(id, vec![(path.clone(), problem)], registry);
@@ -275,7 +290,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
 
 /// Searches a file for a declaration.
 fn examined(path: &Path, registry: &Registry) -> Found {
-    match file::read(path, &named(path)) {
+    match file::read_model(path, &named(path)) {
         Err(problem) => Found::Broken(vec![problem]),
         Ok(text) if is_model(&text) => match declare(path, &text, registry) {
             Ok(model) => Found::Model(Box::new(model)),

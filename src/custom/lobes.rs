@@ -222,7 +222,8 @@ impl Reader<'_> {
             } else {
                 format!(", or one of the parameters {}", listed(&names, "and"))
             };
-            self.wrong(value, &format!("it must be a number, 0 or more{or}"));
+            let rule = format!("it must be a number, 0 or more{or}");
+            self.wrong(value, value.too_large().unwrap_or(&rule));
         }
         found
     }

@@ -14,8 +14,8 @@
 //!   document; [`write_all`]: several documents; [`Draft`]: a document in steps. They keep mode, owner,
 //!   group, links and hard links, and refuse pipes, devices and sockets.
 //! - [`FolderDraft`]: a folder of files, all or nothing.
-//! - [`Output`]: the result of a command, which may go to a device or a pipe; [`may_overwrite`] is called
-//!   before it is calculated.
+//! - [`Output`]: the result of a command, which may go to a device or a pipe; [`may_overwrite`] and
+//!   [`can_begin`] are called before it is calculated.
 //! - [`spare`]: refuses a result that would replace an input; used by everything that writes results.
 //! - [`Before`]: the state of a place when it was examined, so that anything written there meanwhile is kept.
 //! - [`tidy`]: removes the leftovers of killed processes from a folder, and finishes their interrupted
@@ -71,7 +71,9 @@ pub use input::{is_descriptor, is_stream, read_input};
 pub use inside::inside;
 pub use litter::{Unfinished, tidy};
 pub use living::give_up;
-pub use output::{EXR, HDR, Output, PICTURES, PNG, Refused, Signature, may_overwrite, may_replace, spare};
+pub use output::{
+    EXR, HDR, Output, PICTURES, PNG, Refused, Signature, can_begin, may_overwrite, may_replace, spare,
+};
 pub use shown::{OnOneLine, Shown, printable, printable_json};
 pub use stamp::Stamp;
 pub use typed::meant;
@@ -177,9 +179,13 @@ impl From<FileError> for io::Error {
 /// The message for a file without a byte, such as one whose writing failed.
 pub const EMPTY: &str = "the file is empty";
 
-/// A limit as displayed.
+/// A limit as displayed; that of a format of one length is its length.
 fn size(bytes: u64) -> String {
-    if bytes >= 1 << 20 { format!("{} MiB", bytes >> 20) } else { format!("{} KiB", bytes >> 10) }
+    match bytes {
+        _ if !bytes.is_multiple_of(1 << 10) => format!("{bytes} bytes"),
+        _ if bytes >= 1 << 20 => format!("{} MiB", bytes >> 20),
+        _ => format!("{} KiB", bytes >> 10),
+    }
 }
 
 /// The kind of file to which a path leads, links followed.

@@ -147,6 +147,25 @@ pub fn may_replace(output: &Path, sort: Signature, agreed: bool, inputs: &[PathB
     }
 }
 
+/// Tries to begin a result where [`Output::put`] would write it, and leaves nothing behind: before it is calculated.
+///
+/// # Errors
+/// Returns the error that [`Output::put`] would return: of folders that cannot be made or written to, and of places that
+/// are no files. Devices and pipes are not opened.
+pub fn can_begin(path: &Path) -> Result<(), FileError> {
+    if descriptor(path).is_some() || matches!(kind(path), Ok(Kind::Pipe | Kind::Device)) {
+        return Ok(());
+    }
+    let mut begun = false;
+    let outcome = in_folder(folder_of(path), || {
+        Draft::fleeting(path)?;
+        begun = true;
+        // As after a failure, new folders are removed again.
+        Err(FileError::Taken)
+    });
+    if begun { Ok(()) } else { outcome }
+}
+
 /// The destination of a result: a file, which appears complete or not at all, or standard output, a device or a pipe.
 #[derive(Debug)]
 pub enum Output {

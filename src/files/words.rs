@@ -7,7 +7,10 @@ use std::io::{self, ErrorKind};
 pub fn words(error: &io::Error) -> String {
     let said = error.to_string();
     // Errors with a number come from the system, even if a library appends the path of a draft.
-    let Some((system, _)) = said.split_once(" (os error ") else { return said };
+    let Some((system, _)) = said.split_once(" (os error ") else {
+        let zero = error.kind() == ErrorKind::InvalidInput && said.contains("NUL byte");
+        return if zero { "the name has a zero character (\\0), which no file has".to_owned() } else { said };
+    };
     let own = match error.kind() {
         ErrorKind::NotFound => "there is no such file or folder",
         ErrorKind::PermissionDenied => "no permission",
@@ -44,6 +47,8 @@ mod tests {
         }
         let of_draft = tempfile::tempfile_in("/proc").expect_err("nobody makes files there");
         assert_eq!(words(&of_draft), "there is no such file or folder");
+        let zero = std::fs::metadata("a\0b").expect_err("no name");
+        assert_eq!(words(&zero), "the name has a zero character (\\0), which no file has");
         // This program's own errors stay unchanged.
         let own = io::Error::new(ErrorKind::NotADirectory, "it is not a folder");
         assert_eq!(words(&own), "it is not a folder");

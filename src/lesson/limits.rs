@@ -22,4 +22,4 @@ pub const DEEPEST_CONDITION: usize = 24;
 /// Maximum number of lines in a `view` or `point` block, and of values set by a `scene` block.
 pub const MAX_LINES: usize = 100;
 /// Maximum number of problems reported; the rest of the lesson is not read.
-pub const MAX_PROBLEMS: usize = 200;
+pub const MAX_PROBLEMS: usize = crate::scene::error::MOST_LISTED;

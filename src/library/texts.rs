@@ -62,7 +62,8 @@ impl Library {
         let in_folder = source.strip_prefix(MODELS).is_some_and(|name| !name.contains('/'));
         let id = custom::id_of(file).filter(|_| in_folder);
         let registered = id.is_some_and(|id| registry.custom_file(id).is_some());
-        let text = match custom::file::read(file, &source) {
+        let read = if source.starts_with(MODELS) { custom::file::read_model } else { custom::file::read };
+        let text = match read(file, &source) {
             Ok(text) => text,
             Err(problem) => {
                 self.pending.forget(&source);

@@ -13,6 +13,9 @@ use crate::{
 /// Maximum number of candela values in a file, given for the whole circle: one for every degree.
 pub const MAX_CANDELAS: usize = 181 * 361;
 
+/// Maximum candelas, with the factors of the file: beyond them light is not finite. As of the luminance of surroundings.
+const MOST_CANDELAS: f64 = 1e12;
+
 /// Photometric files. Renderers read the number of vertical angles and of horizontal angles, the vertical
 /// angles, the horizontal angles, and the candelas, one vertical half plane after the other. Angles are in
 /// degrees. Horizontal angles range from 0 to 360, whatever symmetry the file uses; a file with rotational
@@ -167,7 +170,12 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
         if candela < 0.0 {
             return Err(numbers.problem(format!("{what}, must be 0 or more, not {candela}")));
         }
-        candelas.push((candela * multiplier * ballast * tilted) as f32);
+        let candela = candela * multiplier * ballast * tilted;
+        if candela.is_nan() || candela > MOST_CANDELAS {
+            let rule = format!("{what}, must be at most {MOST_CANDELAS:e} cd with the factors of the file");
+            return Err(numbers.problem(format!("{rule}, not {candela:e}")));
+        }
+        candelas.push(candela as f32);
     }
     let more = numbers.words.by_ref().count();
     if more > 0 {
@@ -322,6 +330,28 @@ mod tests {
         match read(text.as_bytes()) {
             Ok(numbers) => numbers,
             Err(problem) => panic!("{problem:?} in {text}"),
+        }
+    }
+
+    #[test]
+    fn candelas_that_would_not_be_finite_light_are_refused() {
+        let of = |candelas: &str, factors: [&str; 2]| {
+            let text = file("0 90", "0", candelas).replace("1 1000 1 ", &format!("1 1000 {} ", factors[0]));
+            read(text.replace("\n1 1 50", &format!("\n{} 1 50", factors[1])).as_bytes())
+        };
+        assert!(of("1e12 0", ["1", "1"]).is_ok() && of("1e6 1", ["1e3", "1e3"]).is_ok());
+        for (candelas, factors, expected) in [
+            ("1e38 1", ["1e38", "1"], "not 1e76"),
+            ("1 2e12", ["1", "1"], "candela value 2 of 2"),
+            ("0 1", ["1e308", "1e308"], "not inf"),
+            ("1 1", ["1e308", "1e308"], "not inf"),
+        ] {
+            let problem = of(candelas, factors).expect_err(candelas);
+            assert!(
+                problem.message.contains("must be at most 1e12 cd with the factors of the file"),
+                "{problem:?}"
+            );
+            assert!(problem.message.contains(expected) && problem.line == Some(8), "{problem:?}");
         }
     }
 

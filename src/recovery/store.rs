@@ -377,7 +377,7 @@ mod tests {
         for name in ["notes", "1-2-x", "17"] {
             let foreign = store.folder.join(name);
             fs::create_dir(&foreign).expect("made");
-            [SCENE, LOCK].map(|file| fs::write(foreign.join(file), "{}").expect("writable"));
+            [SCENE, LOCK].iter().for_each(|file| fs::write(foreign.join(file), "{}").expect("writable"));
             File::open(&foreign).and_then(|folder| folder.set_modified(long_ago)).expect("set");
         }
         let copies = store.abandoned();

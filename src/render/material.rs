@@ -18,7 +18,7 @@ use bevy::{
     render::{
         render_asset::RenderAssets,
         render_resource::{
-            binding_types::{storage_buffer_read_only_sized, uniform_buffer_sized},
+            binding_types::storage_buffer_read_only_sized,
             *,
         },
         renderer::RenderDevice,
@@ -109,10 +109,12 @@ impl AsBindGroup for ModelMaterial {
     }
 
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
+        // No uniform buffers: software Vulkan (Mesa) calculates a shader anew whenever one is bound that it branches on, and keeps
+        // what it compiled from that for every frame.
         let storage = || storage_buffer_read_only_sized(false, None);
         BindGroupLayoutEntries::sequential(
             ShaderStages::VERTEX_FRAGMENT,
-            (storage(), uniform_buffer_sized(false, None), storage(), storage()),
+            (storage(), storage(), storage(), storage()),
         )
         .to_vec()
     }

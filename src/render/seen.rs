@@ -12,7 +12,7 @@ use bevy::{
     render::{
         render_asset::RenderAssets,
         render_resource::{
-            binding_types::{storage_buffer_read_only_sized, uniform_buffer_sized},
+            binding_types::storage_buffer_read_only_sized,
             *,
         },
         renderer::{RenderAdapter, RenderDevice},
@@ -89,10 +89,8 @@ impl AsBindGroup for SeenMaterial {
     }
 
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
-        BindGroupLayoutEntries::with_indices(
-            ShaderStages::FRAGMENT,
-            ((1, uniform_buffer_sized(false, None)), (2, storage_buffer_read_only_sized(false, None))),
-        )
+        let storage = storage_buffer_read_only_sized(false, None);
+        BindGroupLayoutEntries::with_indices(ShaderStages::FRAGMENT, ((1, storage), (2, storage)))
         .to_vec()
     }
 }

@@ -5,7 +5,7 @@ use std::io;
 use super::reading::{MAX_PICTURE_BYTES, Missing};
 use crate::files::{Kind, words};
 
-pub use super::problem::Problem;
+pub use super::problem::{MOST_LISTED, Problem};
 pub use crate::text::{
     path::{Path, Segment},
     place::Place,
@@ -105,7 +105,8 @@ pub enum LoadError {
         /// The mistake in the picture.
         what: String,
     },
-    /// The content is readable, but not a valid scene. Contains every problem, in the order of the file.
+    /// The content is readable, but not a valid scene. Contains the problems in the order of the file: [`MOST_LISTED`], and
+    /// one that says how many more there are.
     #[error("{}", lines(.name, .problems))]
     Invalid {
         /// The file.

@@ -6,9 +6,12 @@ use serde::{Serialize, Serializer};
 
 use crate::text::{behind, path::Path, place::Place};
 
-/// Maximum number of problems listed. A scene within the limits of lights and objects with errors in every
-/// field has fewer; a hostile file could have millions.
+/// Maximum number of problems kept while a file is read. A scene within the limits of lights and objects with errors in
+/// every field has fewer; a hostile file could have millions.
 pub(super) const MAX_PROBLEMS: usize = 200_000;
+
+/// Maximum number of problems listed, the first in the file; the others are counted.
+pub const MOST_LISTED: usize = 200;
 
 /// One problem of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]

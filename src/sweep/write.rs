@@ -121,7 +121,8 @@ impl<'a> Plan<'a> {
         let page = page.on(sweep.ground());
         let page = if look.words { page } else { page.silent() };
         let page = if time.is_some() { page.dated() } else { page };
-        room(&page, size, sweep.count())?;
+        let caption = if look.words { caption::most_rows(page.size()) } else { 0 };
+        room(&page, caption, size, sweep.count())?;
         Ok(Self { sweep, look, settings, page, time, each, held: sweep.scene })
     }
 
@@ -196,8 +197,9 @@ impl<'a> Plan<'a> {
 }
 
 /// Fails if a sheet is too large for programs that show pictures, or all of them for memory.
-fn room(page: &Page, [width, height]: [u32; 2], count: usize) -> Result<(), String> {
+fn room(page: &Page, caption: u32, [width, height]: [u32; 2], count: usize) -> Result<(), String> {
     let [across, down] = page.size();
+    let down = down.saturating_add(caption);
     if across.max(down) > MAX_SIDE {
         let said = format!(
             "the sheet would have {across}×{down} pixels, but each side must have at most {MAX_SIDE}"

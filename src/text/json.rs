@@ -28,13 +28,18 @@ pub const STRICT: ParseOptions = ParseOptions {
     allow_extended_string_escapes: false,
 };
 
+/// The message about half a pair of UTF-16 surrogates, which is no character.
+const HALF_PAIR: &str =
+    "an escape from \\ud800 to \\udfff is half a character; write the character itself, or both halves";
+
 /// The value in a text, if there is one.
 ///
 /// # Errors
 /// Returns the byte at which the text stops being JSON, and the reason.
 pub fn parse<'a>(text: &'a str, options: &ParseOptions) -> Result<Option<Ast<'a>>, (usize, String)> {
     let parsed = parse_to_ast(text, &CollectOptions::default(), options);
-    parsed.map(|p| p.value).map_err(|e| (e.range().start, e.kind().to_string()))
+    let said = |what: String| if what.contains("surrogate") { HALF_PAIR.to_owned() } else { what };
+    parsed.map(|p| p.value).map_err(|e| (e.range().start, said(e.kind().to_string())))
 }
 
 /// A value, and its path. The path is built on demand: most values are valid, and there may be many.
@@ -100,6 +105,13 @@ impl<'p, 'a> Cursor<'p, 'a> {
         }
     }
 
+    /// The rule that a number breaks which is too large for 32 bits.
+    #[must_use]
+    pub fn too_large(&self) -> Option<&'static str> {
+        let rule = "numbers must be between -3.4e38 and 3.4e38, the largest of 32 bits";
+        self.number().is_some_and(f32::is_infinite).then_some(rule)
+    }
+
     /// The number as written, if it is one.
     #[must_use]
     pub fn literal(&self) -> Option<&'p str> {
@@ -131,11 +143,17 @@ impl<'p, 'a> Cursor<'p, 'a> {
         }
     }
 
+    /// A value of this object, under a key.
+    #[must_use]
+    pub fn entry(&'p self, key: &'static str, value: &'p Ast<'a>) -> Self {
+        Self { value, way: Way::Key(self, key) }
+    }
+
     /// The first value under a key, as spelled in the text.
     #[must_use]
     pub fn get(&'p self, key: &'static str) -> Option<Self> {
         let property = self.properties()?.iter().find(|p| p.name.as_str() == key)?;
-        Some(Self { value: &property.value, way: Way::Key(self, key) })
+        Some(self.entry(key, &property.value))
     }
 }
 

@@ -41,7 +41,7 @@ type Read<T> = fn(&mut dyn Declarations, Cursor) -> Option<T>;
 pub(super) fn number(reader: &mut dyn Declarations, value: Cursor) -> Option<f32> {
     let number = value.number().filter(|n| n.is_finite());
     if number.is_none() {
-        reader.wrong(value, "it must be a number");
+        reader.wrong(value, value.too_large().unwrap_or("it must be a number"));
     }
     number
 }

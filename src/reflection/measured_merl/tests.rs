@@ -200,6 +200,8 @@ fn what_is_no_file_of_the_database_is_refused_with_the_reason() {
     }
     let whole = file(|_| [0.1; 3], SCALES);
     assert_eq!(whole.len() as u64, FORMAT.max_bytes);
+    let long = crate::files::FileError::TooLarge(FORMAT.max_bytes).to_string();
+    assert_eq!(long, "it is larger than 34992012 bytes");
     let cut = said(&whole[..1000]);
     assert_eq!(cut, "it ends after 1000 bytes; 90 × 90 × 180 entries in three colours take 34992012");
     let mut wrong = whole.clone();

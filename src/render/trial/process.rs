@@ -102,8 +102,10 @@ struct Kept {
     verdict: Verdict,
     /// Frame in which it was last requested.
     frame: u64,
-    /// False if the shader was not tried: the next request tries it again.
+    /// False if the shader was not tried, or only for too short a time: a request in a later frame tries it again.
     lasting: bool,
+    /// True once it was given.
+    given: bool,
 }
 
 #[derive(Debug)]
@@ -131,13 +133,13 @@ impl TrialProcess {
             let mut told = Instant::now();
             while let Some((key, request)) = worker.next() {
                 let (verdict, lasting) = match worker.verdict(&request) {
-                    Ok(verdict) => (verdict, true),
+                    Ok(answer) => answer,
                     Err(why) => (untried(&request, &format!("({why}); save it again to retry")), false),
                 };
                 let mut state = worker.shared.lock();
                 state.current = None;
                 let frame = state.frame;
-                state.answers.insert(key, Kept { verdict, frame, lasting });
+                state.answers.insert(key, Kept { verdict, frame, lasting, given: false });
                 let last = state.queue.is_empty();
                 drop(state);
                 if last || told.elapsed() > PACE {
@@ -151,7 +153,7 @@ impl TrialProcess {
     }
 
     /// The verdict on a shader, [`Verdict::NotYet`] until there is one. A shader that could not be tried is
-    /// refused, and tried when it is requested again.
+    /// refused, and tried when it is requested again in a later frame.
     pub fn ask(&self, composed: &Composed, faces: bool, row: impl FnOnce() -> Vec<u8>) -> Verdict {
         let mut hasher = DefaultHasher::new();
         (&composed.text, faces).hash(&mut hasher);
@@ -159,12 +161,8 @@ impl TrialProcess {
         let mut state = self.shared.lock();
         let frame = state.frame;
         if let Some(kept) = state.answers.get_mut(&key) {
-            kept.frame = frame;
-            let (verdict, lasting) = (kept.verdict.clone(), kept.lasting);
-            if !lasting {
-                state.answers.remove(&key);
-            }
-            return verdict;
+            (kept.frame, kept.given) = (frame, true);
+            return kept.verdict.clone();
         }
         if state.current == Some(key) {
             return Verdict::NotYet;
@@ -188,6 +186,7 @@ impl TrialProcess {
         state.frame += 1;
         let frame = state.frame;
         state.queue.retain(|waiting| waiting.frame + 1 >= frame);
+        state.answers.retain(|_, kept| kept.lasting || !kept.given);
         if state.answers.len() > KEPT {
             let mut used: Vec<_> = state.answers.values().map(|kept| kept.frame).collect();
             used.sort_unstable();
@@ -229,21 +228,23 @@ impl Worker {
         Some((waiting.key, waiting.request))
     }
 
-    /// Tries a shader. Returns the answer, or the reason why there is none.
-    fn verdict(&mut self, request: &Request) -> Result<Verdict, String> {
+    /// Tries a shader. Returns the answer, and false if another trial may have another; or the reason why there is none.
+    fn verdict(&mut self, request: &Request) -> Result<(Verdict, bool), String> {
         let line = serde_json::to_string(request).map_err(|why| why.to_string())?;
         for attempt in 0..2 {
             let process = match self.process.take() {
                 Some(process) => process,
                 None => self.start()?,
             };
-            let message = match self.fate(process, &line) {
-                Fate::Answered(Answer::Bad(problem)) => return Ok(Verdict::Bad(problem)),
-                Fate::Answered(_) => return Ok(Verdict::Good),
+            let fate = self.fate(process, &line);
+            let lasting = !matches!(fate, Fate::TooSlow);
+            let message = match fate {
+                Fate::Answered(Answer::Bad(problem)) => return Ok((Verdict::Bad(problem), true)),
+                Fate::Answered(_) => return Ok((Verdict::Good, true)),
                 Fate::TooSlow => {
                     let limit = self.budget.time.as_secs_f32();
                     format!(
-                        "the graphics driver did not finish compiling it and drawing a small picture with it within {limit} s; is there a loop with very many iterations?"
+                        "the graphics driver did not finish compiling it and drawing a small picture with it within {limit} s; is there a loop with very many iterations? The computer may also be busy; save the file again to retry"
                     )
                 }
                 Fate::TooLarge => {
@@ -257,7 +258,7 @@ impl Worker {
                     format!("the graphics driver crashes when it compiles it or draws with it{how}")
                 }
             };
-            return Ok(refused(request, message));
+            return Ok((refused(request, message), lasting));
         }
         Err("it ended".to_owned())
     }

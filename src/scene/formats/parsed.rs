@@ -8,10 +8,10 @@ use crate::{
     scene::{
         Repetition, Scene, beyond_room, check,
         error::{LoadError, Path, Problem},
-        problem::MAX_PROBLEMS,
+        problem::{MAX_PROBLEMS, MOST_LISTED},
         reading::{Defaults, Missing},
     },
-    text::place::Place,
+    text::{place::Place, plural},
 };
 
 /// A scene before its values are checked.
@@ -97,7 +97,7 @@ impl<'a> Parsed<'a> {
     }
 }
 
-/// Checks a scene that was read, and returns it or all its problems.
+/// Checks a scene that was read, and returns it or its problems.
 pub(in crate::scene) fn checked(
     parsed: Parsed,
     name: &str,
@@ -145,8 +145,11 @@ pub(in crate::scene) fn checked(
     }
     all.sort_by_key(|(place, _)| *place);
     let mut problems: Vec<_> = all.into_iter().map(|(_, problem)| problem).collect();
+    unlisted += problems.len().saturating_sub(MOST_LISTED);
+    problems.truncate(MOST_LISTED);
     if unlisted > 0 {
-        let more = format!("has {unlisted} more problems, which are not listed");
+        let verb = if unlisted == 1 { "is" } else { "are" };
+        let more = format!("has {}, which {verb} not listed", plural(unlisted, "more problem"));
         problems.push(Problem { place: end, ..Problem::about(Path::root(), more) });
     }
     Err(LoadError::Invalid { name: name.to_owned(), problems })

@@ -51,8 +51,8 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     } else if bytes.trim_ascii_start().starts_with(b"{") {
         return Err(whole("it may be a text glTF file; only binary ones (.glb) are read".to_owned()));
     } else {
-        obj::read(bytes, &mut builder)?;
-        if builder.is_empty() {
+        let faces = obj::read(bytes, &mut builder)?;
+        if builder.is_empty() && faces == 0 {
             let message = "it does not begin like binary glTF or PLY, and has no OBJ polygons (f)";
             return Err(whole(message.to_owned()));
         }
@@ -153,6 +153,12 @@ mod tests {
         assert!(said(b"glTF").contains("ends before"));
         assert!(said(b"ply\nformat").contains("not a valid PLY file"));
         assert!(said(&[0xff; 100]).contains("does not begin like"));
+        assert_eq!(said(b"v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"), "it has no polygons with an area");
+        let far = said(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 99999999999999999999\n");
+        assert!(
+            far.starts_with("this face (f) names the corner 99999999999999999999, but a file has at most ")
+        );
+        assert!(said(b"v 0 0 0\nf 1 2 3e\n").contains("must name its corners as vertex"));
         let square = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n";
         assert!(read(square.as_bytes()).is_ok());
     }

@@ -144,7 +144,7 @@ impl Lists {
             if part.is_empty() && i > 0 {
                 continue;
             }
-            let number: i64 = part.parse().map_err(|_| FACE)?;
+            let number: i64 = part.parse().map_err(|_| wrong_number(part))?;
             let back = u32::try_from(number.unsigned_abs()).unwrap_or(u32::MAX);
             *place = match number {
                 1.. => back,
@@ -175,6 +175,16 @@ impl Lists {
     }
 }
 
+/// The message about a reference that is not a number, or one that no computer counts to.
+fn wrong_number(written: &str) -> Cow<'static, str> {
+    let digits = written.trim_start_matches(['+', '-']);
+    if digits.is_empty() || digits.contains(|c: char| !c.is_ascii_digit()) {
+        return FACE.into();
+    }
+    let number = crate::text::shortened(written);
+    format!("this face (f) names the corner {number}, but a file has at most {MAX_VERTICES} vertices").into()
+}
+
 /// The message about an invalid reference of a face.
 fn beyond(kind: usize, written: &str, count: u32) -> Cow<'static, str> {
     let (one, all) = [
@@ -194,8 +204,8 @@ fn beyond(kind: usize, written: &str, count: u32) -> Cow<'static, str> {
     .into()
 }
 
-/// Reads the polygons of a file.
-pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
+/// Reads the polygons of a file, and returns how many faces it has.
+pub fn read(bytes: &[u8], to: &mut Builder) -> Result<usize, FileProblem> {
     // Comments may be in any encoding.
     let text = String::from_utf8_lossy(after_mark(bytes));
     let at =
@@ -214,7 +224,7 @@ pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
         begin = *end;
         to.polygon(&corners).map_err(|what| at(*line)(what.into()))?;
     }
-    Ok(())
+    Ok(lists.faces.len())
 }
 
 #[cfg(test)]

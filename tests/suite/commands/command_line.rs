@@ -40,6 +40,7 @@ fn wrong_usage_has_status_2() {
         (&["render", "--shading", "x"], "--shading is \"x\", but the shading model must be"),
         (&["render", "--tone-mapping", "acess"], "did you mean \"aces\"?"),
         (&["render", "--exposure", "17"], "--exposure is \"17\", but it must be between -16 and 16 EV"),
+        (&["render", "--exposure", "1e308"], "--exposure is \"1e308\", but it must be between -16 and 16 EV"),
         (&["render", "--exposure", "-17"], "it must be between -16 and 16 EV"),
         (&["render", "a.json", "b.json", "-o", "x.png"], "-o x.png is one file, but there are 2 scenes"),
         (&["render", "a/x.json", "b/x.json"], "would both be written to renders/x.png"),
@@ -67,6 +68,13 @@ fn wrong_usage_has_status_2() {
         (&["albedo", "fong"], "did you mean \"phong\"?"),
         (&["albedo", "phong", "--set", "k_d=0.2"], "but the diffuse coefficient must be between 0.5 and 1"),
         (&["albedo", "phong", "--on", "paper"], "invalid value 'paper'"),
+        (&["new", ""], "the path is empty; name a file or a folder"),
+        (&["render", "-o", ""], "the path is empty; name a file or a folder"),
+        (&["explain", "--at", "1,1", "--hemisphere", "h.xyz"], "--hemisphere h.xyz: name a PNG file"),
+        (
+            &["explain", "--at", "1,1", "--hemisphere", "h.bmp"],
+            "only PNG files can be written; did you mean h.png?",
+        ),
     ] {
         refused(&lcm(arguments, ""), 2, expected);
     }
@@ -416,4 +424,17 @@ fn a_new_scene_is_no_stream() {
         "{}",
         ran.err
     );
+}
+
+#[test]
+fn a_picture_with_a_caption_is_no_higher_than_a_picture_may_be() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let draw = |size: &str| {
+        let arguments = ["render", "-o", "x.png", "--renderer", "cpu", "--caption", "--size", size];
+        lcm_in(folder.path(), &arguments, b"")
+    };
+    let run = draw("1x16384");
+    assert_eq!(run.status, Some(2), "{}", run.err);
+    assert!(run.err.contains("1x16384 with a caption of up to "), "{}", run.err);
+    assert_eq!(draw("1x16000").status, Some(0));
 }

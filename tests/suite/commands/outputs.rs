@@ -9,7 +9,7 @@ use std::{
     path::Path,
     process::{Child, Stdio},
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use lights_camera_models::files;
@@ -61,6 +61,44 @@ fn match_never_replaces_the_scene_that_it_reads() {
     let run = matched("s.json", "other.json", b"");
     assert_eq!(run.status, Some(0), "{}", run.err);
     assert_ne!(fs::read(at("other.json")).expect("there"), before);
+}
+
+#[test]
+fn where_a_result_cannot_be_written_its_command_says_so_before_it_draws() {
+    let folder = folder();
+    for arguments in [
+        &["render", "s.json", "--size", "4096x4096", "--renderer", "cpu", "-o", "/proc/a.png"][..],
+        &["render", "s.json", "--view", "A", "--size", "2048x2048", "-o", "/proc/a.exr"],
+        &[
+            "sweep",
+            "s.json",
+            "--size",
+            "2048x2048",
+            "--vary",
+            "display.exposure=-2..2:5",
+            "-o",
+            "/proc/sw.gif",
+        ],
+        &["sweep", "s.json", "--size", "4096x4096", "--vary", "display.exposure=-2..2:9", "-o", "/proc/all"],
+        &["materials", "--size", "1024", "-o", "/proc/m.png"],
+        &["compare", "s.json", "--size", "4096x4096", "-o", "/proc/c.png"],
+        &["match", "s.json", "--free", "alpha", "-o", "/proc/m.json"],
+        &["manual", "/proc/man"],
+    ] {
+        let start = Instant::now();
+        let run = lcm_in(folder.path(), arguments, b"");
+        refused(
+            &run,
+            4,
+            "could not be written: /proc is a folder of the system in which no files can be created",
+        );
+        assert!(start.elapsed().as_secs() < 10, "{arguments:?}: {:?}", start.elapsed());
+    }
+    let files = |place: &str| files::can_begin(&folder.path().join(place)).map_err(|error| error.to_string());
+    // New folders are made for the attempt, and removed.
+    assert_eq!(files("new/er/a.png"), Ok(()));
+    assert!(files("s.json/a.png").is_err_and(|error| error.ends_with("s.json is not a folder")));
+    assert_eq!(names(folder.path()), ["s.json"]);
 }
 
 #[test]

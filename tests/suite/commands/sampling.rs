@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 
 use crate::{
     helpers::pictures::close_up,
-    helpers::support::{Run, command_in, lcm_in, names},
+    helpers::support::{Run, command_in, command_of, lcm_in, names, run},
     renderers::golden::read_png,
 };
 
@@ -461,4 +461,17 @@ fn the_frames_of_a_converging_picture_leave_no_memory_behind() {
     // Eight samples a frame.
     let [few, many] = [264, 1288].map(|samples| peak(folder.path(), samples));
     assert!(many < few + 64, "33 frames take {few} MiB, 161 take {many} MiB");
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_explanation_that_takes_long_says_so_on_a_terminal() {
+    let folder = folder();
+    let lcm = env!("CARGO_BIN_EXE_lcm");
+    let line = format!(
+        "timeout 8 {lcm} explain softbox.json --at 32,18 --size 64x36 --light-samples 1048576 --derivatives"
+    );
+    let mut command = command_of(Path::new("script"), folder.path(), ["-qec", &line, "/dev/null"]);
+    command.env("TERM", "xterm");
+    let shown = run(command, b"");
+    assert!(shown.out.contains("explaining the pixel") && shown.out.contains("so far"), "{}", shown.out);
 }

@@ -232,6 +232,14 @@ fn what_is_wrong_is_said_before_anything_is_drawn() {
     }
     let run = lcm_in(folder.path(), &["sweep", "--vary", SIZES, "-o", "x.png", "--size", "9000x10"], b"");
     refused(&run, 2, "each side must have at most 16384; make the pictures smaller");
+    // With its caption.
+    let column = ["sweep", "--vary", SIZES, "--columns", "1", "-o", "x.png", "--size"];
+    let fits = (5300..=5461).rev().step_by(20).find(|height| {
+        lcm_in(folder.path(), &[&column[..], &[&format!("8x{height}")]].concat(), b"").status == Some(0)
+    });
+    let (_, height, _) = read_png(&folder.path().join("x.png")).expect("drawn");
+    assert!(fits.is_some() && height <= 16_384, "{fits:?}, {height}");
+    fs::remove_file(folder.path().join("x.png")).expect("removed");
     assert_eq!(names(folder.path()), Vec::<String>::new());
 }
 

@@ -131,6 +131,10 @@ fn mistakes_in_curves_are_told_with_what_would_be_right() {
         ("\"curves\": 3".to_owned(), "curves is 3, but it must be an object of curves: { \"coat\":"),
         (one("\"coat\": 1"), "but it must be an object of curves"),
         (one("\"coat\": {}"), "curves: \"coat\": it needs a \"model\""),
+        (
+            one("\"coat\": { \"model\": \"xm\" }"),
+            "curves.coat.model is \"xm\", but the model of a curve must be",
+        ),
         (one("\"coat\": { \"model\": \"microfaset\" }"), "did you mean \"microfacet\"?"),
         (
             one("\"Coat\": { \"model\": \"lambert\" }"),

@@ -252,6 +252,13 @@ fn a_bad_file_is_an_error_for_whoever_names_it() {
         assert!(told.status == Some(1) && told.err.contains(expected), "{}", told.err);
         assert!(!told.err.contains("models/"), "{}", told.err);
     }
+    // So does the scene that names a model with a mistake in a file that it imports.
+    fs::write(elsewhere.join("lib.wgsl"), "\nfn lib() -> f32 { return gone; }\n").unwrap();
+    fs::write(elsewhere.join("of_lib.wgsl"), with("lib.wgsl")).unwrap();
+    let text = scene("of_lib", &json!({}), None);
+    let told = lcm_in(bench.folder.path(), &["check", "-", "--models", "elsewhere"], text.as_bytes());
+    let said = "the file of that custom model has an error: elsewhere/lib.wgsl:2:";
+    assert!(told.status == Some(1) && told.err.contains(said), "{}", told.err);
     // A scene names it too.
     let told = bench.run("check -", &scene("nothing", &json!({}), None));
     assert_eq!(told.status, Some(1));
@@ -468,4 +475,36 @@ fn a_model_brings_the_files_that_it_imports() {
     fs::write(&lambert, format!("#import \"../models/three.wgsl\"\n{text}")).unwrap();
     let told = bench.run("evaluate lambert --on gpu --assets mine", ANGLES);
     assert_eq!(told.status, Some(0), "{}", told.err);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_import_is_a_file_in_the_folder_and_no_link_leads_out_of_it() {
+    use std::os::unix::fs::symlink;
+    let bench = Bench::new();
+    let with = |import: &str| model("x").replace("*/\n", &format!("*/\n#import \"{import}\"\n"));
+    fs::write(bench.folder.path().join("secret"), "root:x:0:0\n").unwrap();
+    symlink("../secret", bench.models().join("pw.wgsl")).unwrap();
+    symlink("/dev/zero", bench.models().join("zero.wgsl")).unwrap();
+    symlink("half.wgsl", bench.models().join("same.wgsl")).unwrap();
+    bench.put("half.wgsl", "fn half() -> f32 { return 0.5; }\n");
+    fs::create_dir(bench.models().join("folder.wgsl")).unwrap();
+    for import in ["pw", "zero", "same", "folder"] {
+        bench.put(&format!("with_{import}.wgsl"), &with(&format!("{import}.wgsl")));
+    }
+    for (id, expected) in [
+        ("with_pw", "this is a link that leads out of the folder models"),
+        ("pw", "this is a link that leads out of the folder models"),
+        ("with_zero", "this is a device, not a regular file"),
+        ("with_folder", "this is a folder, not a regular file"),
+    ] {
+        let told = bench.run(&format!("evaluate {id}"), ANGLES);
+        assert!(told.status == Some(1) && told.err.contains(expected), "{id}: {}", told.err);
+        assert!(!told.err.contains("root:x") && !told.err.contains("there is no file"), "{}", told.err);
+    }
+    assert_eq!(bench.run("evaluate with_same", ANGLES).status, Some(0));
+    // Neither do the declarations of the whole folder.
+    let mut registry = bench.registry();
+    assert_eq!(declare_rest(&mut registry).problems.len(), 3);
+    assert_eq!(registry.sources().get("models/pw.wgsl"), None);
 }

@@ -141,6 +141,14 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
             "lobes[0].exponent is -1, but it must be a number, 0 or more",
         ),
         (
+            "{ \"lobes\": [{ \"shape\": \"ggx\", \"alpha\": 1e308 }] }",
+            "lobes[0].alpha is 1e308, but numbers must be between -3.4e38 and 3.4e38, the largest of 32 bits",
+        ),
+        (
+            "{ \"parameters\": [{ \"name\": \"a\", \"min\": 1e400 }] }",
+            "parameters[0].min is 1e400, but numbers must be between -3.4e38 and 3.4e38, the largest of 32 bits",
+        ),
+        (
             "{ \"parameters\": [\"alpha\", \"base_colour\"], \"lobes\": [{ \"shape\": \"power\", \"exponent\": \"base_colour\" }] }",
             "lobes[0].exponent is \"base_colour\", but it must be a number, 0 or more, or one of the parameters \"alpha\"",
         ),

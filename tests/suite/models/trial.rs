@@ -10,9 +10,12 @@ use std::{
     time::{Duration, Instant},
 };
 
-use lights_camera_models::render::trial::{
-    Bench,
-    process::{Budget, TrialProcess},
+use lights_camera_models::{
+    render::trial::{
+        Bench, Verdict,
+        process::{Budget, TrialProcess},
+    },
+    shader::compose::Composed,
 };
 
 use crate::renderers::reload::{BREAKAGES, Breakage, Lab, original, phong_scene};
@@ -136,6 +139,38 @@ fn whatever_becomes_of_the_process_is_told_and_the_picture_stays() {
         assert!(trouble.problem.message.contains(said), "{does}: {}", trouble.problem);
         assert_eq!(trouble.stale, ["Phong"]);
     }
+}
+
+#[test]
+fn a_shader_that_took_too_long_is_tried_again_in_a_later_frame() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let slow = folder.path().join("slow");
+    fs::write(&slow, "").expect("writable");
+    let does = format!(
+        "echo '\"Ready\"'; read line; if [ -e {0} ]; then rm {0}; sleep 100; fi; echo '\"Good\"'; read line",
+        slow.display()
+    );
+    let budget = Budget { time: Duration::from_secs(2), ..Budget::default() };
+    let process = TrialProcess::new(program(folder.path(), &does), budget, || {});
+    let composed = Composed { text: "fn response() {}\n".to_owned(), ..Composed::default() };
+    let ask = || process.ask(&composed, false, Vec::new);
+    let answer = || {
+        let start = Instant::now();
+        loop {
+            process.begin_frame();
+            match ask() {
+                Verdict::NotYet => thread::sleep(Duration::from_millis(5)),
+                answer => break answer,
+            }
+            assert!(start.elapsed() < Duration::from_secs(60), "no answer comes");
+        }
+    };
+    let first = answer();
+    let Verdict::Bad(problem) = &first else { panic!("{first:?}") };
+    let said = "The computer may also be busy; save the file again to retry";
+    assert!(problem.message.contains("within 2 s") && problem.message.ends_with(said), "{problem}");
+    assert!(ask() == first, "all requests of a frame have one answer");
+    assert!(answer() == Verdict::Good);
 }
 
 #[test]

@@ -4,12 +4,15 @@ use std::{fs, time::Instant};
 
 use lights_camera_models::{
     registry::Registry,
-    scene::load::{self, Defaults},
+    scene::{
+        error::MOST_LISTED,
+        load::{self, Defaults},
+    },
 };
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use crate::helpers::support::{changed, check_wording, full_scene, lcm_in, said, said_of_bytes};
+use crate::helpers::support::{changed, check_wording, full_scene, lcm, lcm_in, said, said_of_bytes};
 
 #[test]
 fn the_full_scene_is_valid() {
@@ -513,14 +516,21 @@ fn counts_have_limits() {
 }
 
 #[test]
-fn ten_thousand_broken_objects_are_all_reported_and_quickly() {
+fn of_ten_thousand_broken_objects_some_are_reported_and_the_rest_is_counted_quickly() {
     let object = json!({ "type": "cub", "position": [80, 5, 5], "material": { "k_d": 0.1, "kd": 1 } });
     let text = changed(|s| s["objects"] = vec![object; 10_000].into());
     let start = Instant::now();
     let said = said(&text);
     let took = start.elapsed();
-    assert_eq!(said.lines().count(), 40_000);
+    assert_eq!(said.lines().count(), MOST_LISTED + 1);
+    assert!(said.contains("the scene has 39800 more problems, which are not listed"), "{said}");
     assert!(took.as_secs_f32() < 1.0, "{took:?}");
+}
+
+#[test]
+fn half_a_character_is_named_as_what_it_is() {
+    let said = said("{\"name\": \"\\ud800\"}");
+    assert!(said.contains("an escape from \\ud800 to \\udfff is half a character"), "{said}");
 }
 
 #[test]
@@ -532,8 +542,26 @@ fn hostile_files_do_not_take_all_memory() {
     assert_eq!(said_of.lines().count(), 2);
     let keys = "\"q\":1,".repeat(1_000_000);
     let said_of = said(&full_scene().to_string().replacen('{', &format!("{{{keys}"), 1));
-    assert!(said_of.contains("the scene has 800000 more problems, which are not listed"));
-    assert_eq!(said_of.lines().count(), 200_001);
+    assert!(said_of.contains("the scene has 999800 more problems, which are not listed"));
+    assert_eq!(said_of.lines().count(), MOST_LISTED + 1);
+}
+
+#[test]
+fn the_check_lists_the_first_problems_and_counts_the_rest_for_programs_too() {
+    let keys: String = (0..MOST_LISTED + 1).map(|i| format!("\"q{i}\":1,")).collect();
+    let text = full_scene().to_string().replacen('{', &format!("{{{keys}"), 1);
+    let told = lcm(&["check", "-"], &text);
+    assert!(
+        told.err.lines().count() == MOST_LISTED + 1 && told.err.contains("q199 is not a key"),
+        "{}",
+        told.err
+    );
+    assert!(told.err.contains("the scene has 1 more problem, which is not listed"), "{}", told.err);
+    let told = lcm(&["check", "--json", "-"], &text);
+    let report: Value = serde_json::from_str(&told.out).expect("JSON");
+    let problems = report[0]["problems"].as_array().expect("a list");
+    assert_eq!(problems.len(), MOST_LISTED + 1);
+    assert_eq!(problems[MOST_LISTED]["message"], "the scene has 1 more problem, which is not listed");
 }
 
 #[test]
@@ -542,7 +570,7 @@ fn problems_are_found_quickly_in_one_huge_line_too() {
     let mut scene = full_scene();
     scene["objects"] = vec![object; 10_000].into();
     let start = Instant::now();
-    assert_eq!(said(&scene.to_string()).lines().count(), 10_000);
+    assert!(said(&scene.to_string()).contains("the scene has 9800 more problems"));
     assert!(start.elapsed().as_secs_f32() < 1.0);
 }
 
