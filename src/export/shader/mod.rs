@@ -142,7 +142,7 @@ pub fn compose(
         if !fields.is_empty() {
             all.extend(items(&parameter_struct(&entry.parameter_struct(), &fields)));
         }
-        let heading = format!("{} light: {}", what.name.trim_end_matches(" light"), what.equation);
+        let heading = format!("{}: {}", what.title(), what.equation);
         sections.push(Section { heading, items: all });
     }
     let mut heading = credit(own.name, "reflection", own.source, own.summary);

@@ -505,6 +505,13 @@ fn a_large_picture_of_an_environment_is_reduced_where_a_uniform_holds_it() {
             run.err
         );
     }
+    let main = fs::read_to_string(folder.path().join("bevy/src/main.rs")).expect("readable");
+    for said in [
+        "// Disc light: L(p, l) = L, L in cd/m².",
+        "// Environment light: L(p, l) = I L_s(l), I is a factor.",
+    ] {
+        assert!(main.contains(said), "{said}");
+    }
 }
 
 #[test]
