@@ -535,6 +535,17 @@ fn a_clear_sky_is_eleven_times_as_bright_at_the_sun_as_at_the_zenith() {
 }
 
 #[test]
+fn the_slider_of_the_zenith_luminance_ends_where_its_values_are_of_use() {
+    let entry = *Registry::builtin().light("environment").expect("built in");
+    let parameter = entry.parameters.iter().find(|p| p.name == "zenith_luminance").expect("declared");
+    let limits = parameter.kind.limits().expect("a number");
+    assert_eq!(
+        (limits.slider_max, limits.max, parameter.kind.default_value().numbers()[0] as f32),
+        (1.0, 20_000.0, 0.1)
+    );
+}
+
+#[test]
 fn all_types_of_sky_are_those_of_the_standard() {
     /// Largest relative difference, attributed to single precision.
     const MOST: f64 = 2e-4;
