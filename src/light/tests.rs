@@ -871,3 +871,12 @@ fn inside_and_behind_a_lamp_is_no_light_and_just_outside_is_half_a_world_of_it()
         assert!(!near(found, PI, 0.1), "{found}");
     }
 }
+
+#[test]
+fn each_type_has_a_glyph_of_its_own() {
+    let registry = Registry::builtin();
+    let glyphs: Vec<_> = registry.lights().iter().map(|light| light.declaration.glyph).collect();
+    for (i, glyph) in glyphs.iter().enumerate() {
+        assert!(!glyphs[..i].contains(glyph), "{glyph} is that of two types of light");
+    }
+}
