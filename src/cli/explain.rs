@@ -96,7 +96,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         let explained = |view: &str| explained(arguments, &source, &scene, view, options, registry);
         let first = explained(&arguments.view)?;
         if let Some(file) = &arguments.hemisphere {
-            hemisphere(file, &first, registry)?;
+            hemisphere(file, &first, registry, options)?;
         }
         let influences =
             arguments.derivatives.then(|| influences(arguments, &first, registry)).transpose()?;
@@ -183,7 +183,7 @@ fn influences(
 }
 
 /// Writes the hemisphere above the point with the greatest weight in the pixel.
-fn hemisphere(file: &Path, explained: &Explained, registry: &Registry) -> Outcome {
+fn hemisphere(file: &Path, explained: &Explained, registry: &Registry, options: Options) -> Outcome {
     /// Pixels per disc.
     const SIDE: usize = 320;
     let seen = explained.explanation.seen.as_ref();
@@ -196,7 +196,9 @@ fn hemisphere(file: &Path, explained: &Explained, registry: &Registry) -> Outcom
     })?;
     let surface = &*seen.model.surface.0;
     let shining = Shining::new(&explained.scene, registry);
-    let found = Hemisphere::new(&shining, surface, spot, explained.settings.terms, SIDE).picture();
+    let found = Hemisphere::new(&shining, surface, spot, explained.settings.terms, SIDE);
+    found.nothing().into_iter().for_each(|remark| options.tell(format_args!("--hemisphere: {remark}")));
+    let found = found.picture();
     let about =
         About::program().with("Title", "The hemisphere above a point").with("Description", found.about);
     outputs::tidy_beside(file);

@@ -1,9 +1,8 @@
 //! The active lights of a scene, with one record type that contains the fields needed by their types.
 
-use std::sync::Arc;
-
 use glam::Vec3;
 
+use super::lamp_files::{Fitted, LampFiles};
 use crate::{
     light::{LightEntry, LightRecord, Twin},
     parameter::{Parameter, lanes},
@@ -18,8 +17,13 @@ pub struct Lights<'a> {
     pub types: Vec<&'a LightEntry>,
     /// The lights.
     pub rows: Vec<LightRow>,
-    /// The numbers of the files that they use, one file after the other.
+    /// The numbers of the files that they use, one file after the other; pictures of environments are reduced to fit
+    /// into a uniform.
     pub numbers: Vec<f32>,
+    /// How many of the numbers are those of pictures of environments.
+    pub pictures: usize,
+    /// A sentence for each picture that was reduced.
+    pub notes: Vec<String>,
     /// True if some light is uniform ambient light.
     pub uniform: bool,
 }
@@ -65,29 +69,26 @@ impl<'a> Lights<'a> {
         let encoding = scene.display.encoding;
         let used = |entry: &&LightEntry| scene.shining().any(|l| l.light_type == entry.declaration.id);
         let types: Vec<_> = registry.lights().iter().filter(used).collect();
-        let mut numbers = Vec::new();
-        let mut files: Vec<(Arc<[f32]>, u32)> = Vec::new();
-        let mut rows = Vec::new();
+        let mut files = LampFiles::default();
+        let mut uses = Vec::new();
+        let mut rows: Vec<LightRow> = Vec::new();
         for (index, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
             let Some(light_type) = types.iter().position(|t| t.declaration.id == light.light_type) else {
                 continue;
             };
             let entry = types[light_type];
-            let mut words = entry.words(&light.parameters, encoding);
+            let words = entry.words(&light.parameters, encoding);
             for (place, table) in entry.tables(&light.parameters) {
-                let known =
-                    files.iter().find(|(file, _)| Arc::ptr_eq(file, &table.numbers)).map(|(_, at)| *at);
-                words[place] = known.unwrap_or_else(|| {
-                    let first = numbers.len() as u32;
-                    numbers.extend_from_slice(&table.numbers);
-                    files.push((table.numbers.clone(), first));
-                    first
-                });
+                uses.push((rows.len(), place, files.index(table)));
             }
             rows.push(LightRow { index, light_type, record: record(light, registry, encoding), words });
         }
+        let Fitted { numbers, begins, pictures, notes } = files.fitted();
+        for (row, place, file) in uses {
+            rows[row].words[place] = begins[file];
+        }
         let uniform = shines_from_everywhere(scene.shining(), encoding, registry);
-        Self { types, rows, numbers, uniform }
+        Self { types, rows, numbers, pictures, notes, uniform }
     }
 
     /// True if some light has extent.

@@ -280,6 +280,7 @@ impl<'a> Lit<'a> {
                  visible."
             ));
         }
+        notes.extend(self.lights.notes.iter().cloned());
         notes
     }
 

@@ -14,6 +14,7 @@ mod bevy;
 pub mod bodies;
 pub(crate) mod executable;
 pub mod html;
+mod lamp_files;
 pub mod lights;
 pub mod lit;
 pub mod manifest;

@@ -55,16 +55,17 @@ const SUN_ELEVATION: Parameter = Parameter::number("sun_elevation", 0.0..=90.0, 
     .label("sun's elevation")
     .unit("°")
     .help("The height of the sun above the horizon. The sun itself is another light; the sky is brighter around it.")
-    .used_when("source", &["sky"]);
+    .used_when("sky_type", &sky::BRIGHTER_AT_SUN);
 
 const SUN_AZIMUTH: Parameter = Parameter::number("sun_azimuth", -360.0..=360.0, 140.0)
     .symbol("α_s")
     .label("sun's azimuth")
     .unit("°")
     .help("The direction of the sun, clockwise from −z as seen from above: 90° is +x.")
-    .used_when("source", &["sky"]);
+    .used_when("sky_type", &sky::BRIGHTER_AT_SUN);
 
 const ZENITH_LUMINANCE: Parameter = Parameter::number("zenith_luminance", 0.0..=20_000.0, 0.1)
+    .slider_to(1.0)
     .symbol("L_z")
     .label("zenith luminance")
     .unit("cd/m²")

@@ -42,6 +42,7 @@ mod spot;
 mod studio;
 mod sun;
 mod twin;
+mod words;
 
 pub use self::{
     ambient::Ambient, cylinder::Cylinder, directional::Directional, disc::Disc, environment::Environment,

@@ -26,6 +26,10 @@ pub(super) const TYPES: [(&str, &str); 15] = [
     ("15", "15 white-blue, turbid, wide corona"),
 ];
 
+/// The types whose luminance depends on the place of the sun: in the others, `c` is 0.
+pub(super) const BRIGHTER_AT_SUN: [&str; 12] =
+    ["2", "4", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15"];
+
 /// Gradation `a`, `b` and indicatrix `c`, `d`, `e` of the type with this index.
 fn coefficients(index: usize) -> [f32; 5] {
     let row = include_str!("sky.csv").lines().nth(index).unwrap_or_default();

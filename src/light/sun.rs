@@ -46,7 +46,7 @@ impl Sun {
 impl LightType for Sun {
     const DECLARATION: Declaration = Declaration::new("sun", "Sun", wgsl!("light/sun.wgsl"))
         .summary("A disc infinitely far away, as the sun is: a directional light with extent.")
-        .glyph("☀")
+        .glyph("☉")
         .with_direction()
         .lux(1.0, 10.0)
         .with_extent()

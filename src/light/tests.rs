@@ -535,6 +535,17 @@ fn a_clear_sky_is_eleven_times_as_bright_at_the_sun_as_at_the_zenith() {
 }
 
 #[test]
+fn the_slider_of_the_zenith_luminance_ends_where_its_values_are_of_use() {
+    let entry = *Registry::builtin().light("environment").expect("built in");
+    let parameter = entry.parameters.iter().find(|p| p.name == "zenith_luminance").expect("declared");
+    let limits = parameter.kind.limits().expect("a number");
+    assert_eq!(
+        (limits.slider_max, limits.max, parameter.kind.default_value().numbers()[0] as f32),
+        (1.0, 20_000.0, 0.1)
+    );
+}
+
+#[test]
 fn all_types_of_sky_are_those_of_the_standard() {
     /// Largest relative difference, attributed to single precision.
     const MOST: f64 = 2e-4;
@@ -858,5 +869,14 @@ fn inside_and_behind_a_lamp_is_no_light_and_just_outside_is_half_a_world_of_it()
         // Farther away it is less.
         let found = lamp.integral(p - n, 1 << 14, |l| f64::from(l.dot(n).max(0.0)));
         assert!(!near(found, PI, 0.1), "{found}");
+    }
+}
+
+#[test]
+fn each_type_has_a_glyph_of_its_own() {
+    let registry = Registry::builtin();
+    let glyphs: Vec<_> = registry.lights().iter().map(|light| light.declaration.glyph).collect();
+    for (i, glyph) in glyphs.iter().enumerate() {
+        assert!(!glyphs[..i].contains(glyph), "{glyph} is that of two types of light");
     }
 }

@@ -78,7 +78,8 @@ fn samples(ui: &mut Ui, converged: &[Converging]) {
         );
         ui.label(
             "Noise: how far pixels are from their final value, as the root mean square of their standard errors, over the \
-             mean luminance of what is seen. The estimate is rather too large.",
+             mean luminance of what is seen. The true error is smaller, by nearly three times in two scenes measured: samples are spread \
+             evenly, and the estimate takes them as independent.",
         );
         for line in lines {
             ui.label(line);

@@ -87,14 +87,14 @@ pub const REFLECTANCE: Parameter = Parameter::number("reflectance", 0.0..=1.0, 0
 pub const ALPHA_X: Parameter = Parameter::number("alpha_x", 0.001..=1.0, 0.3)
         .symbol("α_x")
         .label("roughness along the tangent")
-        .help("The steepness of the microfacets along the brushing: smaller values make the reflection sharper in that direction.")
+        .help("The steepness of the microfacets along the tangent: smaller values make the reflection sharper in that direction. It is small where scratches run along the tangent.")
     .stands_for(&meaning::ALPHA_ALONG);
 
 /// Roughness across the tangent: as [`ALPHA_X`], along the bitangent.
 pub const ALPHA_Y: Parameter = Parameter::number("alpha_y", 0.001..=1.0, 0.3)
         .symbol("α_y")
         .label("roughness across the tangent")
-        .help("The steepness of the microfacets across the brushing. If it equals the roughness along the brushing, the surface is isotropic.")
+        .help("The steepness of the microfacets across the tangent. If it equals the roughness along the tangent, the surface is isotropic.")
     .stands_for(&meaning::ALPHA_ACROSS);
 
 /// Standard deviation of the slope angles (Oren, Nayar 1994). The full equation falls below zero from 36° on, so the

@@ -16,14 +16,14 @@ use crate::{
 const EXPONENT_U: Parameter = Parameter::integer_from("exponent_u", 0, 10_000, 10)
     .symbol("n_u")
     .label("exponent along the tangent")
-    .help("The sharpness of the highlight along the brushing: larger values narrow it in that direction.")
+    .help("The sharpness of the highlight along the tangent: larger values narrow it in that direction. It is large where scratches run along the tangent.")
     .stands_for(&meaning::EXPONENT_ALONG);
 
 /// The exponent of the highlight along the bitangent.
 const EXPONENT_V: Parameter = Parameter::integer_from("exponent_v", 0, 10_000, 200)
     .symbol("n_v")
     .label("exponent across the tangent")
-    .help("The sharpness of the highlight across the brushing. If it equals the exponent along the brushing, the surface is isotropic.")
+    .help("The sharpness of the highlight across the tangent. If it equals the exponent along the tangent, the surface is isotropic.")
     .stands_for(&meaning::EXPONENT_ACROSS);
 
 parameters! {

@@ -17,10 +17,7 @@ use bevy::{
     prelude::*,
     render::{
         render_asset::RenderAssets,
-        render_resource::{
-            binding_types::storage_buffer_read_only_sized,
-            *,
-        },
+        render_resource::{binding_types::storage_buffer_read_only_sized, *},
         renderer::RenderDevice,
         storage::{GpuShaderBuffer, ShaderBuffer},
     },

@@ -11,10 +11,7 @@ use bevy::{
     prelude::*,
     render::{
         render_asset::RenderAssets,
-        render_resource::{
-            binding_types::storage_buffer_read_only_sized,
-            *,
-        },
+        render_resource::{binding_types::storage_buffer_read_only_sized, *},
         renderer::{RenderAdapter, RenderDevice},
         storage::GpuShaderBuffer,
     },
@@ -90,8 +87,7 @@ impl AsBindGroup for SeenMaterial {
 
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
         let storage = storage_buffer_read_only_sized(false, None);
-        BindGroupLayoutEntries::with_indices(ShaderStages::FRAGMENT, ((1, storage), (2, storage)))
-        .to_vec()
+        BindGroupLayoutEntries::with_indices(ShaderStages::FRAGMENT, ((1, storage), (2, storage))).to_vec()
     }
 }
 

@@ -38,7 +38,8 @@ impl Light {
     pub fn setting(&self, entry: &LightEntry, p: &Parameter, value: Value) -> Vec<(Key, Option<Value>)> {
         let rules =
             |other: &Parameter| other.used_when.is_some_and(|condition| condition.parameter == p.name);
-        let is_source = entry.parameters.iter().any(rules) && !p.kind.is_flag() || p.kind.format().is_some();
+        let is_source = entry.parameters.iter().any(rules) && !p.kind.is_flag() && p.used_when.is_none()
+            || p.kind.format().is_some();
         let mut after = self.parameters.clone();
         after.set(p.name, value.clone());
         let mean = |values: &Values| entry.mean_luminance(values).filter(|_| is_source);

@@ -93,7 +93,7 @@ fn repeat(registry: &Registry) -> Json {
 fn field(field: &Field, default: Option<Value>, registry: &Registry) -> Json {
     let vector = |one: Json| json!({ "type": "array", "items": one, "minItems": 3, "maxItems": 3 });
     let mut schema = match field.kind {
-        Kind::Number { min, max, .. } => Number { min, max, default: min }.schema(),
+        Kind::Number { min, max, .. } => Number { min, max, slider_max: max, default: min }.schema(),
         Kind::Count(min) => json!({ "type": "integer", "minimum": min }),
         Kind::Flag(_) => json!({ "type": "boolean" }),
         Kind::Text(_) => json!({ "type": "string" }),

@@ -99,8 +99,14 @@ pub(super) fn other_types(
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
-    use crate::{parameter::Value, scene::at::Place};
+    use crate::{
+        optics::colour::Encoding,
+        parameter::Value,
+        scene::{at::Place, emitter},
+    };
 
     fn idle(path: &str, scene: &Scene) -> Option<Idle> {
         let registry = Registry::builtin();
@@ -129,6 +135,51 @@ mod tests {
         assert_eq!(torus.idle(&scene, &registry), None);
         let said = torus.idle(&Scene::default(), &registry).expect("it has none");
         assert!(said.why.starts_with("a sphere has no ") && said.users == ["torus"], "{said:?}");
+    }
+
+    /// A scene under a sky with the sun at this elevation and azimuth.
+    fn under_sky(kind: u32, sun: f32) -> Scene {
+        let registry = Registry::builtin();
+        let mut light = Light::default();
+        let entry = registry.light("environment").expect("built in");
+        light.set_type(entry, &registry, Scene::default().scene_size);
+        light.parameters.set("source", Value::Choice("sky".into()));
+        light.parameters.set("sky_type", Value::Choice(kind.to_string().into()));
+        for name in ["sun_elevation", "sun_azimuth"] {
+            light.parameters.set(name, Value::Number(sun));
+        }
+        Scene { lights: vec![light], ..Scene::default() }
+    }
+
+    #[test]
+    fn the_place_of_the_sun_is_idle_in_skies_that_do_not_depend_on_it() {
+        let registry = Registry::builtin();
+        let sky = |kind: u32, sun: f32| {
+            let scene = under_sky(kind, sun);
+            let (_, sky, record) = emitter(&scene.lights[0], &registry, Encoding::Srgb).expect("built in");
+            [Vec3::new(0.6, 0.64, 0.48), Vec3::new(-0.8, 0.36, 0.48), Vec3::Y]
+                .map(|l| sky.seen(&record, Vec3::ZERO, l).radiance)
+        };
+        for kind in 1..=15 {
+            let depends = sky(kind, 20.0) != sky(kind, 60.0);
+            for path in ["lights[0].sun_elevation", "lights[0].sun_azimuth"] {
+                let said = idle(path, &under_sky(kind, 20.0));
+                assert_eq!(said.is_none(), depends, "type {kind}: {said:?}");
+            }
+        }
+        let said = idle("lights[0].sun_azimuth", &under_sky(5, 20.0)).expect("it is uniform");
+        assert_eq!(said.why, "Not used while the type of sky is 5 uniform");
+        let mut studio = under_sky(12, 20.0);
+        studio.lights[0].parameters.set("source", Value::Choice("studio".into()));
+        let said = idle("lights[0].sun_azimuth", &studio).expect("no sky");
+        assert_eq!(said.why, "Not used while the source is studio");
+        // Unlike another source, another type of sky leaves the intensity as it is.
+        let entry = registry.light("environment").expect("built in");
+        let changed = |name: &str, id: &'static str| {
+            let parameter = entry.parameters.iter().find(|p| p.name == name).expect("declared");
+            under_sky(12, 20.0).lights[0].setting(entry, parameter, Value::Choice(id.into())).len()
+        };
+        assert_eq!([changed("sky_type", "1"), changed("source", "studio")], [1, 2]);
     }
 
     #[test]

@@ -146,6 +146,10 @@ pub fn parse(text: &str) -> Vec<Atom> {
         let ascii_word = |c: &char| c.is_ascii_alphabetic();
         if c.is_ascii_alphabetic() {
             i += chars[i..].iter().take_while(|c| ascii_word(c)).count();
+            // A unit, no variable: square or cubic metres.
+            if chars[start..i] == ['m'] && matches!(chars.get(i), Some('²' | '³')) {
+                i += 1;
+            }
         } else if c.is_ascii_digit() {
             i += chars[i..].iter().take_while(|c| c.is_ascii_digit() || **c == '.').count();
         } else {
@@ -320,6 +324,15 @@ mod tests {
             sup: "p+1".to_owned()
         }));
         assert_eq!(atoms.last(), Some(&symbol("d", "", "2")));
+    }
+
+    #[test]
+    fn units_are_upright() {
+        let symbols = |text: &str| parse(text).iter().filter_map(Atom::symbol).collect::<Vec<_>>();
+        assert_eq!(symbols("Φ = L · 1.286 sr m² = 3 lm"), ["Φ", "L"]);
+        assert_eq!(symbols("L = Φ / (2 sr m²) = 3 cd/m²"), ["L", "Φ"]);
+        assert_eq!(symbols("m^2 · n²"), ["m", "n"]);
+        assert_eq!(write(&parse("2 sr m²")), "2 sr m²");
     }
 
     #[test]

@@ -21,6 +21,10 @@ pub use picture::HemispherePicture;
 const SHARP: &str = "Light that is mirrored, or passes, without spreading comes from a single direction, such as R: that has no \
                      area, so lobe and product are black there.";
 
+/// What the discs show without light with extent.
+const NOTHING: &str = "No light with extent shines on the point: light and product are black. Yellow rings, if there are some, are lights \
+                       of a single direction.";
+
 /// Sample points per side of a pixel.
 const FINE: usize = 2;
 
@@ -55,8 +59,8 @@ pub struct Hemisphere {
     /// The mean of the product over the disc times π: the integral over all lights with extent, unless some of them are
     /// smaller than a pixel.
     pub integral: Vec3,
-    /// The same by the samples of the explanation, which find the smallest light.
-    sampled: Vec3,
+    /// The same by the samples of the explanation, which find the smallest light; `None` without a light with extent.
+    sampled: Option<Vec3>,
     /// The largest values, in any direction that was looked at.
     pub brightest: Above,
     /// Lights with a single direction, or smaller than a pixel, that shine on the point.
@@ -195,21 +199,29 @@ impl Hemisphere {
         let [arriving, lobe, product] = most;
         let brightest = Above { arriving, lobe, product };
         let extended = spot.lights.iter().filter(|lit| lit.integral.is_some());
-        let sampled = extended.map(|lit| lit.response.select(terms)).sum();
+        let sampled = extended.map(|lit| lit.response.select(terms)).reduce(|a, b| a + b);
         Self { side, pixels, integral, sampled, brightest, points, view, mirror, sharp, solid }
+    }
+
+    /// The remark that there is no light with extent, if that is so.
+    #[must_use]
+    pub fn nothing(&self) -> Option<&'static str> {
+        self.sampled.is_none().then_some(NOTHING)
     }
 
     /// The discs in words: what is missing in them, if anything, and the integral.
     #[must_use]
     pub fn said(&self) -> Vec<String> {
+        let sharp = self.sharp.then(|| SHARP.to_owned()).into_iter();
+        let Some(sampled) = self.sampled else { return sharp.chain([NOTHING.to_owned()]).collect() };
         let apart = self.sharp || self.solid;
         // The pixels of the disc give two digits, and know nothing of light that does not spread.
-        let integral = rounded_number_or_triple(if apart { self.integral } else { self.sampled }, 2);
+        let integral = rounded_number_or_triple(if apart { self.integral } else { sampled }, 2);
         let rest = if apart { "the rest of " } else { "" };
         let mean = format!(
             "The mean of the product times π is {rest}the light to the observer from lights with extent: about {integral}"
         );
-        self.sharp.then(|| SHARP.to_owned()).into_iter().chain([mean]).collect()
+        sharp.chain([mean]).collect()
     }
 }
 
@@ -317,6 +329,10 @@ mod tests {
         let dark = hemisphere(&self::scene("lambert", vec![light("point", 10.0)]), above).0;
         assert_eq!(dark.integral, Vec3::ZERO);
         assert_ne!(dark.picture().rgb8, picture.rgb8);
+        let about = dark.picture().about;
+        assert!(about.contains("No light with extent shines on the point"), "{about}");
+        assert!(about.contains("white in “Light that arrives: L”: none, all is black"), "{about}");
+        assert!(!picture.about.contains("black"), "{}", picture.about);
     }
 
     #[test]

@@ -64,6 +64,9 @@ impl Hemisphere {
     /// The value that is drawn white in a disc, and the largest where that is brighter.
     #[must_use]
     pub fn end_of_scale(&self, disc: &Disc) -> String {
+        if self.pixels.iter().flatten().all(|above| (disc.of)(above) == Vec3::ZERO) {
+            return "none, all is black".to_owned();
+        }
         let white = self.white(disc.of);
         let largest = (disc.of)(&self.brightest).max_element().max(white);
         let [white, largest] = [white, largest].map(|v| rounded(v, 3));
@@ -86,7 +89,7 @@ impl Hemisphere {
             self.draw(&mut canvas, [left, HEAD], disc.of);
             let scale = self.end_of_scale(disc);
             canvas.scale([left, HEAD + side + 14], side, &scale);
-            whites.push(format!("white in “{}” is {scale}", disc.name));
+            whites.push(format!("white in “{}”: {scale}", disc.name));
         }
         let ground = "From straight above the surface: area is projected solid angle, N is the middle, the rim is the horizon, the tangent \
              points right. V: to the observer; R: its mirror direction.";

@@ -150,7 +150,7 @@ fn lights(lit: &Lit) -> String {
         let entry = lit.lights.types[row.light_type].declaration;
         let name = lit.request.scene.lights[row.index].name.as_deref();
         let name = name.map_or(String::new(), |name| format!("{}: ", comment(name)));
-        let what = format!("{name}{} light: {}, I in {}.", entry.name, entry.equation, entry.unit);
+        let what = format!("{name}{}: {}.", entry.title(), entry.equation_with_unit());
         doc(&mut out, &what, "    ", "//");
         light(&mut out, &|field| row.words(field));
     }

@@ -29,6 +29,8 @@ pub(super) struct Emitter {
     pub(super) file: Option<File>,
     /// True if it shines from all directions: Mitsuba allows one such emitter.
     pub(super) around: bool,
+    /// True if it is a surface, which hides the lights behind it.
+    pub(super) hides: bool,
 }
 
 /// Returns the counterpart, or the reason why there is none.
@@ -97,7 +99,7 @@ impl Lamp<'_> {
         };
         let mut xml = vec![side(x, direction)];
         xml.extend(two_sided.then(|| side(-x, -direction)));
-        Ok(Emitter { xml, file: None, around: false })
+        surface(xml)
     }
 }
 
@@ -108,7 +110,11 @@ fn shining(shape: Xml, radiance: Vec3) -> Xml {
 }
 
 fn alone(xml: Xml) -> Result<Emitter, String> {
-    Ok(Emitter { xml: vec![xml], file: None, around: false })
+    Ok(Emitter { xml: vec![xml], file: None, around: false, hides: false })
+}
+
+fn surface(xml: Vec<Xml>) -> Result<Emitter, String> {
+    Ok(Emitter { xml, file: None, around: false, hides: true })
 }
 
 fn all_around(xml: Xml) -> Result<Emitter, String> {
@@ -142,7 +148,7 @@ fn disc(lamp: &Lamp) -> Result<Emitter, String> {
 
 fn sphere(lamp: &Lamp) -> Result<Emitter, String> {
     let shape = Xml::plugin("shape", "sphere").with(place("point", "center", lamp.record.position));
-    alone(lamp.shining(shape.float("radius", lamp.parameter("radius"))))
+    surface(vec![lamp.shining(shape.float("radius", lamp.parameter("radius")))])
 }
 
 fn cylinder(lamp: &Lamp) -> Result<Emitter, String> {
@@ -150,7 +156,7 @@ fn cylinder(lamp: &Lamp) -> Result<Emitter, String> {
     let half = 0.5 * lamp.parameter("length") * direction;
     let [from, to] = [place("point", "p0", position - half), place("point", "p1", position + half)];
     let shape = Xml::plugin("shape", "cylinder").with(from).with(to);
-    alone(lamp.shining(shape.float("radius", lamp.parameter("radius"))))
+    surface(vec![lamp.shining(shape.float("radius", lamp.parameter("radius")))])
 }
 
 /// A disc so far away that it subtends the same angle everywhere in the room. E lux correspond to the
@@ -161,7 +167,7 @@ fn sun(lamp: &Lamp) -> Result<Emitter, String> {
     let [x, y] = sides(direction, Vec2::Y).map(|side| FAR * radius.tan() * side);
     let matrix = Mat4::from_translation(-FAR * direction) * Mat4::from_mat3(Mat3::from_cols(x, y, direction));
     let disk = Xml::plugin("shape", "disk").with(to_world(matrix));
-    alone(shining(disk, lamp.power() / radius.sin().powi(2)))
+    surface(vec![shining(disk, lamp.power() / radius.sin().powi(2))])
 }
 
 /// Light from all directions: constant, or a picture.

@@ -71,6 +71,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     let (said, integrator) = integrator(within);
     let mut file = Xml::element("scene version=\"3.5.0\"").says(said).with(integrator).with(sensor(request));
     let mut files = Vec::new();
+    let unlike = of_lights(request, &lights);
     for (name, Emitter { xml, file: texture, .. }) in lights {
         file = xml.into_iter().fold(file.says(&name), Xml::with);
         files.extend(texture);
@@ -99,6 +100,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         file = file.says(&name).with(shape.with(to_world(object.room_from_object())).with(bsdf.xml));
     }
     notes.extend(differences(request));
+    notes.extend(unlike);
     notes.extend(without_labels(request.scene));
     let title = scene.name.as_deref().unwrap_or(request.stem);
     let about = format!(
@@ -231,6 +233,19 @@ fn sensor(request: &Request) -> Xml {
         )
 }
 
+/// The difference of light with extent from the lab, if there is any.
+fn of_lights(request: &Request, lights: &[(String, Emitter)]) -> Option<String> {
+    let hides = lights.len() > 1 && lights.iter().any(|(_, emitter)| emitter.hides);
+    let doubled = lights.iter().any(|(_, emitter)| emitter.xml.len() > 1);
+    let unlike = [
+        Some("Mitsuba does not show the lights themselves"),
+        hides.then_some("nearer ones hide farther ones"),
+        doubled.then_some("two-sided ones become two, a millimetre apart"),
+    ];
+    let unlike: Vec<_> = unlike.into_iter().flatten().collect();
+    has_extent(request.scene.shining(), request.registry).then(|| unlike.join("; "))
+}
+
 /// The differences from the picture in the lab.
 fn differences(request: &Request) -> Vec<String> {
     let scene = request.scene;
@@ -242,13 +257,6 @@ fn differences(request: &Request) -> Vec<String> {
             "display.background, {}, is left out: in Mitsuba all that is seen is light, and would light the objects",
             display.background.id()
         ));
-    }
-    if has_extent(scene.shining(), request.registry) {
-        notes.push(
-            "Mitsuba does not show the lights themselves; nearer ones hide farther ones, and two-sided ones \
-             become two, a millimetre apart"
-                .to_owned(),
-        );
     }
     if shown("gouraud") || shown("flat") {
         notes.push(

@@ -14,6 +14,7 @@ use naga::{
 use self::items::{Item, fields, items, retain_used};
 use super::{
     ExportError, bodies,
+    lamp_files::{UNIFORM_BYTES, excess},
     lights::{LightField, Lights, call, stride},
 };
 use crate::{
@@ -116,8 +117,9 @@ pub fn compose(
              or export a program"
         )));
     }
-    let files = 4 * lights.numbers.len();
-    fits("the photometric files of the lamps", files, "files with fewer angles")?;
+    if let Some(excess) = excess(lights.numbers.len(), lights.pictures) {
+        return Err(ExportError::refused(excess));
+    }
     let sources = registry.sources();
     let faces = shading.declaration.stage == Stage::Polygon;
     let (own, standing) = (model.declaration, shading.declaration);
@@ -140,7 +142,7 @@ pub fn compose(
         if !fields.is_empty() {
             all.extend(items(&parameter_struct(&entry.parameter_struct(), &fields)));
         }
-        let heading = format!("{} light: {}", what.name.trim_end_matches(" light"), what.equation);
+        let heading = format!("{}: {}", what.title(), what.equation);
         sections.push(Section { heading, items: all });
     }
     let mut heading = credit(own.name, "reflection", own.source, own.summary);
@@ -181,7 +183,11 @@ pub fn compose(
     let shader = finish(sections, lights, host);
     // They follow the header of `Illumination`.
     let records = 16 + lights.rows.len() * stride(&shader.light_fields);
-    fits("the lights", records, "fewer lights")?;
+    if records > UNIFORM_BYTES {
+        return Err(ExportError::refused(format!(
+            "the lights take {records} bytes in total, but a uniform holds {UNIFORM_BYTES}; use fewer lights"
+        )));
+    }
     Ok(shader)
 }
 
@@ -193,19 +199,6 @@ fn unique(sections: &[Section]) -> Result<(), ExportError> {
         let what = format!("a shader declares `{name}`, a name reserved for exports; choose another name");
         Err(ExportError::refused(what))
     })
-}
-
-/// Maximum size of a uniform guaranteed by WebGPU, in bytes.
-const UNIFORM_BYTES: usize = 65_536;
-
-/// Refuses data that does not fit into a uniform.
-fn fits(what: &str, bytes: usize, remedy: &str) -> Result<(), ExportError> {
-    if bytes <= UNIFORM_BYTES {
-        return Ok(());
-    }
-    Err(ExportError::refused(format!(
-        "{what} take {bytes} bytes in total, but a uniform holds {UNIFORM_BYTES}; use {remedy}"
-    )))
 }
 
 /// The declarations of `lights.wgsl` that are generated for each scene.

@@ -193,7 +193,7 @@ fn the_files_of_lamps_and_the_lights_must_fit_into_a_uniform() {
     assert!(compose(&lights, &registry, of(model), shading, ALONE).is_ok());
     lights.numbers.resize(20_000, 0.0);
     let refused = compose(&lights, &registry, of(model), shading, ALONE).expect_err("too much");
-    assert!(refused.to_string().contains("80000 bytes in total, but a uniform holds 65536"), "{refused}");
+    assert!(refused.to_string().contains("80000 bytes, but a uniform holds 65536"), "{refused}");
     lights.numbers.clear();
     lights.rows = vec![lights.rows[0].clone(); 2000];
     let refused = compose(&lights, &registry, of(model), shading, ALONE).expect_err("too much").to_string();

@@ -47,7 +47,12 @@ impl Average {
 
     /// An empty average for a file with these checked numbers of columns and rows.
     pub(super) fn of_size(width: usize, height: usize) -> Self {
-        let columns = width.min(MAX_COLUMNS);
+        Self::down_to(MAX_COLUMNS, width, height)
+    }
+
+    /// An empty average with at most so many columns, for a picture with these numbers of columns and rows.
+    pub(super) fn down_to(most: usize, width: usize, height: usize) -> Self {
+        let columns = width.min(most);
         let size = [columns, columns / 2];
         Self {
             size,

@@ -17,6 +17,7 @@ use crate::{
 mod average;
 mod read;
 
+use average::Average;
 pub use average::{MAX_COLUMNS, MAX_FILE_COLUMNS, MAX_LUMINANCE};
 
 /// Pictures of surroundings in the Radiance and OpenEXR formats, distinguished by their first bytes. The
@@ -72,6 +73,33 @@ impl<'a> Panorama<'a> {
         is_whole.then_some(Self { columns, rows, total: *total, above, left, pixels })
     }
 
+    /// The numbers of columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        [self.columns, self.rows]
+    }
+
+    /// The number of numbers of a picture with so many columns, an even number, and half as many rows.
+    #[must_use]
+    pub fn count(columns: usize) -> usize {
+        let rows = columns / 2;
+        3 + (rows + 1) + rows * (columns + 1) + 3 * columns * rows
+    }
+
+    /// The numbers of the picture averaged down to so many columns, an even number, each pixel weighted by its solid
+    /// angle; `None` if it has no more than that.
+    #[must_use]
+    pub fn reduced(&self, columns: usize) -> Option<Vec<f32>> {
+        if columns >= self.columns {
+            return None;
+        }
+        let mut average = Average::down_to(columns, self.columns, self.rows);
+        for (i, [r, g, b]) in self.pixels.as_chunks::<3>().0.iter().enumerate() {
+            average.add(i % self.columns, i / self.columns, [*r, *g, *b]);
+        }
+        average.numbers().ok()
+    }
+
     /// The light from a unit direction, cd/m².
     #[must_use]
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
@@ -122,6 +150,16 @@ fn place(begins: &[f32], u: f32) -> (usize, f32) {
     let u = u.clamp(0.0, 1.0 - 0.5 * f32::EPSILON);
     let i = begins.partition_point(|begin| *begin <= u).clamp(1, begins.len() - 1) - 1;
     (i, ((u - begins[i]) / (begins[i + 1] - begins[i])).clamp(0.0, 1.0))
+}
+
+/// The numbers of a picture with these pixels: column and row to colour.
+#[cfg(test)]
+pub(crate) fn of_pixels(width: usize, pixel: impl Fn(usize, usize) -> [f32; 3]) -> Vec<f32> {
+    let mut average = Average::of_size(width, width / 2);
+    for i in 0..width * width / 2 {
+        average.add(i % width, i / width, pixel(i % width, i / width));
+    }
+    average.numbers().expect("legal values")
 }
 
 #[cfg(test)]

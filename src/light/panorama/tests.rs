@@ -11,7 +11,7 @@ use exr::prelude::{
 use glam::{Vec2, Vec3};
 use image::{Rgb, codecs::hdr::HdrEncoder};
 
-use super::{FORMAT, MAX_COLUMNS, Panorama, average::Average};
+use super::{FORMAT, MAX_COLUMNS, Panorama, of_pixels as numbers};
 use crate::{
     optics::colour::luminance,
     parameter::{NamedFile, Shipped},
@@ -24,15 +24,6 @@ use crate::{
     },
     testing::random,
 };
-
-/// The numbers of a picture with these pixels: column and row to colour.
-fn numbers(width: usize, pixel: impl Fn(usize, usize) -> [f32; 3]) -> Vec<f32> {
-    let mut average = Average::of_size(width, width / 2);
-    for i in 0..width * width / 2 {
-        average.add(i % width, i / width, pixel(i % width, i / width));
-    }
-    average.numbers().expect("legal values")
-}
 
 /// A Radiance file with these pixels.
 fn hdr(width: usize, pixel: impl Fn(usize, usize) -> [f32; 3]) -> Vec<u8> {

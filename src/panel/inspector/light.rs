@@ -75,7 +75,7 @@ fn equation(ui: &mut Ui, entry: &LightEntry) {
         theme::note(ui, d.summary);
     }
     maths::equation(ui, &[EquationPart::new(Term::Total, d.equation)], |symbol| match symbol {
-        letter if letter == strength(d).0 => Some(strength(d).1.to_owned()),
+        letter if letter == d.symbol() => Some(strength(d).to_owned()),
         "L_s" => Some("the luminance of its source, cd/m²".to_owned()),
         other => {
             let own = entry.parameters.iter().find(|p| maths::same_symbol(p.symbol, other));
@@ -84,12 +84,12 @@ fn equation(ui: &mut Ui, entry: &LightEntry) {
     });
 }
 
-/// The letter of a light's intensity in its equations, and its meaning.
-fn strength(d: &Declaration) -> (&'static str, &'static str) {
+/// The meaning of the letter of a light's intensity in its equations.
+fn strength(d: &Declaration) -> &'static str {
     match d.unit {
-        "cd/m²" => ("L", "the luminance of the light, the same from each of its points"),
-        "cd" => ("I", "the intensity of the light: what it sends into each direction"),
-        _ => ("I", "the intensity of the light"),
+        "cd/m²" => "the luminance of the light, the same from each of its points",
+        "cd" => "the intensity of the light: what it sends into each direction",
+        _ => "the intensity of the light",
     }
 }
 
@@ -99,7 +99,7 @@ fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Opt
     let intensity = f64::from(light.intensity_as(entry));
     let unit = entry.unit(&light.parameters);
     let help = unit_help(unit);
-    let (symbol, meaning) = strength(d);
+    let (symbol, meaning) = (d.symbol(), strength(d));
     let caption = Caption { symbol, unit, help, ..Caption::of(&Light::intensity) };
     let default = f64::from(d.default_intensity);
     let limits = limits::intensity(d);

@@ -208,11 +208,16 @@ impl Session {
     }
 }
 
+/// "becomes", or "become" for several.
+fn becomes(one: &Carried) -> &'static str {
+    if one.from.len() == 1 { "becomes" } else { "become" }
+}
+
 /// "clear coat 0.5 becomes coat 0.125".
 fn with_values(one: &Carried, material: &Values) -> String {
     let from: Vec<_> = one.from.iter().map(|p| format!("{} {}", p.label, material.get(p))).collect();
     let limit = if one.limited { ", the nearest that it allows" } else { "" };
-    format!("{} becomes {} {}{limit}", listed(&from, "and"), one.to.label, one.value)
+    format!("{} {} {} {}{limit}", listed(&from, "and"), becomes(one), one.to.label, one.value)
 }
 
 /// "OpenPBR has no place for subsurface; it comes back with Disney."
@@ -226,7 +231,7 @@ pub(super) fn left_behind(left: &[&Parameter], from: Option<&str>, to: &ModelEnt
 /// "clear coat becomes coat".
 pub(super) fn without_values(one: &Carried) -> String {
     let from: Vec<_> = one.from.iter().map(|p| p.label).collect();
-    format!("{} becomes {}", listed(&from, "and"), one.to.label)
+    format!("{} {} {}", listed(&from, "and"), becomes(one), one.to.label)
 }
 
 #[cfg(test)]
@@ -295,6 +300,18 @@ mod tests {
         let _ = session.apply(Action::Edit(edit), &registry);
         choose(&mut session, &registry, "openpbr");
         assert_eq!(value(&session, "coat_weight"), Some(number(0.25)));
+    }
+
+    #[test]
+    fn several_values_become_one() {
+        let (mut session, registry) = begin("ward", 1, &[("alpha_x", 0.3), ("alpha_y", 0.1)]);
+        choose(&mut session, &registry, "blinn_phong");
+        let said = last(&session);
+        assert!(said.contains("roughness across the tangent 0.1 become "), "{said}");
+        let (mut session, registry) = begin("ward", 2, &[("alpha_x", 0.3), ("alpha_y", 0.1)]);
+        choose(&mut session, &registry, "blinn_phong");
+        let said = last(&session);
+        assert!(said.contains("roughness across the tangent become "), "{said}");
     }
 
     #[test]

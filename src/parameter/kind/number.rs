@@ -21,6 +21,8 @@ pub struct Number {
     pub min: f32,
     /// Largest legal value.
     pub max: f32,
+    /// The end of the slider.
+    pub slider_max: f32,
     /// The value if the scene gives none.
     pub default: f32,
 }
@@ -39,7 +41,22 @@ impl Parameter {
     #[must_use]
     pub const fn number(name: &'static str, range: RangeInclusive<f32>, default: f32) -> Self {
         let (min, max) = (*range.start(), *range.end());
-        Self::new(name, ParameterKind::Number(Number { min, max, default }))
+        Self::new(name, ParameterKind::Number(Number { min, max, slider_max: max, default }))
+    }
+
+    /// The parameter, a real number, with a slider that ends before its range; larger values are typed.
+    ///
+    /// ```
+    /// use lights_camera_models::parameter::Parameter;
+    /// const GLOW: Parameter = Parameter::number("glow", 0.0..=1e4, 0.1).slider_to(1.0);
+    /// assert_eq!(GLOW.rule(), "between 0 and 10000");
+    /// ```
+    #[must_use]
+    pub const fn slider_to(mut self, end: f32) -> Self {
+        if let ParameterKind::Number(number) = &mut self.kind {
+            number.slider_max = end;
+        }
+        self
     }
 }
 
@@ -88,7 +105,7 @@ impl Kind for Number {
     }
 
     fn limits(&self) -> Option<Limits> {
-        Some(Limits::of(self.min, self.max))
+        Some(Limits { slider_max: self.slider_max.into(), ..Limits::of(self.min, self.max) })
     }
 
     fn of_numbers(&self, [first, ..]: [f64; 3]) -> Value {
@@ -106,7 +123,7 @@ fn declared(header: &mut Header) -> Option<ParameterKind> {
         _ => None,
     };
     let (min, max, [default, ..]) = header.real(usual, one)?;
-    header.within(ParameterKind::Number(Number { min, max, default }))
+    header.within(ParameterKind::Number(Number { min, max, slider_max: max, default }))
 }
 
 fn one(reader: &mut dyn Declarations, value: Cursor) -> Option<[f32; 3]> {

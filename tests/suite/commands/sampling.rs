@@ -461,6 +461,7 @@ fn the_frames_of_a_converging_picture_leave_no_memory_behind() {
     // Eight samples a frame.
     let [few, many] = [264, 1288].map(|samples| peak(folder.path(), samples));
     assert!(many < few + 64, "33 frames take {few} MiB, 161 take {many} MiB");
+}
 
 #[cfg(target_os = "linux")]
 #[test]

@@ -483,6 +483,38 @@ fn a_scene_whose_objects_are_hidden_is_refused_as_a_project() {
 }
 
 #[test]
+fn a_large_picture_of_an_environment_is_reduced_where_a_uniform_holds_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut picture = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 128 +X 256\n".to_vec();
+    picture.extend([128, 128, 128, 129].repeat(256 * 128));
+    fs::write(folder.path().join("sky.hdr"), picture).expect("written");
+    let mut scene: serde_json::Value =
+        serde_json::from_str(&save::to_json(&Scene::default(), None, &Registry::builtin())).expect("JSON");
+    scene["lights"] = serde_json::json!([
+        { "type": "environment", "source": "file", "path": "sky.hdr" },
+        { "type": "disc", "position": [5, 9, 9], "direction": [0, -1, -1] }
+    ]);
+    fs::write(folder.path().join("room.json"), scene.to_string()).expect("written");
+    let reduced = "sky.hdr, is reduced from 256×128 to 90×45 pixels: reflections are less sharp";
+    for form in ["bevy", "html", "wgsl", "glsl", "mitsuba"] {
+        let run = export(folder.path(), &["room.json", "--as", form, "-o", form]);
+        assert_eq!(
+            (run.status, run.err.contains(reduced)),
+            (Some(0), form != "mitsuba"),
+            "{form}: {}",
+            run.err
+        );
+    }
+    let main = fs::read_to_string(folder.path().join("bevy/src/main.rs")).expect("readable");
+    for said in [
+        "// Disc light: L(p, l) = L, L in cd/m².",
+        "// Environment light: L(p, l) = I L_s(l), I is a factor.",
+    ] {
+        assert!(main.contains(said), "{said}");
+    }
+}
+
+#[test]
 fn an_export_of_a_scene_with_views_says_which_one_it_is() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut scene: serde_json::Value =

@@ -68,6 +68,25 @@ fn a_background_is_left_out_by_name() {
     assert!(note.contains("gradient, is left out: in Mitsuba all that is seen is light"), "{note}");
 }
 
+#[test]
+fn lights_that_hide_each_other_and_have_two_sides_are_named_where_there_are_some() {
+    let said = |lights: Vec<Light>| {
+        let notes = exported(&Scene { lights, ..scene("sphere", "lambert", &[]) }).notes;
+        notes.into_iter().find(|note| note.starts_with("Mitsuba does not show the lights"))
+    };
+    let surroundings = light("environment", |_| {});
+    let lamp =
+        |sides: &'static str| light("rectangle", |lamp| lamp.parameters.set("two_sided", choice(sides)));
+    let alone = "Mitsuba does not show the lights themselves";
+    assert_eq!(said(vec![light("point", |_| {})]), None);
+    assert_eq!(said(vec![surroundings.clone()]).as_deref(), Some(alone));
+    assert_eq!(said(vec![lamp("false")]).as_deref(), Some(alone));
+    let both = said(vec![lamp("false"), surroundings]).expect("a note");
+    assert!(both.contains("hide farther ones") && !both.contains("two-sided"), "{both}");
+    let doubled = said(vec![lamp("true")]).expect("a note");
+    assert!(!doubled.contains("hide farther") && doubled.contains("a millimetre apart"), "{doubled}");
+}
+
 fn exported(scene: &Scene) -> Export {
     let registry = Registry::builtin();
     let request =
