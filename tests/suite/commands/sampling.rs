@@ -394,7 +394,7 @@ fn long_work_has_a_bar_on_a_terminal_that_goes_on_by_samples() {
     let said = on_terminal(folder.path(), 3, &format!("match {gold} --on picture"));
     assert!(said.contains("matching, ") && said.contains(" left; Ctrl+C ends it"), "{said}");
     let said = on_terminal(folder.path(), 3, &format!("match {gold} --on picture --each"));
-    assert!(said.contains(" % Lambert: ") && said.contains(" left; Ctrl+C ends it"), "{said}");
+    assert!(said.contains(" % matching, ") && said.contains(" left; Ctrl+C ends it"), "{said}");
     let said = on_terminal(folder.path(), 6, &format!("render --quiet softbox.json -o p.png {long}"));
     assert!(!said.contains("samples"), "{said}");
     let left = names(folder.path());
