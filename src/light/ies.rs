@@ -173,7 +173,7 @@ fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
         let candela = candela * multiplier * ballast * tilted;
         if candela.is_nan() || candela > MOST_CANDELAS {
             let rule = format!("{what}, must be at most {MOST_CANDELAS:e} cd with the factors of the file");
-            return Err(numbers.problem(format!("{rule}, not {candela:e}")));
+            return Err(numbers.problem(format!("{rule}, not {candela:.2e}")));
         }
         candelas.push(candela as f32);
     }
@@ -341,7 +341,7 @@ mod tests {
         };
         assert!(of("1e12 0", ["1", "1"]).is_ok() && of("1e6 1", ["1e3", "1e3"]).is_ok());
         for (candelas, factors, expected) in [
-            ("1e38 1", ["1e38", "1"], "not 1e76"),
+            ("1e38 1", ["1e38", "1"], "not 1.00e76"),
             ("1 2e12", ["1", "1"], "candela value 2 of 2"),
             ("0 1", ["1e308", "1e308"], "not inf"),
             ("1 1", ["1e308", "1e308"], "not inf"),

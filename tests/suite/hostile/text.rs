@@ -142,7 +142,7 @@ fn own_keys(folder: &Path) -> Option<String> {
 fn recovery(bytes: &[u8]) -> Result<(), String> {
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     let store = Store::new(folder.path().to_owned());
-    let journal = folder.path().join("a");
+    let journal = folder.path().join("1700000000-17");
     fs::create_dir(&journal).map_err(|e| e.to_string())?;
     for (name, content) in [("about.json", bytes), ("scene.json", b"{}".as_slice()), ("lock", b"")] {
         fs::write(journal.join(name), content).map_err(|e| e.to_string())?;

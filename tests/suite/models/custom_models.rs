@@ -200,7 +200,7 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ),
         (r#""default": [1, 2, 3]"#, r#"type is missing; a list may be a "colour" or a "triple""#),
         (r#""min": "0""#, r#"min is "0", but it must be a number"#),
-        (r#""max": 1e99"#, "max is 1e99, but it must be a number"),
+        (r#""max": 1e99"#, "max is 1e99, but numbers must be between -3.4e38 and 3.4e38"),
         (r#""min": 2, "max": 1"#, "max is 1, but the largest value must be greater than the smallest"),
         (r#""range": [1, 1]"#, "range is [1, 1], but the largest value must be greater"),
         (r#""range": 1"#, "range is 1, but a range must be two numbers: [min, max]"),
