@@ -191,7 +191,7 @@ fn what_cannot_be_matched_has_a_message_and_an_exit_status() {
     let folder = lcm_in(at, &["match", "a.json", "--on", "highlight", "-o", "a.json/b.json"], b"");
     // Before the search, so that no result is lost.
     assert_eq!((folder.status, &*folder.out), (Some(4), ""));
-    assert!(folder.err.contains("a part of its path is not a folder"), "{}", folder.err);
+    assert!(folder.err.contains("a.json is not a folder"), "{}", folder.err);
     let made = lcm_in(at, &["match", "a.json", "--on", "highlight", "-o", "x/b.json"], b"");
     assert!(made.status == Some(0) && at.join("x/b.json").is_file(), "{}", made.err);
     assert!(made.out.contains("alpha: 32 → 129"), "{}", made.out);
