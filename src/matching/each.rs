@@ -87,11 +87,12 @@ pub fn match_each<'m>(
     ranking
 }
 
-/// The choices of a model that are tried, each with its parameter.
+/// The choices of a model that are tried, each with its parameter. Flags are not: an opaque body does
+/// not show that it is thin.
 fn choices(model: &ModelEntry) -> impl Iterator<Item = (&'static Parameter, Value)> {
     let of =
         |p: &'static Parameter| p.kind.options().iter().map(move |(id, _)| (p, Value::Choice((*id).into())));
-    model.parameters.iter().filter(|p| !p.costly).flat_map(of)
+    model.parameters.iter().filter(|p| !p.costly && !p.kind.is_flag()).flat_map(of)
 }
 
 /// How long a model takes, beside others: it grows with its choices, and with its parameters.
