@@ -1,5 +1,5 @@
-//! The light buffers, shared by all materials and visible to the vertex and fragment stages: a uniform buffer
-//! of fixed capacity, which shaders read for each light and pixel, and a storage buffer with the parameters
+//! The light buffers, shared by all materials and visible to the vertex and fragment stages: a buffer
+//! of fixed capacity, which shaders read for each light and pixel, and a buffer with the parameters
 //! of the lights, one after the other. Changing a light rewrites the buffers and touches no material. A view
 //! with overrides has separate buffers. When the parameters outgrow their buffer, it is replaced, and so are
 //! the materials of objects.

@@ -79,7 +79,7 @@ pub struct PipelineKey {
     gamma_naive: bool,
 }
 
-// Written by hand, because a uniform buffer shared between materials cannot be derived.
+// Written by hand, because a buffer shared between materials cannot be derived.
 impl AsBindGroup for ModelMaterial {
     type Data = PipelineKey;
     type Param = SRes<RenderAssets<GpuShaderBuffer>>;
