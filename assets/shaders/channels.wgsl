@@ -54,7 +54,7 @@ fn channel_to_light(position: vec3<f32>) -> vec3<f32> {
     if illumination.channel_light >= illumination.count {
         return vec3(0.0);
     }
-    let light = illumination.lights[illumination.channel_light];
+    let light = light_at(illumination.channel_light);
     let from_position = illumination.channel_low > 0.5;
     return select(-light.direction, unit_or_zero(light.position - position), from_position);
 }

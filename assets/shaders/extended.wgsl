@@ -10,7 +10,7 @@ fn from_lobes(position: vec3<f32>, v: vec3<f32>, frame: Frame, index: u32, count
     var sum = vec3(0.0);
     if counts(local.z) && pdf > 0.0 {
         for (var i = 0u; i < count; i++) {
-            let light = illumination.lights[i];
+            let light = light_at(i);
             if has_extent(light.light_type) {
                 let seen = seen_light(light, position, l);
                 sum += seen.radiance * light.colour * power_heuristic(pdf, seen.pdf);
@@ -22,7 +22,7 @@ fn from_lobes(position: vec3<f32>, v: vec3<f32>, frame: Frame, index: u32, count
 
 // What arrives from a direction to a light with extent.
 fn from_light(position: vec3<f32>, v: vec3<f32>, frame: Frame, index: u32, i: u32) -> LightSample {
-    let light = illumination.lights[i];
+    let light = light_at(i);
     if !has_extent(light.light_type) {
         return LightSample(frame.n, vec3(0.0), 0.0);
     }

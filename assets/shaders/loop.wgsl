@@ -1,5 +1,5 @@
 // The light loop: the colour of a point with a unit normal and a tangent under all lights, linear,
-// before exposure. `illumination`, `parameters` and `observer_position` come from the wrapper.
+// before exposure. `illumination`, `light_at`, `parameters` and `observer_position` come from the wrapper.
 fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {
     // An interpolated normal may face away from a viewer who still sees the surface: the viewer is then
     // mirrored in the surface, or rims would be black.
@@ -10,7 +10,7 @@ fn illuminate(position: vec3<f32>, normal: vec3<f32>, tangent: vec3<f32>) -> vec
     let count = min(illumination.count, MAX_LIGHTS);
     let selection = illumination.terms;
     for (var i = 0u; i < count; i++) {
-        let light = illumination.lights[i];
+        let light = light_at(i);
         let arriving = incident(light, position);
         var terms: Terms;
         if arriving.everywhere != 0u {

@@ -2,8 +2,14 @@
 // direction; the twin of src/reference/visible.rs. Drawn only where a scene has such lights.
 #import bevy_pbr::mesh_view_bindings::view
 
+// Twice, as in wrapper.wgsl.
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
+@group(#{MATERIAL_BIND_GROUP}) @binding(4) var<uniform> light_list: Illumination;
 @group(#{MATERIAL_BIND_GROUP}) @binding(2) var<storage, read> light_words: array<u32>;
+
+fn light_at(i: u32) -> Light {
+    return light_list.lights[i];
+}
 
 struct SeenStages {
     @builtin(position) clip_position: vec4<f32>,
@@ -36,7 +42,7 @@ fn fragment(in: SeenStages) -> SeenPixel {
     var nearness = 0.0;
     var radiance = vec3(0.0);
     for (var i = 0u; i < min(illumination.count, MAX_LIGHTS); i++) {
-        let light = illumination.lights[i];
+        let light = light_at(i);
         if light_is_visible(light) {
             let seen = seen_light(light, view.world_position, l);
             let is_hidden = seen.distance < 0.0 && illumination.has_backdrop != 0u;

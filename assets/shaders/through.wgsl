@@ -10,7 +10,7 @@ var<private> solid_remaining: vec3<f32>;
 fn uniform_light(position: vec3<f32>) -> vec3<f32> {
     var sum = vec3(0.0);
     for (var i = 0u; i < min(illumination.count, MAX_LIGHTS); i++) {
-        let light = illumination.lights[i];
+        let light = light_at(i);
         let arriving = incident(light, position);
         if arriving.everywhere != 0u {
             sum += arriving.intensity * light.colour;
@@ -77,7 +77,7 @@ fn boundary_light(
 ) -> vec3<f32> {
     var sum = vec3(0.0);
     for (var i = 0u; i < min(illumination.count, MAX_LIGHTS); i++) {
-        let light = illumination.lights[i];
+        let light = light_at(i);
         var l = vec3(0.0);
         var arriving = vec3(0.0);
         if has_extent(light.light_type) {

@@ -6,7 +6,11 @@
 // The parameters of all objects with the model, and values derived from them; an object's row is its
 // mesh tag.
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<storage, read> parameter_table: array<Row>;
+// The lights, and what holds for all of them. Shaders branch on the latter, and software Vulkan (Mesa) compiles a shader
+// again whenever a uniform buffer is bound that it branches on: so a storage buffer. The lights one by one come from the same
+// buffer bound as a uniform one, which it reads in half the time.
 @group(#{MATERIAL_BIND_GROUP}) @binding(1) var<storage, read> illumination: Illumination;
+@group(#{MATERIAL_BIND_GROUP}) @binding(4) var<uniform> light_list: Illumination;
 // The parameters of the lights one after the other, and behind them the numbers of the files that they name.
 @group(#{MATERIAL_BIND_GROUP}) @binding(2) var<storage, read> light_words: array<u32>;
 
@@ -39,6 +43,10 @@ struct Stages {
     @location(4) offset: vec3<f32>,
     @location(5) @interpolate(flat) row: u32,
     @location(6) @interpolate(flat) instance: u32,
+}
+
+fn light_at(i: u32) -> Light {
+    return light_list.lights[i];
 }
 
 fn observer_position() -> vec3<f32> {

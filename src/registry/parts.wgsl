@@ -157,7 +157,7 @@ fn radiance_from(position: vec3<f32>, l: vec3<f32>) -> vec3<f32> {
 fn radiance_beside(position: vec3<f32>, l: vec3<f32>, pdf: f32) -> vec3<f32> {
     var sum = vec3(0.0);
     for (var i = 0u; i < min(illumination.count, MAX_LIGHTS); i++) {
-        let light = illumination.lights[i];
+        let light = light_at(i);
         if has_extent(light.light_type) {
             let seen = seen_light(light, position, l);
             let weight = select(power_heuristic(pdf, seen.pdf), 1.0, pdf <= 0.0);

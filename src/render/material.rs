@@ -17,7 +17,7 @@ use bevy::{
     prelude::*,
     render::{
         render_asset::RenderAssets,
-        render_resource::{binding_types::storage_buffer_read_only_sized, *},
+        render_resource::{binding_types::{storage_buffer_read_only_sized, uniform_buffer_sized}, *},
         renderer::RenderDevice,
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
@@ -102,16 +102,14 @@ impl AsBindGroup for ModelMaterial {
     ) -> Result<UnpreparedBindGroup, AsBindGroupError> {
         let LightBuffers { lights, words } = &self.inputs.illumination;
         let MaterialInputs { parameters, solid, .. } = &self.inputs;
-        bound(buffers, [(0, parameters), (1, lights), (2, words), (3, solid)])
+        bound(buffers, [(0, parameters), (1, lights), (2, words), (3, solid), (4, lights)])
     }
 
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
-        // No uniform buffers: software Vulkan (Mesa) calculates a shader anew whenever one is bound that it branches on, and keeps
-        // what it compiled from that for every frame.
         let storage = || storage_buffer_read_only_sized(false, None);
         BindGroupLayoutEntries::sequential(
             ShaderStages::VERTEX_FRAGMENT,
-            (storage(), storage(), storage(), storage()),
+            (storage(), storage(), storage(), storage(), uniform_buffer_sized(false, None)),
         )
         .to_vec()
     }

@@ -11,7 +11,7 @@ use bevy::{
     prelude::*,
     render::{
         render_asset::RenderAssets,
-        render_resource::{binding_types::storage_buffer_read_only_sized, *},
+        render_resource::{binding_types::{storage_buffer_read_only_sized, uniform_buffer_sized}, *},
         renderer::{RenderAdapter, RenderDevice},
         storage::GpuShaderBuffer,
     },
@@ -82,12 +82,13 @@ impl AsBindGroup for SeenMaterial {
         _: bool,
     ) -> Result<UnpreparedBindGroup, AsBindGroupError> {
         let LightBuffers { lights, words } = &self.illumination;
-        bound(buffers, [(1, lights), (2, words)])
+        bound(buffers, [(1, lights), (2, words), (4, lights)])
     }
 
     fn bind_group_layout_entries(_: &RenderDevice, _: bool) -> Vec<BindGroupLayoutEntry> {
         let storage = storage_buffer_read_only_sized(false, None);
-        BindGroupLayoutEntries::with_indices(ShaderStages::FRAGMENT, ((1, storage), (2, storage))).to_vec()
+        let entries = ((1, storage), (2, storage), (4, uniform_buffer_sized(false, None)));
+        BindGroupLayoutEntries::with_indices(ShaderStages::FRAGMENT, entries).to_vec()
     }
 }
 
