@@ -17,7 +17,10 @@ use bevy::{
     prelude::*,
     render::{
         render_asset::RenderAssets,
-        render_resource::{binding_types::{storage_buffer_read_only_sized, uniform_buffer_sized}, *},
+        render_resource::{
+            binding_types::{storage_buffer_read_only_sized, uniform_buffer_sized},
+            *,
+        },
         renderer::RenderDevice,
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
