@@ -124,6 +124,26 @@ fn a_shading_model_that_differs_a_little_between_the_languages_fails() {
     testing::assert_shading::<Steeper>();
 }
 
+parameters! {
+    struct NamelessBands { bands: number = BANDS }
+}
+impl ShadingModel for NamelessBands {
+    const DECLARATION: shading::Declaration =
+        shading::Declaration::new("in_bands", "", Stage::Pixel, 'Z', IN_BANDS);
+    fn vertex(&self, lighting: &dyn Lighting, corner: &Corner) -> Varying {
+        ShadingModel::vertex(&Banded { bands: self.bands }, lighting, corner)
+    }
+    fn pixel(&self, lighting: &dyn Lighting, varying: &Varying, face_normal: Vec3) -> Vec3 {
+        ShadingModel::pixel(&Banded { bands: self.bands }, lighting, varying, face_normal)
+    }
+}
+
+#[test]
+#[should_panic(expected = "in_bands: the name is empty")]
+fn a_shading_model_that_cannot_be_registered_fails() {
+    testing::assert_shading::<NamelessBands>();
+}
+
 #[test]
 #[should_panic(
     expected = "declares to be evaluated per vertex, but vertex does not evaluate the light and pixel evaluates it"
@@ -163,6 +183,12 @@ paper!(Nameless, 1.0, reflection::Declaration::new("paper", "", PAPER.wgsl));
 #[should_panic(expected = "paper: the name is empty")]
 fn a_model_that_cannot_be_registered_keeps_no_laws() {
     testing::assert_laws::<Nameless>();
+}
+
+#[test]
+#[should_panic(expected = "paper: the name is empty")]
+fn its_equation_is_not_looked_at() {
+    testing::assert_equation::<Nameless>();
 }
 
 #[test]
@@ -254,6 +280,26 @@ impl LightType for Forgetful {
     fn solid_angle(&self) -> Option<f64> {
         LightType::solid_angle(&Downlight::default())
     }
+}
+
+parameters! {
+    struct NamelessLight {}
+}
+impl LightType for NamelessLight {
+    const DECLARATION: light::Declaration =
+        light::Declaration::new("downlight", "", DOWNLIGHT.wgsl).at_position().candela(10.0, 100.0);
+    fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
+        LightType::incident(&Downlight::default(), light, p)
+    }
+    fn solid_angle(&self) -> Option<f64> {
+        LightType::solid_angle(&Downlight::default())
+    }
+}
+
+#[test]
+#[should_panic(expected = "downlight: the name is empty")]
+fn a_light_that_cannot_be_registered_fails() {
+    testing::assert_light::<NamelessLight>();
 }
 
 #[test]
@@ -373,4 +419,20 @@ fn a_mesh_torn_at_a_vertex_fails() {
 #[should_panic(expected = "1 polygons or vertices have no normal")]
 fn a_mesh_with_a_vertex_of_no_polygon_fails() {
     testing::assert_mesh::<Lonely>();
+}
+
+parameters! {
+    struct NamelessShape {}
+}
+impl ObjectType for NamelessShape {
+    const DECLARATION: shape::Declaration = shape::Declaration::new("tetrahedron", "");
+    fn mesh(&self, tessellation: u32) -> PolygonMesh {
+        ObjectType::mesh(&Tetrahedron::default(), tessellation)
+    }
+}
+
+#[test]
+#[should_panic(expected = "tetrahedron: the name is empty")]
+fn a_mesh_that_cannot_be_registered_fails() {
+    testing::assert_mesh::<NamelessShape>();
 }
