@@ -433,4 +433,40 @@ mod tests {
             });
         }
     }
+
+    #[test]
+    fn the_exponent_of_an_exponent_stands_above_it_and_smaller() {
+        let ctx = Context::default();
+        ctx.set_fonts(crate::lettering::fonts());
+        for _ in 0..2 {
+            let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+                let setter = Setter { ui, size: 40.0, colour: Color32::WHITE, stacked: true, shrinks: true };
+                let set = setter.row(&tree("e^{-x^2} y"));
+                let Some((_, _, Ink::Atom(laid, ..))) = set.ink.first() else { panic!("no atom") };
+                // The characters, and where each begins, stands and how large it is.
+                let pieces: Vec<_> = laid
+                    .pieces
+                    .iter()
+                    .map(|piece| {
+                        let galley = &piece.galley;
+                        let baseline = piece.offset.y + galley.rows[0].row.glyphs[0].pos.y;
+                        (galley.text().to_owned(), piece.offset.x, baseline, galley.size().y)
+                    })
+                    .collect();
+                let texts: Vec<_> = pieces.iter().map(|(text, ..)| &**text).collect();
+                assert_eq!(texts, ["e", "-", "x", "2"]);
+                assert!(
+                    pieces.windows(2).all(|pair| pair[0].1 < pair[1].1),
+                    "from left to right: {pieces:?}"
+                );
+                let [e, minus, x, two] = [0, 1, 2, 3].map(|i| pieces[i].2);
+                assert!(e.abs() < 0.5 && (minus - x).abs() < 0.5, "{pieces:?}");
+                assert!(x < e - 10.0 && two < x - 5.0, "each exponent is raised: {pieces:?}");
+                assert!(pieces[0].3 > pieces[2].3 && pieces[2].3 > pieces[3].3, "{pieces:?}");
+                // What follows is beside all of it.
+                let next = set.ink.last().map_or(0.0, |(place, ..)| place.x);
+                assert!(next > pieces[3].1 && set.ink.len() == 3, "{next}");
+            });
+        }
+    }
 }

@@ -9,7 +9,10 @@ use crate::{
         state::{CodeCommand, Effect, Pick},
     },
     program,
-    registry::compose::{File, Part},
+    registry::{
+        MODELS,
+        compose::{File, Part},
+    },
 };
 
 /// The names and purposes of files, by their parts.
@@ -26,11 +29,23 @@ pub fn words(part: Part, path: &str) -> (String, &'static str) {
 }
 
 fn origin(files: &[File], registry: &Registry) -> &'static str {
-    let own = files.iter().any(|file| file.path.starts_with("models/"));
-    match files.iter().any(|file| registry.is_foreign(&file.path)) {
-        true => "Some are of this program, the others built in.",
-        false if own => "All but the model is built in.",
-        false => "The shaders are built in.",
+    let own = files.iter().any(|file| file.path.starts_with(MODELS));
+    match (files.iter().any(|file| registry.is_foreign(&file.path)), own) {
+        (true, true) => "Not all are built in.",
+        (true, false) => "Some are of this program, the others built in.",
+        (false, true) => "All but the model is built in.",
+        (false, false) => "The shaders are built in.",
+    }
+}
+
+/// The place of a file, as its tooltip says it.
+fn place(path: &str, on_disk: Option<&Path>, registry: &Registry) -> String {
+    match on_disk {
+        Some(file) => file.shown().to_string(),
+        // The folder it belongs to may only exist on its author's machine.
+        None if registry.is_foreign(path) => format!("{path}, of {}", program::name()),
+        None if path.starts_with(MODELS) => path.to_owned(),
+        None => format!("{path}, built in"),
     }
 }
 
@@ -122,7 +137,7 @@ const ROW: f32 = 22.0;
 
 /// The row of a file; `names` is the width of the name column, in points.
 fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
-    let (session, foreign) = (context.session(), context.registry().is_foreign(&file.path));
+    let (session, registry) = (context.session(), context.registry());
     let File { part, ref path, edited } = *file;
     let palette = Palette::here(ui);
     let (name, help) = words(part, path);
@@ -171,12 +186,7 @@ fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
     theme::tip(row.response.union(row.inner), 340.0, |ui| {
         ui.label(theme::strong(ui, &name));
         ui.label(help);
-        let place = on_disk.as_ref().map_or_else(
-            // The folder it belongs to may only exist on its author's machine.
-            || if foreign { format!("{path}, of {}", program::name()) } else { format!("{path}, built in") },
-            |f| f.shown().to_string(),
-        );
-        ui.label(theme::small(ui, place));
+        ui.label(theme::small(ui, place(path, on_disk.as_deref(), registry)));
         if on_disk.is_some() {
             ui.label(theme::small(ui, "A click on the name edits the file in the panel Code."));
         }
@@ -186,6 +196,44 @@ fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        light::{Declaration, Incident, LightRecord, LightType},
+        parameters,
+        registry::Register as _,
+        shader::Source,
+    };
+
+    parameters! {
+        struct Lamp {}
+    }
+    impl LightType for Lamp {
+        const DECLARATION: Declaration =
+            Declaration::new("lamp", "Lamp", Source::new("light/lamp.wgsl", "fn incident_lamp() {}"));
+        fn incident(&self, _: &LightRecord, _: Vec3) -> Incident {
+            Incident::From { l: Vec3::Y, intensity: Vec3::ONE }
+        }
+    }
+
+    #[test]
+    fn only_what_ships_is_called_built_in() {
+        let mut registry = Registry::builtin();
+        registry.add_light_type::<Lamp>();
+        let [ships, foreign, custom] = ["reflection/lambert.wgsl", "light/lamp.wgsl", "models/velvet.wgsl"];
+        let said = |paths: &[&str]| {
+            let file = |path: &&str| File { part: Part::Model, path: (*path).to_owned(), edited: false };
+            origin(&paths.iter().map(file).collect::<Vec<_>>(), &registry)
+        };
+        assert_eq!(said(&[ships]), "The shaders are built in.");
+        assert_eq!(said(&[ships, custom]), "All but the model is built in.");
+        assert_eq!(said(&[ships, foreign]), "Some are of this program, the others built in.");
+        assert_eq!(said(&[ships, foreign, custom]), "Not all are built in.");
+        for (path, own) in [(ships, false), (foreign, true), (custom, true)] {
+            let place = |on_disk: Option<&str>| place(path, on_disk.map(Path::new), &registry);
+            assert_eq!(!place(None).contains("built in"), own, "{}", place(None));
+            assert!(place(None).starts_with(path));
+            assert_eq!(place(Some("/home/mira/added.wgsl")), "/home/mira/added.wgsl");
+        }
+    }
 
     #[test]
     fn every_part_has_its_words() {

@@ -10,10 +10,11 @@ use lights_camera_models::{
     cli,
     document::Edit,
     panel::{
-        Panel, PanelApp as _, PanelContext, Place,
+        Panel, PanelApp as _, PanelContext, Place, settings,
         state::{Action, Session},
     },
-    recovery::Store,
+    program::{self, LAB},
+    recovery::{About, Store},
     registry::{Register as _, Registry},
     scene::{Part, Scene},
 };
@@ -164,4 +165,46 @@ fn a_panic_in_a_system_is_located_and_unsaved_work_is_kept_for_this_program_alon
     let mut next = program("view --exit-after 3", folder.path());
     let (_, err) = said(next.env("DISPLAY", screen.display()));
     assert!(err.contains("unsaved"), "{err}");
+}
+
+/// The name of the program run by a child process, and the scale that it then stores in its settings.
+const NAME: &str = "LCM_TEST_NAME";
+const SCALE: &str = "LCM_TEST_SCALE";
+
+/// Run by the test below under several names: says what it finds, and leaves settings and a copy of unsaved work behind.
+#[test]
+#[ignore = "a program, run by another test"]
+fn a_program_with_settings() {
+    let (Ok(name), Ok(scale)) = (env::var(NAME), env::var(SCALE)) else { return };
+    assert!(program::set_name(&name), "before anything asks for it");
+    let (mut own, unread) = settings::load_own();
+    let store = Store::of_user().expect("a folder");
+    let copies: Vec<_> = store.abandoned().into_iter().map(|copy| copy.about.title).collect();
+    println!("found {} {copies:?} {unread:?}", own.scale);
+    own.scale = scale.parse().expect("a number");
+    settings::save_own(&own).expect("writable");
+    if copies.is_empty() {
+        let about = About { title: format!("of {name}"), ..About::default() };
+        store.begin().and_then(|mut journal| journal.write(&about, "{}")).expect("writable");
+    }
+}
+
+#[test]
+fn settings_and_copies_of_unsaved_work_are_those_of_the_program_of_that_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let found = |name: &str, scale: &str| {
+        let mut command = Command::new(env::current_exe().expect("it runs"));
+        let test = "library::programs::a_program_with_settings";
+        command.args(["--exact", test, "--ignored", "--nocapture", "--test-threads=1"]);
+        let (out, err) = said(alone(&mut command, folder.path()).env(NAME, name).env(SCALE, scale));
+        let line = out.lines().find_map(|line| Some(line.split_once("found ")?.1.to_owned()));
+        line.unwrap_or_else(|| panic!("{out}{err}"))
+    };
+    assert_eq!(found("velvet", "150"), "100 [] None");
+    assert_eq!(found(LAB, "125"), "100 [] None", "the lab does not read those of another program");
+    assert_eq!(found("satin", "100"), "100 [] None", "nor another program those of the lab");
+    assert_eq!(found("velvet", "150"), "150 [\"of velvet\"] None", "the others left them alone");
+    assert_eq!(found(LAB, "125"), "125 [\"of lights-camera-models\"] None");
+    assert!(folder.path().join("settings.json").is_file());
+    assert!(folder.path().join("programs/velvet/settings.json").is_file());
 }
