@@ -20,6 +20,9 @@ fn stretched(h: Vec3, alpha: Vec2) -> f32 {
     (h.truncate() / alpha).length_squared()
 }
 
+/// The names of [`ggx`]: that of its second authors, by which models declare it, and that of its first.
+pub const GGX: [&str; 2] = ["GGX", "Trowbridge–Reitz"];
+
 /// Trowbridge–Reitz, or GGX: `D = 1 / (π α_x α_y (e + z²)²)`.
 ///
 /// T. Trowbridge, K. Reitz (1975), *Average Irregularity Representation of a Rough Surface for Ray

@@ -6,6 +6,7 @@ use bevy_egui::egui::{Margin, Modifiers, PopupCloseBehavior, RectAlign, TextEdit
 
 use super::{author, keys, prelude::*};
 use crate::{
+    optics::distribution::GGX,
     parameter::Parameter,
     reflection::{Family, ModelEntry},
 };
@@ -18,15 +19,24 @@ pub fn matches(text: &str, search: &str) -> bool {
     plain(search).split_whitespace().all(|word| text.split_whitespace().any(|found| found.starts_with(word)))
 }
 
+/// Other names of a model: those that it declares, and of GGX both.
+fn synonyms(model: &ModelEntry) -> impl Iterator<Item = &'static str> {
+    let [declared, other] = GGX;
+    let all = model.declaration.synonyms;
+    all.iter().copied().chain(all.contains(&declared).then_some(other))
+}
+
 /// Everything by which a model is found beside its [`words`]: synonyms, then its parameters and their choices. Each with
 /// what people call it.
-pub(super) fn further(model: &ModelEntry) -> impl Iterator<Item = (String, &'static str)> {
+pub(super) fn further(model: &ModelEntry) -> impl Iterator<Item = (String, String)> {
     let of = |parameter: &'static Parameter| {
-        let own = (format!("{} {} {}", parameter.label, parameter.symbol, parameter.name), parameter.label);
+        let label = parameter.label;
+        let own = (format!("{label} {} {}", parameter.symbol, parameter.name), label.to_owned());
         let choices = if parameter.kind.is_flag() { &[][..] } else { parameter.kind.options() };
-        std::iter::once(own).chain(choices.iter().map(|(id, name)| (format!("{name} {id}"), *name)))
+        let choice = move |(id, name): &(&str, &str)| (format!("{name} {id}"), format!("{label}: {name}"));
+        std::iter::once(own).chain(choices.iter().map(choice))
     };
-    let synonyms = model.declaration.synonyms.iter().map(|synonym| ((*synonym).to_owned(), *synonym));
+    let synonyms = synonyms(model).map(|synonym| (synonym.to_owned(), synonym.to_owned()));
     synonyms.chain(model.parameters.iter().flat_map(of))
 }
 
@@ -36,13 +46,12 @@ pub(super) fn words(model: &ModelEntry) -> String {
     [d.name, d.id, d.author, d.family.name(), d.summary].join(" ")
 }
 
-/// The synonym, parameter or choice that matches a search, by its display name; `None` if the model's [`words`] already
-/// show why it matches.
-fn reason(model: &ModelEntry, search: &str) -> Option<&'static str> {
-    let words = words(model);
-    let unsaid: Vec<_> = search.split_whitespace().filter(|word| !matches(&words, word)).collect();
-    let first = unsaid.first()?;
-    further(model).find(|(text, _)| matches(text, first)).map(|(_, name)| name)
+/// The name of what matches a search though nobody sees it, such as a synonym, a parameter or a choice; `None` if what is
+/// said already shows why the search matches.
+pub(super) fn reason(said: &str, unsaid: &[(String, String)], search: &str) -> Option<String> {
+    let mut words = search.split_whitespace().filter(|word| !matches(said, word));
+    let name = |word| unsaid.iter().find(|(text, _)| matches(text, word)).map(|(_, name)| name.clone());
+    words.find_map(name)
 }
 
 /// Models that match a search, in the order of the chooser: matching names first, then matching synonyms, then by
@@ -68,7 +77,8 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
     found.sort_by_key(|m| {
         let d = m.declaration;
         let names = [d.name, d.id].join(" ");
-        match (matches(&names, search), matches(&format!("{names} {}", d.synonyms.join(" ")), search)) {
+        let with_synonyms = synonyms(m).fold(names.clone(), |all, synonym| all + " " + synonym);
+        match (matches(&names, search), matches(&with_synonyms, search)) {
             (true, _) => 0,
             (_, true) => 1,
             _ => 2,
@@ -294,6 +304,11 @@ const MODELS: Words = Words {
     roomy: false,
 };
 
+/// The reason why a search finds a model, if its words do not show it.
+fn why(model: &ModelEntry, search: &str) -> Option<String> {
+    reason(&words(model), &further(model).collect::<Vec<_>>(), search)
+}
+
 /// The list of models. `current` is the id of the selected model. `first` labels an entry before all models that stands
 /// for none of them; choosing it returns `Some(None)`.
 pub fn models<'a>(
@@ -320,7 +335,7 @@ pub fn models<'a>(
         Entry {
             heading: d.family.name(),
             name: d.name,
-            note: match model.and_then(|m| reason(m, &search.borrow())) {
+            note: match model.and_then(|m| why(m, &search.borrow())) {
                 Some(reason) => format!("{reason} · {}", d.author),
                 None => d.author.to_owned(),
             },
@@ -475,8 +490,33 @@ mod tests {
         assert_eq!(ids("disney").first(), Some(&"disney"));
         assert_eq!(ids("ggx").first(), Some(&"microfacet"));
         let microfacet = registry.model("microfacet").expect("built in");
-        assert_eq!(reason(microfacet, "microfacet ggx"), Some("GGX"));
-        assert_eq!(reason(microfacet, "masking"), None, "the summary has it");
-        assert_eq!(reason(registry.model("disney").expect("built in"), "sheen_tint"), Some("sheen tint"));
+        let why_of = |model: &ModelEntry, search: &str| why(model, search).unwrap_or_default();
+        assert_eq!(why_of(microfacet, "microfacet ggx"), "GGX");
+        assert_eq!(why(microfacet, "masking"), None, "the summary has it");
+        assert!(why_of(microfacet, "kelemen").ends_with(": Kelemen"), "a choice, after its parameter");
+        assert_eq!(why_of(registry.model("disney").expect("built in"), "sheen_tint"), "sheen tint");
+        assert_eq!(why_of(registry.model("openpbr").expect("built in"), "sheen"), "sheen");
+    }
+
+    #[test]
+    fn every_model_with_ggx_is_found_by_both_of_its_names() {
+        let registry = Registry::builtin();
+        let has_ggx = |model: &&ModelEntry| {
+            let mut options = model.parameters.iter().flat_map(|p| p.kind.options());
+            let text = model.declaration.wgsl.text.to_lowercase();
+            text.contains("ggx") || options.any(|(id, _)| *id == "ggx")
+        };
+        let with: Vec<_> = registry.models().iter().filter(has_ggx).map(|m| m.declaration.id).collect();
+        for id in ["microfacet", "metallic_roughness", "disney", "openpbr", "rough_dielectric", "thin_glass"]
+        {
+            assert!(with.contains(&id), "{id}: {with:?}");
+        }
+        for search in ["ggx", "trowbridge", "Reitz"] {
+            let found = find(&registry, search);
+            for id in &with {
+                let model = found.iter().find(|m| m.declaration.id == *id);
+                assert!(model.is_some_and(|m| why(m, search).is_some()), "{id} by {search}");
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The finder: a few letters find a command, an example scene, a lesson, a reflection model or a parameter of what is
 //! selected, with its key. Enter runs it.
 
-use std::cell::Cell;
+use std::cell::RefCell;
 
 use bevy_egui::egui::{Frame, LayerId, PopupCloseBehavior, RectAlign};
 
@@ -53,9 +53,9 @@ struct Found {
     heading: &'static str,
     note: String,
     /// Further words by which it is found.
-    more: String,
-    /// Other names of a model.
-    synonyms: &'static [&'static str],
+    said: String,
+    /// What finds it though its row does not show it, each with its name: synonyms first, which are alike.
+    unsaid: Vec<(String, String)>,
     key: String,
     off: bool,
     on: bool,
@@ -64,12 +64,14 @@ struct Found {
 }
 
 impl Found {
-    fn entry<'f>(&'f self, heading: &'f str) -> Entry<'f> {
+    fn entry<'f>(&'f self, heading: &'f str, search: &str) -> Entry<'f> {
+        // Its menu stands above.
+        let note = Some(&self.note).filter(|note| !note.is_empty() && *note != heading).cloned();
+        let why = chooser::reason(&format!("{} {}", self.title, self.said), &self.unsaid, search);
         Entry {
             heading,
             name: &self.title,
-            // Its menu stands above.
-            note: if self.note == heading { String::new() } else { self.note.clone() },
+            note: why.into_iter().chain(note).collect::<Vec<_>>().join(" · "),
             on: self.on,
             key: Some(self.key.clone()),
             off: self.off,
@@ -104,10 +106,10 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .show(|ui| {
             ui.set_width(width);
-            let typed = Cell::new(false);
+            let typed = RefCell::new(String::new());
             let find = |search: &str| {
-                typed.set(!search.trim().is_empty());
-                if typed.get() { ranked(&all, search) } else { listed(ctx, &all) }
+                search.trim().clone_into(&mut typed.borrow_mut());
+                if search.trim().is_empty() { listed(ctx, &all) } else { ranked(&all, search) }
             };
             let height = LIST * screen.height();
             chosen = chooser::list(
@@ -116,7 +118,10 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
                 WORDS,
                 height,
                 find,
-                |item| item.1.entry(if typed.get() { "" } else { item.0 }),
+                |(heading, found)| {
+                    let search = typed.borrow();
+                    found.entry(if search.is_empty() { *heading } else { "" }, &search)
+                },
                 |ui, (_, found)| _ = ui.label(&found.tip),
             );
         });
@@ -158,10 +163,12 @@ fn listed<'f>(ctx: &Context, all: &'f [Found]) -> Vec<(&'static str, &'f Found)>
 fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> {
     let name = search.trim().to_lowercase();
     // Who types another name of a model looks for the model, not for a scene whose title has the word.
-    let is_model = |found: &Found| found.synonyms.iter().any(|synonym| synonym.to_lowercase() == name);
+    let is_model = |found: &Found| found.unsaid.iter().any(|(text, _)| text.to_lowercase() == name);
     let fits = |found: &'f Found| {
         let first = if is_model(found) { FIRST } else { 0 };
-        Some((rank(&found.title, &found.more, search)? + first, found))
+        let unsaid = found.unsaid.iter().map(|(text, _)| text);
+        let more = unsaid.fold(found.said.clone(), |all, text| all + " " + text);
+        Some((rank(&found.title, &more, search)? + first, found))
     };
     let mut found: Vec<_> = all.iter().filter_map(fits).collect();
     leave_out_chance(&mut found);
@@ -198,11 +205,8 @@ fn commands(root: &Menu, session: &Session, registry: &Registry) -> Vec<Found> {
         let why = command.why_not.as_deref().map(|why| why.trim_end_matches('.').to_owned());
         let place = if path.is_empty() { command.heading().name().to_owned() } else { path.join(" › ") };
         let model = command.id.strip_prefix("model.").and_then(|id| registry.model(id));
-        let more = match model {
-            Some(model) => {
-                let further: Vec<_> = chooser::further(model).map(|(text, _)| text).collect();
-                format!("{} {}", chooser::words(model), further.join(" "))
-            }
+        let said = match model {
+            Some(model) => chooser::words(model),
             None => format!("{place} {} {} {}", command.id, command.name, command.tip),
         };
         Found {
@@ -219,8 +223,8 @@ fn commands(root: &Menu, session: &Session, registry: &Registry) -> Vec<Found> {
                 (None, Some(model)) => format!("{place} · {}", model.declaration.author),
                 (None, None) => place,
             },
-            more,
-            synonyms: model.map_or(&[], |model| model.declaration.synonyms),
+            said,
+            unsaid: model.into_iter().flat_map(chooser::further).collect(),
             key: key(command).unwrap_or_default(),
             off: why.is_some(),
             on: matches!(command.mark, Mark::Check(true) | Mark::Radio(true)),
@@ -258,6 +262,7 @@ fn parameters(session: &Session, registry: &Registry) -> Vec<Found> {
 
 fn parameter(p: &Parameter, of: &str, beginning: &str, unused: Option<String>) -> Found {
     let knob = format!("{beginning}{}", p.name);
+    let name = if p.symbol.is_empty() { p.name } else { p.symbol };
     Found {
         id: format!("knob {of} {knob}"),
         title: capitalised(p.label),
@@ -265,8 +270,8 @@ fn parameter(p: &Parameter, of: &str, beginning: &str, unused: Option<String>) -
         heading: "Parameters",
         off: unused.is_some(),
         note: unused.unwrap_or_else(|| format!("Parameter of {of}")),
-        more: format!("{} {} parameter {of}", p.name, p.symbol),
-        synonyms: &[],
+        said: format!("parameter {of}"),
+        unsaid: vec![(format!("{} {}", p.name, p.symbol), name.to_owned())],
         key: String::new(),
         on: false,
         tip: p.help.to_owned(),

@@ -90,6 +90,28 @@ fn scenes_lessons_models_and_parameters_are_found() {
 }
 
 #[test]
+fn a_row_says_why_it_is_found_where_its_name_does_not() {
+    let mut bench = bench();
+    let mut notes = |letters: &str| {
+        open(&mut bench);
+        write(&mut bench, letters);
+        let texts = bench.texts();
+        bench.key(Key::Escape, Modifiers::NONE);
+        texts
+    };
+    for (letters, why) in [
+        ("trowbridge", "Trowbridge–Reitz · "),
+        ("filament", "Filament · "),
+        ("shininess", "shininess · "),
+        ("kelemen", "masking: Kelemen · "),
+        ("openpbr sheen", "sheen · "),
+    ] {
+        let texts = notes(letters);
+        assert!(texts.iter().any(|text| text.starts_with(why)), "{letters}: {texts:?}");
+    }
+}
+
+#[test]
 fn a_parameter_that_is_found_has_the_focus_of_the_keys() {
     let mut bench = Bench::with_everything();
     bench.apply(Action::Select(Selection::Object(0)));
