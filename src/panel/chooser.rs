@@ -2,7 +2,9 @@
 
 use std::cell::RefCell;
 
-use bevy_egui::egui::{Margin, Modifiers, PopupCloseBehavior, RectAlign, TextEdit, Tooltip};
+use bevy_egui::egui::{
+    Margin, Modifiers, PopupCloseBehavior, RectAlign, TextEdit, Tooltip, text_edit::TextEditState,
+};
 
 use super::{author, keys, prelude::*};
 use crate::{
@@ -131,6 +133,12 @@ pub fn forget(ctx: &Context, id: Id) {
         d.remove::<String>(id.with("search"));
         d.remove::<usize>(id.with("row"));
     });
+}
+
+/// Sets the search text of a [`list`], with the cursor behind it.
+pub(super) fn begin(ctx: &Context, id: Id, text: String) {
+    ctx.data_mut(|d| d.insert_temp(id.with("search"), text));
+    TextEditState::default().store(ctx, id.with("text"));
 }
 
 /// Width of the text beside a list, in points.

@@ -9,6 +9,7 @@ use super::{
     chooser::{self, Entry, Words},
     command::{self, Command, Mark, Menu},
     explain::has_sides,
+    keys,
     lesson::point,
     prelude::*,
     rank::{leave_out_chance, rank},
@@ -92,6 +93,9 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let ctx = ui.ctx();
     if !context.session().view.finder_open {
         return chooser::forget(ctx, id());
+    }
+    if let Some(text) = keys::typed_ahead(ctx) {
+        chooser::begin(ctx, id(), text);
     }
     let all = everything(ctx, context.session(), context.registry());
     let screen = ctx.content_rect();

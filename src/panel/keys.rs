@@ -176,27 +176,54 @@ pub fn hint_beside(session: &Session, registry: &Registry, text: &str, id: &str)
     with_key(text, names(session, registry).get(id).and_then(|(key, _)| *key))
 }
 
+/// What was typed since the finder was opened, until its field takes it.
+#[derive(Clone, Default)]
+struct Ahead {
+    text: Option<String>,
+    /// True if the finder was open in the last frame.
+    open: bool,
+}
+
+/// The text that is for the field of the finder, which is not there yet; `None` if it is, or if the finder is closed.
+fn ahead(ctx: &Context, session: &Session) -> Option<String> {
+    let open = session.view.finder_open;
+    kept::with(ctx, |known: &mut Ahead| {
+        let opens = open && !std::mem::replace(&mut known.open, open);
+        known.text.take().filter(|_| open).or_else(|| opens.then(String::new))
+    })
+}
+
+/// What was typed while the finder opened, for its field; once.
+pub(super) fn typed_ahead(ctx: &Context) -> Option<String> {
+    kept::with(ctx, |known: &mut Ahead| known.text.take())
+}
+
 /// Reads the keys that were pressed. Call before the widgets see them.
 #[must_use]
 pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Action> {
     let any = ctx.input(|i| i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, .. })));
+    let mut ahead = ahead(ctx, session);
     // What asks for a picture's options takes all keys, as a question does.
-    if !any || session.questions.open.is_some() || session.take_draft.is_some() {
+    let asks = session.questions.open.is_some() || session.take_draft.is_some();
+    if !any && ahead.is_none() || asks {
         return Vec::new();
     }
     let typing = ctx.text_edit_focused();
     let focused = ctx.memory(|m| m.focused());
-    let popup = Popup::is_any_open(ctx);
+    let taken = typing || session.view.finder_open || Popup::is_any_open(ctx);
     let table = bindings(session, registry);
     let mut actions = Vec::new();
     let mut stop_tab = false;
     ctx.input_mut(|input| {
         input.events.retain(|event| {
+            if ahead.as_mut().is_some_and(|text| type_into(text, event)) {
+                return false;
+            }
             let egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
             let Some(binding) = table.iter().find(|b| b.shortcut.matches(*key, *modifiers)) else {
                 return true;
             };
-            let elsewhere = (typing || popup) && !binding.while_typing();
+            let elsewhere = (taken || ahead.is_some()) && !binding.while_typing();
             if elsewhere || focused.is_some() && binding.yields_to_widgets() {
                 return true;
             }
@@ -207,6 +234,9 @@ pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Act
                 }
                 stop_tab = true;
             }
+            if binding.action == Action::View(ViewChange::Finder(true)) {
+                ahead = Some(String::new());
+            }
             actions.push(binding.action.clone());
             false
         });
@@ -215,12 +245,23 @@ pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Act
             input.events.retain(|e| !matches!(e, egui::Event::Text(_)));
         }
     });
+    kept::with(ctx, |known: &mut Ahead| known.text = ahead);
     if stop_tab {
         ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
     }
     // The widgets of this frame already know.
     actions.retain(|action| !menu::moves_focus(ctx, action));
     actions
+}
+
+/// Types an event at the end of a text; false if it types nothing.
+fn type_into(text: &mut String, event: &egui::Event) -> bool {
+    match event {
+        egui::Event::Text(typed) => text.push_str(typed),
+        egui::Event::Key { key: Key::Backspace, pressed: true, .. } => _ = text.pop(),
+        _ => return false,
+    }
+    true
 }
 
 #[cfg(test)]
@@ -291,5 +332,51 @@ mod tests {
             let binding = table.iter().find(|b| b.action == edit);
             assert_eq!(binding.map(Binding::keys), Some(shading.declaration.key.to_string()));
         }
+    }
+
+    /// The actions of these events, and what remains of these.
+    fn read(ctx: &Context, session: &Session, events: Vec<egui::Event>) -> (Vec<Action>, Vec<egui::Event>) {
+        let mut read = Default::default();
+        let input = egui::RawInput { events, ..egui::RawInput::default() };
+        let _ = ctx.run_ui(input, |ui| {
+            let actions = pressed(ui.ctx(), session, &Registry::builtin());
+            read = (actions, ui.ctx().input(|i| i.events.clone()));
+        });
+        read
+    }
+
+    #[test]
+    fn what_is_typed_while_the_finder_opens_is_for_its_field() {
+        let key = |key, modifiers| egui::Event::Key {
+            key,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers,
+        };
+        let letter = |k: Key| [egui::Event::Text(k.name().to_lowercase()), key(k, egui::Modifiers::NONE)];
+        let texts = |events: &[egui::Event]| events.iter().any(|e| matches!(e, egui::Event::Text(_)));
+        let ctx = Context::default();
+        let mut session = session();
+        // Keys of shading models and of others, which act without the finder.
+        let (actions, left) = read(&ctx, &session, letter(Key::H).to_vec());
+        assert!(actions.len() == 1 && !texts(&left), "{actions:?}, {left:?}");
+        let mut events = vec![key(Key::F, egui::Modifiers::COMMAND)];
+        events.extend([Key::H, Key::E].into_iter().flat_map(letter));
+        let (actions, left) = read(&ctx, &session, events);
+        assert_eq!(actions, [Action::View(ViewChange::Finder(true))], "the frame with its key");
+        assert!(!texts(&left), "{left:?}");
+        session.view.finder_open = true;
+        let mut events: Vec<_> = [Key::X, Key::X, Key::C].into_iter().flat_map(letter).collect();
+        events.insert(4, key(Key::Backspace, egui::Modifiers::NONE));
+        let (actions, left) = read(&ctx, &session, events);
+        assert!(actions.is_empty() && !texts(&left), "before its field is there: {actions:?}, {left:?}");
+        assert_eq!(typed_ahead(&ctx).as_deref(), Some("hexc"));
+        // Then its field takes what is typed, no letter acts, and its key closes it.
+        let (actions, left) = read(&ctx, &session, letter(Key::H).to_vec());
+        assert!(actions.is_empty() && texts(&left), "{actions:?}, {left:?}");
+        assert_eq!(typed_ahead(&ctx), None);
+        let (actions, _) = read(&ctx, &session, vec![key(Key::F, egui::Modifiers::COMMAND)]);
+        assert_eq!(actions, [Action::View(ViewChange::Finder(false))]);
     }
 }

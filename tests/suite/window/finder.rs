@@ -69,6 +69,37 @@ fn a_few_letters_and_enter_run_a_command_which_can_be_undone() {
 }
 
 #[test]
+fn what_is_typed_before_the_field_is_there_is_searched_for() {
+    let mut bench = bench();
+    let before = bench.session.document.scene().clone();
+    let key =
+        |key, modifiers| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+    let typed = |letters: &'static str| {
+        letters.chars().flat_map(move |letter| {
+            let letter = letter.to_string();
+            let pressed = Key::from_name(&letter.to_uppercase()).map(|k| key(k, Modifiers::NONE));
+            std::iter::once(Event::Text(letter)).chain(pressed)
+        })
+    };
+    // A search before leaves its cursor.
+    open(&mut bench);
+    write(&mut bench, "p");
+    bench.key(Key::Escape, Modifiers::NONE);
+    // In the frame of the key, in the next one, and then.
+    bench.frame([key(Key::F, Modifiers::COMMAND)].into_iter().chain(typed("ch")).collect());
+    bench.frame(typed("an ").collect());
+    bench.frame(typed("dep").collect());
+    bench.settle();
+    assert!(bench.session.view.finder_open && *bench.session.document.scene() == before, "no letter acts");
+    assert!(bench.session.channel_of(0).is_none_or(|channel| channel.id() != "depth"));
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert!(bench.session.channel_of(0).is_some_and(|channel| channel.id() == "depth"));
+    // What was typed is gone when it opens again.
+    open(&mut bench);
+    assert!(bench.texts().iter().any(|text| text == "New default scene"));
+}
+
+#[test]
 fn scenes_lessons_models_and_parameters_are_found() {
     let mut bench = bench();
     run(&mut bench, "oren nayar");
