@@ -156,7 +156,9 @@ pub(super) fn check(
     {
         is_finite = false;
         // Drivers may assume that no number is infinite.
-        complain(format_args!("{id} is finite on the GPU; on the CPU, an object {found}"));
+        complain(format_args!(
+            "{id} is finite on the GPU, which was given light from single directions and no ambient light; on the CPU, an object {found}"
+        ));
     }
     match report.broken().as_slice() {
         [] if is_finite => Ok(()),

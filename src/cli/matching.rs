@@ -128,15 +128,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let view = view(&scene, &arguments.view, invalid)?;
     let free: Vec<&str> = match arguments.free.as_slice() {
         [] => {
-            let all = matching::parameters(&scene, view, registry);
-            // A measurement has no colours of a model to begin with.
-            let every = scene.shown().any(|object| {
-                registry.model(scene.model_of(object)).is_some_and(|model| model.declaration.measured)
-            });
-            all.into_iter()
-                .filter(|(_, usual)| *usual || every)
-                .map(|(parameter, _)| parameter.name)
-                .collect()
+            let all = matching::parameters(&scene, view, registry).into_iter();
+            all.filter(|(_, usual)| *usual).map(|(parameter, _)| parameter.name).collect()
         }
         names => names.iter().map(|name| name.trim()).collect(),
     };

@@ -380,9 +380,7 @@ pub(super) fn setting(setting: &Setting) -> String {
             return format!("{} = {}, {}, {r},{g},{b} in sRGB", p.symbol, triple(linear), p.label);
         }
         (_, Some(linear)) => triple(linear),
-        (Given::Choice(id), _) => {
-            p.kind.options().iter().find(|(known, _)| known == id).map_or(&**id, |(_, name)| *name).to_owned()
-        }
+        (Given::Choice(id), _) => p.kind.option(id).unwrap_or(id).to_owned(),
         (value, _) => value.to_string(),
     };
     let space = if p.unit.is_empty() || p.unit == "°" { "" } else { " " };

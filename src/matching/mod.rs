@@ -224,20 +224,26 @@ pub fn digits(error: f64) -> String {
 }
 
 /// The parameters of a view that can be searched, each with true if it is free by default: numbers are,
-/// colours and other triples only on request. Empty if the view does not exist.
+/// colours and other triples only on request. If view A shows a measurement, which has no colours of a model to
+/// begin with, all are free. Empty if the view does not exist.
 #[must_use]
 pub fn parameters(scene: &Scene, view: usize, registry: &Registry) -> Vec<(&'static Parameter, bool)> {
-    Side::seen(scene, view, registry).map_or_else(Vec::new, |side| known(&side, registry))
+    let side = |view| Side::seen(scene, view, registry);
+    let is_measured =
+        || side(0).is_some_and(|a| a.models(registry).iter().any(|model| model.declaration.measured));
+    let all = side(view).map_or_else(Vec::new, |side| known(&side, registry));
+    let every = !all.is_empty() && is_measured();
+    all.into_iter().map(|parameter| (parameter, every || parameter.kind.is_number())).collect()
 }
 
-fn known(side: &Side, registry: &Registry) -> Vec<(&'static Parameter, bool)> {
-    let mut all: Vec<(&'static Parameter, bool)> = Vec::new();
+fn known(side: &Side, registry: &Registry) -> Vec<&'static Parameter> {
+    let mut all: Vec<&'static Parameter> = Vec::new();
     for parameter in side.models(registry).into_iter().flat_map(|model| model.parameters) {
         if parameter.kind.limits().is_some()
-            && all.iter().all(|(known, _)| known.name != parameter.name)
+            && all.iter().all(|known| known.name != parameter.name)
             && reason_against(side, parameter, registry).is_none()
         {
-            all.push((parameter, parameter.kind.is_number()));
+            all.push(parameter);
         }
     }
     all
@@ -317,7 +323,7 @@ fn frees(
     view: &'static str,
     registry: &Registry,
 ) -> Result<Vec<Free>, MatchError> {
-    let known: Vec<_> = known(side, registry).into_iter().map(|(parameter, _)| parameter.name).collect();
+    let known: Vec<_> = known(side, registry).into_iter().map(|parameter| parameter.name).collect();
     if request.parameters.is_empty() {
         return Err(MatchError::NothingFree { known });
     }

@@ -295,6 +295,19 @@ fn numbers_are_free_unless_it_is_said_otherwise() {
     assert!(parameters(&phong, 2, &registry).is_empty());
 }
 
+#[test]
+fn beside_a_measurement_every_parameter_is_free() {
+    let registry = Registry::builtin();
+    let free = |of: &str| {
+        let all = parameters(&scene((of, &[]), ("phong", &[])), 1, &registry);
+        all.into_iter().map(|(parameter, free)| (parameter.name, free)).collect::<Vec<_>>()
+    };
+    let [modelled, measured] = ["lambert", "measured_merl"].map(free);
+    assert!(measured.contains(&("base_colour", true)) && measured.iter().all(|(_, free)| *free));
+    assert!(modelled.contains(&("base_colour", false)), "{modelled:?}");
+    assert_eq!(modelled.len(), measured.len());
+}
+
 fn by(scene: &Scene, metric: Metric, parameters: &[&str]) -> Match {
     let measure = Measure { what: What::Lobe, metric };
     let request = Request { scene, view: 1, measure, parameters };

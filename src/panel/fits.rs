@@ -124,9 +124,8 @@ impl Default for Begun {
 /// A parameter with its value, as in the inspector.
 fn said(name: &'static str, value: &Value, context: &PanelContext<'_>) -> String {
     let Some(p) = context.registry().material_parameter(name) else { return format!("{name} {value}") };
-    let option =
-        p.kind.options().iter().find(|(id, _)| matches!(value, Value::Choice(chosen) if **chosen == **id));
-    option.map_or_else(|| format!("{} {value}", p.label), |(_, option)| format!("{} {option}", p.label))
+    let option = if let Value::Choice(id) = value { p.kind.option(id) } else { None };
+    option.map_or_else(|| format!("{} {value}", p.label), |option| format!("{} {option}", p.label))
 }
 
 /// A model with its error and its parameters.

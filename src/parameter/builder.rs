@@ -45,6 +45,13 @@ mod tests {
     use crate::parameter::Value;
 
     #[test]
+    fn a_choice_is_found_by_its_name_in_files() {
+        let choice = Parameter::choice("f", &[("g", "G"), ("h", "H")], 1);
+        assert_eq!(["g", "h", "G"].map(|id| choice.kind.option(id)), [Some("G"), Some("H"), None]);
+        assert_eq!(Parameter::number("a", 0.0..=2.0, 1.5).kind.option("g"), None);
+    }
+
+    #[test]
     fn every_type_is_declared_with_its_default() {
         const ALL: [(Parameter, Value); 8] = [
             (Parameter::number("a", 0.0..=2.0, 1.5), Value::Number(1.5)),

@@ -12,7 +12,6 @@ use crate::{
     curves::Kind as Plot,
     lesson::Situation,
     optics::tone::ToneMapping,
-    parameter::Parameter,
     registry::Registry,
     text::{path::Segment, shortened},
 };
@@ -214,7 +213,7 @@ fn text(asked: &Asked, now: &str, situation: &Situation) -> String {
                 "shading_model" => shading(),
                 "tone_mapping" => ToneMapping::from_id(now).map_or(now, |curve| curve.name()),
                 "encoding" if now == "srgb" => "sRGB",
-                name => subject::parameter(name, registry).and_then(|p| option(p, now)).unwrap_or(now),
+                name => subject::parameter(name, registry).and_then(|p| p.kind.option(now)).unwrap_or(now),
             };
             format!("{subject} is {}", shortened(shown))
         }
@@ -233,13 +232,8 @@ fn last(asked: &Asked) -> &str {
     }
 }
 
-/// The name of a choice in the window.
-fn option(parameter: &Parameter, id: &str) -> Option<&'static str> {
-    parameter.kind.options().iter().find(|(known, _)| *known == id).map(|(_, name)| *name)
-}
-
 /// The name of a choice that has a number. Unlike a name, such a number can be looked up but not be found by thinking.
 fn numbered(asked: &Asked, id: &str, registry: &Registry) -> Option<&'static str> {
     let parameter = subject::parameter(last(asked), registry).filter(|p| p.kind.is_numbered())?;
-    option(parameter, id)
+    parameter.kind.option(id)
 }

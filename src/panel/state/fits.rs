@@ -91,6 +91,7 @@ impl Session {
         let free = |view: &usize| -> Vec<_> {
             parameters(&self.document, *view, registry)
                 .into_iter()
+                .filter(|(_, usual)| *usual)
                 .map(|(parameter, _)| parameter.name)
                 .collect()
         };

@@ -189,6 +189,11 @@ pub trait Kind {
         &[]
     }
 
+    /// The name in the window of the choice with this name in files; `None` if there is none.
+    fn option(&self, id: &str) -> Option<&'static str> {
+        self.options().iter().find(|(known, _)| *known == id).map(|(_, name)| *name)
+    }
+
     /// True if the choices have numbers, one after the other, in place of names.
     fn is_numbered(&self) -> bool {
         false

@@ -127,8 +127,8 @@ fn a_broken_claim_is_found_with_numbers_and_a_kept_one_that_nobody_makes_too() {
     put(folder.path(), "poles.wgsl", &model("cos_l / (cos_l - cos_l)"));
     let poles = run(folder.path(), "models check poles --models models", "");
     assert_eq!(poles.status, Some(1));
-    let told =
-        "poles is finite on the GPU; on the CPU, an object has the reflection model poles, which gives (∞";
+    let told = "poles is finite on the GPU, which was given light from single directions and no ambient light; \
+         on the CPU, an object has the reflection model poles, which gives (∞";
     assert!(poles.out.contains("finite: NOT everywhere") || poles.err.contains(told), "{}", poles.err);
     let everywhere = "fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
     return vec3(sqrt(m.base_colour.r - 2.0));\n}\n";
