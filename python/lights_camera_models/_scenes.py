@@ -234,7 +234,7 @@ class Scene:
         on
             What is compared: ``lobe``, ``picture`` or ``highlight``.
         free
-            The parameters that are free; by default every number.
+            The parameters that are free; by default every number, and beside a measurement every colour too.
         metric
             The metric of lobes: ``cosine`` (Ngan and others 2005), ``log`` (Löw and others 2012) or ``cube-root`` (Fores and
             others 2012).
