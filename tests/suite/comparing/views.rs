@@ -494,6 +494,10 @@ fn numbers_and_map_wait_for_pictures_that_have_not_converged() {
         assert!(!bench.says("RMSE"), "{layout:?}");
         let written = crate::window::layout::texts(&mut bench).iter().filter(|(text, _)| text == why).count();
         assert_eq!(written, times, "{layout:?}: in the bar, and in the place of a map");
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let written = crate::window::layout::texts(&mut bench).iter().filter(|(text, _)| text == why).count();
+        assert_eq!(written, 1, "{layout:?}: a presentation says it once");
+        bench.apply(Action::View(ViewChange::Presenting(false)));
     }
     bench.session.facts.converged[1] = all;
     bench.settle();
