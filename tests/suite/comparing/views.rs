@@ -505,6 +505,30 @@ fn numbers_and_map_wait_for_pictures_that_have_not_converged() {
 }
 
 #[test]
+fn the_buttons_of_layouts_stay_where_they_are() {
+    for (size, scale) in [(vec2(1280.0, 720.0), 100), (vec2(1280.0, 720.0), 150), (vec2(1920.0, 300.0), 100)]
+    {
+        let mut bench = bench();
+        bench.size = size;
+        bench.key(Key::B, CTRL);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        let mut known = None;
+        for layout in Layout::ALL {
+            bench.apply(Action::Compare(CompareCommand::Layout(*layout)));
+            bench.settle();
+            let places: Vec<_> = bench
+                .tree
+                .iter()
+                .filter(|s| s.label.starts_with("Layout: "))
+                .map(|s| (s.label.clone(), s.rect))
+                .collect();
+            assert!(!places.is_empty() || scale > 100, "{layout:?}");
+            assert_eq!(*known.get_or_insert(places.clone()), places, "{layout:?} at {scale} %");
+        }
+    }
+}
+
+#[test]
 fn legends_of_two_channels_do_not_overlap() {
     for scale in [100, 150, 200] {
         for layout in [Layout::SideBySide, Layout::Wipe, Layout::Difference] {
