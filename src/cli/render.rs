@@ -504,6 +504,10 @@ impl Painter {
                 }
                 false => progress.part((i, count), name, |progress| on_cpu(job, part, registry, progress))?,
             };
+            let shown = match job.arguments.numbers {
+                true => shown.covering_objects(&part.scene, registry, job.arguments.samples),
+                false => shown,
+            };
             let outlined = all.is_empty() && job.plan.is_map();
             all.push(if outlined { shown.outlined(&part.scene, registry) } else { shown });
             remarks.extend(of_part);

@@ -28,7 +28,27 @@ pub fn numbers(views: &[usize], shown: &[Shown]) -> Vec<Part> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::caption::line;
+    use crate::{
+        caption::line,
+        reference::Settings,
+        registry::Registry,
+        scene::{Scene, Variant},
+    };
+
+    #[test]
+    fn pictures_of_which_only_codes_are_known_are_compared_over_objects_too() {
+        let registry = Registry::builtin();
+        let phong = Variant { reflection_model: Some("phong".to_owned()), ..Variant::default() };
+        let scene = Scene { variants: vec![phong], ..Scene::default() };
+        let settings = Settings { width: 64, height: 36, samples: 4, ..Settings::default() };
+        let view = |view| Shown::of_view(&scene, view, &registry, &settings).expect("a view");
+        let lit = [view(0), view(1)];
+        let codes =
+            lit.clone().map(|shown| Shown::of_codes(64, 36, shown.into_rgb8()).expect("the right size"));
+        let covered = codes.clone().map(|shown| shown.covering_objects(&scene, &registry, 4));
+        assert_eq!(numbers(&[0, 1], &covered), numbers(&[0, 1], &lit));
+        assert_ne!(numbers(&[0, 1], &codes), numbers(&[0, 1], &lit), "the wrong twin");
+    }
 
     #[test]
     fn each_view_is_compared_with_the_first() {

@@ -1,6 +1,6 @@
 //! The subject of a curve.
 
-use std::{path::Path, sync::Arc};
+use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -34,8 +34,7 @@ enum Source {
 /// A parameter with its value, in words; `None` if it cannot be put in words.
 fn setting(parameter: &'static Parameter, value: &Value) -> Option<String> {
     if let Value::File(file) = value {
-        let name = Path::new(file.name()).file_name();
-        return Some(name.map_or_else(|| file.name().to_owned(), |name| name.to_string_lossy().into_owned()));
+        return Some(file.short_name().into_owned());
     }
     let (symbol, text) = caption::value(parameter, value)?;
     if !parameter.kind.options().is_empty() {

@@ -73,7 +73,7 @@ pub fn rounded_number_or_triple(v: Vec3, digits: usize) -> String {
     if v.x == v.y && v.y == v.z { rounded(v.x, digits) } else { rounded_triple(v, digits) }
 }
 
-/// A number, or three if they differ, with standard errors and the digits that these allow: `0.512 ± 0.003`.
+/// A number, or three if they differ, with standard errors and the digits that these allow: `0.5123 ± 0.0031`.
 #[must_use]
 pub fn measured(v: Vec3, error: Vec3) -> String {
     let all: [[String; 2]; 3] = std::array::from_fn(|i| with_error(v[i], error[i]));
@@ -96,23 +96,26 @@ pub(super) fn digits_within(relative: f32, most: usize) -> usize {
     }
 }
 
-/// A number with its standard error, each with the digits that mean something: one of the error, or two if it begins with 1.
+/// Digits of a standard error.
+const OF_ERROR: usize = 2;
+
+/// A number and its standard error, both to the second digit of the error.
 pub(super) fn with_error(value: f32, error: f32) -> [String; 2] {
     /// The digits of 32 bits.
     const MOST: i32 = 7;
     let (value, error) = (f64::from(value), f64::from(error));
     if error <= 0.0 || !error.is_finite() || !value.is_finite() {
-        return [rounded(value, DIGITS), rounded(error, 1)];
+        return [rounded(value, DIGITS), rounded(error, OF_ERROR)];
     }
-    let place = |v: f64| v.abs().log10().floor() as i32;
-    let lead = error / 10f64.powi(place(error));
-    let of_error = if (1.0..1.95).contains(&lead) { 2 } else { 1 };
-    let last = place(error) + 1 - of_error;
-    let digits = if value == 0.0 { 1 } else { (place(value) - last + 1).clamp(1, MOST) };
-    // Digits before the point are written whether they mean something or not.
-    let unit = 10f64.powi(last.max(0));
-    let value = if last > 0 { (value / unit).round() * unit } else { value };
-    [rounded(value, digits as usize), rounded(error, of_error as usize)]
+    // Digits before the point are written whether they mean something or not, so both are rounded first.
+    let error = format!("{error:.*e}", OF_ERROR - 1);
+    let power: i32 = error.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0);
+    let last = power + 1 - OF_ERROR as i32;
+    let unit = 10f64.powi(last);
+    let value = (value / unit).round() * unit;
+    let place = if value == 0.0 { last } else { value.abs().log10().floor() as i32 };
+    let digits = (place - last + 1).clamp(1, MOST);
+    [rounded(value, digits as usize), rounded(error.parse().unwrap_or(f64::NAN), OF_ERROR)]
 }
 
 #[cfg(test)]
@@ -163,17 +166,25 @@ mod tests {
     #[test]
     fn numbers_have_the_digits_that_their_errors_allow() {
         for (value, error, expected) in [
-            (0.512_345, 0.0031, ["0.512", "0.003"]),
+            (0.512_345, 0.0031, ["0.5123", "0.0031"]),
             (0.512_345, 0.0012, ["0.5123", "0.0012"]),
-            (12.345, 2.0, ["12", "2"]),
-            (12_345.0, 300.0, ["12300", "300"]),
+            (12.345, 2.0, ["12.3", "2"]),
+            (12_345.0, 300.0, ["12350", "300"]),
+            // A tenth of the value.
+            (12_345.0, 1234.0, ["12300", "1200"]),
+            (1_234_567.0, 123_456.0, ["1.23·10^6", "120000"]),
+            (0.001_234_5, 0.000_123_4, ["0.00123", "0.00012"]),
             (0.01, 0.3, ["0.01", "0.3"]),
+            (0.001, 0.3, ["0", "0.3"]),
+            (0.512_345, 0.0996, ["0.51", "0.1"]),
             (0.3, 0.0, ["0.3", "0"]),
             (1.0 / 3.0, 0.0, ["0.3333", "0"]),
             (0.0, 0.1, ["0", "0.1"]),
         ] {
             assert_eq!(with_error(value, error), expected, "{value} {error}");
         }
+        // The wrong twin has the usual digits, whatever the error.
+        assert_ne!(rounded(12_345.0_f32, DIGITS), with_error(12_345.0, 1234.0)[0]);
         assert_eq!([1e-5, 0.003, 0.2, 3.0, 0.0].map(|r| digits_within(r, 4)), [4, 3, 1, 1, 4]);
     }
 }

@@ -7,6 +7,8 @@ use super::{prelude::*, state::Settings};
 
 /// Fraction of the window that the picture keeps, unless the user makes the panels wider.
 const PICTURE: f32 = 0.45;
+/// Fraction of the window that the picture keeps even if the panels become narrower than they should be.
+const LEAST: f32 = 0.4;
 
 /// Width of a panel, in points.
 pub(super) struct Width {
@@ -27,7 +29,20 @@ struct Side {
     own: Option<f32>,
     usual: f32,
     least: f32,
+    /// The minimum width where the picture would become too narrow.
+    floor: f32,
     most: f32,
+}
+
+/// Narrows the minimum widths of open panels, the left one first, until the picture keeps its least part of a window.
+fn narrow(sides: &mut [Side; 2], whole: f32) {
+    let taken: f32 = sides.iter().filter(|side| side.open).map(|side| side.least).sum();
+    let mut over = (taken - (1.0 - LEAST) * whole).max(0.0);
+    for side in sides.iter_mut().filter(|side| side.open) {
+        let cut = over.min((side.least - side.floor).max(0.0));
+        side.least -= cut;
+        over -= cut;
+    }
 }
 
 /// The current zoom, in per cent.
@@ -44,22 +59,26 @@ impl Widths {
     /// The widths in a window that is `whole` points wide.
     pub(super) fn of(ctx: &Context, session: &Session, whole: f32) -> Self {
         let (view, own, usual) = (&session.view, &session.settings, Settings::default());
-        let side = |open, wanted: f32, usual: f32, least: f32, most| Side {
+        let side = |open, wanted: f32, usual: f32, [floor, least]: [f32; 2], most| Side {
             open,
             own: (wanted != usual).then_some(wanted.min(most)),
             usual: usual.min(most),
             least: least.min(most),
+            floor,
             most,
         };
         // Beside a lesson, every knob must remain usable.
         let least = if session.lesson.is_some() { 294.0 } else { 280.0 };
-        let sides = [
+        let mut sides = [
             match session.lesson {
-                Some(_) => side(view.left_open, own.lesson_width, usual.lesson_width, 264.0, 0.45 * whole),
-                None => side(view.left_open, own.left_width, usual.left_width, 120.0, 0.26 * whole),
+                Some(_) => {
+                    side(view.left_open, own.lesson_width, usual.lesson_width, [184.0, 264.0], 0.45 * whole)
+                }
+                None => side(view.left_open, own.left_width, usual.left_width, [96.0, 120.0], 0.26 * whole),
             },
-            side(view.right_open, own.right_width, usual.right_width, least, 0.45 * whole),
+            side(view.right_open, own.right_width, usual.right_width, [200.0, least], 0.45 * whole),
         ];
+        narrow(&mut sides, whole);
         // Resizing one panel does not change the other.
         let taken: f32 = sides.iter().filter(|side| side.open).map(|side| side.usual).sum();
         let share = ((1.0 - PICTURE) * whole / taken.max(1.0)).min(1.0);
@@ -91,5 +110,28 @@ impl Widths {
         }
         let over = !down && ctx.data_mut(|d| d.remove_temp::<bool>(dragging())).unwrap_or(false);
         (over && moved).then_some(Action::View(ViewChange::Sizes { left, right, bottom }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minimum_widths_leave_the_picture_its_part_and_the_left_one_gives_way_first() {
+        let widths = |[floor, least]: [f32; 2], right: f32, open: bool, whole: f32| {
+            let side = |open, floor, least| Side { open, own: None, usual: 300.0, least, floor, most: 400.0 };
+            let mut sides = [side(true, floor, least), side(open, 200.0, right)];
+            narrow(&mut sides, whole);
+            sides.map(|side| side.least.round())
+        };
+        let lesson = [184.0, 264.0];
+        assert_eq!(widths(lesson, 294.0, true, 1280.0), [264.0, 294.0], "there is room");
+        assert_eq!(widths(lesson, 294.0, true, 900.0), [246.0, 294.0]);
+        // Type at 200 % in a window of 1280 pixels.
+        assert_eq!(widths(lesson, 288.0, true, 640.0), [184.0, 200.0]);
+        assert_eq!(widths([96.0, 120.0], 280.0, true, 640.0), [104.0, 280.0]);
+        assert_eq!(widths(lesson, 294.0, true, 300.0), [184.0, 200.0], "not narrower than that");
+        assert_eq!(widths(lesson, 294.0, false, 640.0), [264.0, 294.0], "a closed one takes nothing");
     }
 }

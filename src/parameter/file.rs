@@ -245,6 +245,12 @@ impl NamedFile {
         &self.name
     }
 
+    /// The name without folders.
+    #[must_use]
+    pub fn short_name(&self) -> Cow<'_, str> {
+        Path::new(self.name()).file_name().map_or(Cow::Borrowed(self.name()), |name| name.to_string_lossy())
+    }
+
     /// The file under another name.
     #[must_use]
     pub fn renamed(&self, name: impl Into<Cow<'static, str>>) -> Self {

@@ -106,6 +106,15 @@ impl Limits {
     }
 }
 
+/// The end of a range in a rule: far ends with a power of ten, the farthest of 32 bits as 3.4e38.
+pub(super) fn end(value: f32) -> String {
+    match value.abs() {
+        f32::MAX => format!("{value:.1e}"),
+        far if far >= 1e16 => format!("{value:e}"),
+        _ => value.to_string(),
+    }
+}
+
 /// A number in plain notation: at most four decimals, no trailing zeros, a true minus sign.
 #[must_use]
 pub fn number(value: f64) -> String {

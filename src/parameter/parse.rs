@@ -92,6 +92,22 @@ mod tests {
     }
 
     #[test]
+    fn far_ends_of_ranges_are_short_and_numbers_beyond_32_bits_break_them() {
+        for (range, rule) in [
+            (0.0..=1e7, "between 0 and 10000000"),
+            (-1e20..=1e20, "between -1e20 and 1e20"),
+            (f32::MIN..=f32::MAX, "between -3.4e38 and 3.4e38"),
+        ] {
+            let p = Parameter::number("a", range, 0.0);
+            assert_eq!(p.rule(), rule);
+            for text in ["1e39", "-1e300"] {
+                let said = p.parse(text).expect_err("refused").to_string();
+                assert!(said.contains(&format!("is {text}, but")) && said.contains(rule), "{said}");
+            }
+        }
+    }
+
+    #[test]
     fn other_text_is_refused_with_the_rule() {
         for (p, text, rule) in [
             (K_D, "0.2", "is 0.2, but the diffuse coefficient must be between 0.5 and 1"),

@@ -1,4 +1,5 @@
-//! The outlines of objects: the borders between pixels that show different objects or the background.
+//! The pixels that objects cover, and the outlines of objects: the borders between pixels that show different objects or
+//! the background.
 
 use super::{Settings, render};
 use crate::{
@@ -8,27 +9,43 @@ use crate::{
     scene::{Light, Scene},
 };
 
+/// The scene with surfaces of one simple model, which cover the same pixels.
+fn plain(scene: &Scene) -> Scene {
+    let mut plain = Scene {
+        reflection_model: Scene::default().reflection_model,
+        shading_model: "flat".to_owned(),
+        ..scene.clone().alone()
+    };
+    for object in &mut plain.objects {
+        (object.reflection_model, object.shading_model) = (None, None);
+        object.material = Default::default();
+    }
+    plain
+}
+
+/// True for each pixel of which objects, or lights that are seen, cover a sample, as in the light of [`render`]. No model
+/// of the scene has to run on the CPU.
+#[must_use]
+pub fn covered(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<bool> {
+    render(&plain(scene), registry, settings).pixels.iter().map(|pixel| pixel.w > 0.0).collect()
+}
+
 /// True for each pixel whose right or lower neighbour shows another object or the background, row by row from
 /// the top.
 #[must_use]
 pub fn outlines(scene: &Scene, registry: &Registry, [width, height]: [u32; 2]) -> Vec<bool> {
     // Each object gets a different, uniform light, so that the picture identifies objects.
-    let even = Scene::default();
     let mut ids = Scene {
-        reflection_model: even.reflection_model,
-        shading_model: "flat".to_owned(),
         lights: vec![Light {
             light_type: "ambient".to_owned(),
             position: None,
             intensity: 1.0,
             ..Light::default()
         }],
-        ..scene.clone().alone()
+        ..plain(scene)
     };
     for (i, object) in ids.objects.iter_mut().enumerate() {
-        (object.reflection_model, object.shading_model) = (None, None);
         let [.., high, low] = (i as u32).to_be_bytes();
-        object.material = Default::default();
         object.material.set("base_colour", Value::Colour([low, high, 255]));
     }
     let settings = Settings { width, height, samples: 1, terms: TermSelection::All };
@@ -49,6 +66,27 @@ mod tests {
 
     use super::*;
     use crate::scene::Object;
+
+    #[test]
+    fn what_is_covered_is_what_the_light_covers_with_lights_that_are_seen() {
+        let registry = Registry::builtin();
+        let glass = Scene { reflection_model: "glass".to_owned(), ..Scene::default() };
+        let mut sky = glass.clone();
+        let mut light = Light::default();
+        light.set_type(registry.light("environment").expect("built in"), &registry, sky.scene_size);
+        light.parameters.set("visible", Value::Choice("true".into()));
+        sky.lights.push(light);
+        for (scene, whole) in [(glass, false), (sky, true)] {
+            for samples in [1, 4] {
+                let settings = Settings { width: 64, height: 36, samples, terms: TermSelection::All };
+                let all = covered(&scene, &registry, &settings);
+                let lit = render(&scene, &registry, &settings).pixels;
+                assert!(lit.iter().map(|pixel| pixel.w > 0.0).eq(all.iter().copied()), "{samples}");
+                assert_eq!(all.iter().all(|on| *on), whole);
+                assert!(all.contains(&true));
+            }
+        }
+    }
 
     #[test]
     fn an_object_has_one_outline_also_before_another_and_none_within() {

@@ -22,7 +22,11 @@ use crate::{
         },
     },
     registry::Registry,
-    text::{did_you_mean, json::canonical, numbers, plural, quoted, shortened},
+    text::{
+        did_you_mean,
+        json::{TOO_LARGE, canonical},
+        numbers, plural, quoted, shortened,
+    },
 };
 
 /// A value of a scene: where it is, and how it is declared.
@@ -98,6 +102,7 @@ impl Place {
             return match value {
                 Some(value) if !self.declared.is_colour() || code(&value) => Ok(value),
                 _ if self.declared.is_colour() => Err(broken("it must be a whole number from 0 to 255")),
+                _ if text.parse().is_ok_and(f32::is_infinite) => Err(broken(TOO_LARGE)),
                 _ => Err(broken("it must be a number")),
             };
         }

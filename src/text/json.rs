@@ -105,11 +105,10 @@ impl<'p, 'a> Cursor<'p, 'a> {
         }
     }
 
-    /// The rule that a number breaks which is too large for 32 bits.
+    /// The rule that a number breaks which is too large for 32 bits: [`TOO_LARGE`].
     #[must_use]
     pub fn too_large(&self) -> Option<&'static str> {
-        let rule = "numbers must be between -3.4e38 and 3.4e38, the largest of 32 bits";
-        self.number().is_some_and(f32::is_infinite).then_some(rule)
+        self.number().is_some_and(f32::is_infinite).then_some(TOO_LARGE)
     }
 
     /// The number as written, if it is one.
@@ -159,6 +158,9 @@ impl<'p, 'a> Cursor<'p, 'a> {
 
 /// The largest integer that may be written as a real number: beyond it, neighbouring integers are equal in 64 bits.
 pub const EXACT: i64 = 1 << 53;
+
+/// The rule of numbers without a range of their own.
+pub const TOO_LARGE: &str = "numbers must be between -3.4e38 and 3.4e38, the largest of 32 bits";
 
 /// An integer. `32.0` and `3.2e1` are integers: JSON does not distinguish them from `32`.
 #[must_use]

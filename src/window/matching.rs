@@ -71,7 +71,7 @@ impl Matches {
         let facts = &mut session.bypass_change_detection().facts;
         (facts.matching, facts.ranking) = (self.0.running(), self.1.running());
         if let Some((view, measure, ranking)) = self.1.take() {
-            session.ranked((view, measure), ranking);
+            session.ranked((view, measure), ranking, registry);
         }
         if let Some((scene, view, measure, outcome)) = self.0.take() {
             session.matched(&scene, (view, measure), outcome, registry);

@@ -91,7 +91,7 @@ impl OffScreen<'_> {
     }
 
     fn on_gpu(&self, progress: &Progress) -> Result<(Shown, Option<Sampled>), Undrawn> {
-        let Self { seen, registry, size: [width, height], samples, terms, channel, .. } = *self;
+        let Self { seen, registry, size: [width, height], samples, terms, channel, lit } = *self;
         if width as usize * height as usize > MAX_PIXELS {
             let said = format!("{width}×{height} are too many pixels for the GPU");
             return Err(Undrawn::Failed(format!("{said}; at most {MAX_PIXELS} are possible")));
@@ -110,6 +110,7 @@ impl OffScreen<'_> {
         }
         let rgb8 = renderer.read_rgb8().map_err(Undrawn::of)?;
         let sampled = seen.rests_on_samples(registry).then_some(reached);
-        Ok((Shown::of_codes(width, height, rgb8).map_err(Undrawn::of)?, sampled))
+        let shown = Shown::of_codes(width, height, rgb8).map_err(Undrawn::of)?;
+        Ok((if lit { shown.covering_objects(seen, registry, samples) } else { shown }, sampled))
     }
 }

@@ -111,10 +111,11 @@ pub fn compose(
     host: Host,
 ) -> Result<Shader, ExportError> {
     if let Some(file) = model.file() {
-        let (name, label) = (model.declaration.id, file.label);
+        // The label may be a plural.
+        let (name, label) = (model.declaration.name, file.label);
         return Err(ExportError::refused(format!(
-            "the {label} of {name} has more numbers than a uniform holds; fit another model to it with `lcm match`, \
-             or export a program"
+            "a uniform does not hold all numbers of the {label} of {name}; fit another model with `lcm match`, or \
+             export a program"
         )));
     }
     if let Some(excess) = excess(lights.numbers.len(), lights.pictures) {

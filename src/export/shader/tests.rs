@@ -204,6 +204,22 @@ fn the_files_of_lamps_and_the_lights_must_fit_into_a_uniform() {
 }
 
 #[test]
+fn measured_models_are_refused_by_name() {
+    let registry = Registry::builtin();
+    let scene = with_lights(&["point"], &registry);
+    let shading = registry.shading_model("phong").expect("is");
+    for (id, what) in [
+        ("measured_table", "the measurements of Measured (table);"),
+        ("measured_merl", "the measurement of Measured (MERL);"),
+    ] {
+        let model = registry.model(id).expect("is");
+        let refused = compose(&Lights::of(&scene, &registry), &registry, of(model), shading, ALONE);
+        let refused = refused.expect_err("too much").to_string();
+        assert!(refused.starts_with(&format!("a uniform does not hold all numbers of {what}")), "{refused}");
+    }
+}
+
+#[test]
 fn the_record_of_a_light_is_the_same_for_all_models_of_a_scene() {
     let mut registry = Registry::builtin();
     let wgsl = registry.model("phong").expect("is").declaration.wgsl;

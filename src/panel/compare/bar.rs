@@ -36,7 +36,11 @@ pub(super) fn bar(
     };
     let left = |place: Rect| UiBuilder::new().max_rect(place).layout(Direction::left_to_right(Align::Center));
     let right = Direction::right_to_left(Align::Center);
-    ui.scope_builder(left(row(0.0)), |ui| {
+    // In a low window there are fewer rows: the numbers go first, then the choices. The layouts are below, where they stay as
+    // other rows come and go.
+    let count = (rect.height() / ROW).round() as usize;
+    let choices = arranging.rows[usize::from(!wide)];
+    ui.scope_builder(left(row(count.saturating_sub(1) as f32)), |ui| {
         ui.set_clip_rect(ui.clip_rect().intersect(rect));
         let width = layouts(ui, rect.width(), comparison.layout, hint, context);
         if wide {
@@ -45,17 +49,14 @@ pub(super) fn bar(
             ui.with_layout(right, |ui| numbers(ui, session, room, first));
         }
     });
-    // In a low window there are fewer rows: the numbers go first, then the choices.
-    let count = (rect.height() / ROW).round() as usize;
-    let choices = arranging.rows[usize::from(!wide)];
     if !wide && count > choices + 1 {
-        let last = row((count - 1) as f32);
-        let place = UiBuilder::new().max_rect(last).layout(right);
-        ui.scope_builder(place, |ui| numbers(ui, session, last.width(), |_| true));
+        let above = row((count - 2) as f32);
+        let place = UiBuilder::new().max_rect(above).layout(right);
+        ui.scope_builder(place, |ui| numbers(ui, session, above.width(), |_| true));
     }
     for i in 0..choices.min(count.saturating_sub(1)) {
         let mut now = comparison;
-        ui.scope_builder(left(row(1.0 + i as f32)), |ui| {
+        ui.scope_builder(left(row(i as f32)), |ui| {
             if i == 0 {
                 ui.set_clip_rect(ui.clip_rect().intersect(rect));
                 ui.spacing_mut().item_spacing.x = 8.0;

@@ -40,6 +40,7 @@ mod what_if;
 pub use lobe::{Lobes, lobe_calculations, lobes_are_due, lobes_shown, lobes_shown_in};
 use probe::Level;
 pub use probe::{Explained, aimed, calculations, clicked, explained, on_escape, update};
+pub(super) use rows::raised;
 pub use side::{has_sides, placed};
 pub use surface::LightLobe;
 pub(super) use vectors::vectors;

@@ -46,7 +46,7 @@ pub(super) fn short_or_triple(v: Vec3) -> String {
 }
 
 /// Powers of ten with superscript digits.
-fn raised(text: &str) -> String {
+pub(in crate::panel) fn raised(text: &str) -> String {
     let mut power = false;
     let raise = |c: char| {
         power = c == '^' || power && !",) ".contains(c);

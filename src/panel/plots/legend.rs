@@ -180,11 +180,11 @@ fn value(panel: &PlotPanel, entry: &Entry, drawn: Option<&Drawn>) -> Option<Stri
     let sheet = &panel.figure.as_ref()?.sheet;
     let value = match (panel.reading.filter(|_| entry.shown)?, drawn?) {
         (Reading::Angle(angle), Drawn::Curve(curve)) => {
-            let sigma = curve.sigma_at(angle).map(|sigma| format!(" ± {}", reading::text(sigma)));
-            let value = reading::of_curve(sheet, curve, angle);
-            return Some(
-                value.map_or_else(|| "–".to_owned(), |v| reading::text(v) + &sigma.unwrap_or_default()),
-            );
+            let text = |v: f64| match curve.sigma_at(angle) {
+                Some(sigma) if v.is_finite() => reading::with_error(v, sigma),
+                _ => reading::text(v),
+            };
+            return Some(reading::of_curve(sheet, curve, angle).map_or_else(|| "–".to_owned(), text));
         }
         (Reading::Angles(half, difference), Drawn::Slice(slice)) => {
             reading::of_slice(sheet, slice, [half, difference])

@@ -1,7 +1,11 @@
 //! The values under the pointer, or at the angle to which keys went.
 
+use glam::Vec3;
+
 use crate::{
     curves::{Curve, Sheet, Slice, draw::Ground},
+    explain::measured,
+    panel::explain::raised,
     text::superscript,
 };
 
@@ -112,10 +116,14 @@ pub(super) fn text(value: f64) -> String {
     text.replace('-', "−")
 }
 
+/// A value and its uncertainty, both to the digits that this allows.
+pub(super) fn with_error(value: f64, error: f64) -> String {
+    let [value, error] = [value, error].map(|v| Vec3::splat(v as f32));
+    raised(&measured(value, error))
+}
+
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
     use crate::curves::{Kind, Point, Setup};
 
@@ -162,6 +170,13 @@ mod tests {
             assert_eq!(text(value), said);
         }
         assert_eq!(text(1.5e-7), "1.500 × 10⁻⁷");
+    }
+
+    #[test]
+    fn values_with_an_uncertainty_have_the_digits_that_it_allows() {
+        assert_eq!(with_error(0.318_31, 0.031), "0.318 ± 0.031");
+        assert_eq!(with_error(0.000_031_831, 0.000_003_1), "3.18·10⁻⁵ ± 3.1·10⁻⁶");
+        assert_ne!(with_error(0.318_31, 0.031), format!("{} ± 0.031", text(0.318_31)), "the wrong twin");
     }
 
     #[test]

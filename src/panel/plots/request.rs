@@ -10,7 +10,7 @@ use crate::{
         prelude::*,
         state::{Of, Slot},
     },
-    parameter::Values,
+    parameter::{NamedFile, Value, Values},
     progress::Progress,
     reflection::ModelEntry,
     text::listed,
@@ -193,6 +193,17 @@ impl Request {
             kind,
             theta_i: if kind.declaration().has_light { theta_i } else { 0.0 },
             phi_i: if kind.declaration().has_azimuth { phi_i } else { 0.0 },
+        }
+    }
+
+    /// The file with the subject of a curve.
+    #[must_use]
+    pub fn file(&self, slot: Slot) -> Option<NamedFile> {
+        let entry = self.entries.iter().find(|entry| entry.slot == slot)?;
+        let Recipe::Model(model, values, _) = &entry.recipe else { return None };
+        match values.get(model.file()?) {
+            Value::File(file) => Some(file),
+            _ => None,
         }
     }
 

@@ -7,8 +7,9 @@ use super::{
     series,
 };
 use crate::{
-    curves::draw::{Figure, GAP, Ground, Ink, Pen, Series},
+    curves::draw::{Figure, GAP, Ground, Ink, Series},
     panel::{focus, linked, prelude::*, state::Slot},
+    parameter::NamedFile,
 };
 
 impl PlotPanel {
@@ -27,7 +28,7 @@ impl PlotPanel {
         let built = self.figure.as_mut()?;
         let mut screen = Screen::new(ui, place, &mut self.textures);
         let units = [place.width(), place.height()].map(|points| f64::from(points / SCALE));
-        fit(built, units, &screen);
+        fit(ui, built, units, request);
         screen.lit = lit.and_then(|slot| built.slots.iter().position(|known| *known == slot));
         let ground = built.figure.draw(&mut screen);
         let axis = match &built.figure {
@@ -45,6 +46,7 @@ impl PlotPanel {
             None if response.has_focus() => walked(ui, &response, self.reading, request, axis),
             None => None,
         };
+        tips(ui, request, built, &ground, &screen);
         let (_, title) = built.figure.frame();
         let says = match self.reading {
             Some(reading) => format!("{title}; {}", reading.name()),
@@ -129,8 +131,16 @@ fn says_instead(ui: &Ui, place: Rect, text: String) {
     ui.painter().galley(at.min, galley, palette.text);
 }
 
+/// Height of the letters of a name above a slice, in units of figures.
+const NAME: f64 = 17.0;
+
+/// The room for the name of a slice with this side, in units of figures.
+fn room(side: f64) -> f64 {
+    side + GAP[0] - 12.0
+}
+
 /// Gives a figure the size of its place.
-fn fit(built: &mut Built, [width, height]: [f64; 2], screen: &Screen) {
+fn fit(ui: &Ui, built: &mut Built, [width, height]: [f64; 2], request: &Request) {
     let size = (width as u32, height as u32);
     match &mut built.figure {
         Figure::Plot(plot) => plot.size = size,
@@ -145,23 +155,42 @@ fn fit(built: &mut Built, [width, height]: [f64; 2], screen: &Screen) {
             let columns = (1..=count).max_by(|a, b| side(*a).total_cmp(&side(*b)));
             slices.columns = columns.unwrap_or(1);
             slices.side = side(slices.columns);
-            for (tile, slice) in slices.tiles.iter_mut().zip(&built.sheet.slices) {
-                tile.name = cut(&slice.name, slices.side + GAP[0] - 12.0, screen);
+            let all = built.sheet.slices.iter().zip(&built.slots);
+            for (tile, (slice, slot)) in slices.tiles.iter_mut().zip(all) {
+                tile.name = short(ui, &slice.name, request.file(*slot), room(slices.side));
             }
         }
     }
 }
 
-/// A name shortened to this width.
-fn cut(name: &str, width: f64, screen: &Screen) -> String {
-    let fits = |text: &str| screen.width(17.0, text) <= width;
-    if fits(name) {
-        return name.to_owned();
+/// A name shortened to this width in its middle; where it is too long, a file has its own name.
+fn short(ui: &Ui, name: &str, file: Option<NamedFile>, width: f64) -> String {
+    let font = FontId::proportional(SCALE * NAME as f32);
+    let ink = Palette::here(ui).text;
+    let within = |text: &str| theme::elided_within(ui, text, &font, ink, SCALE * width as f32);
+    let galley = match (within(name), file) {
+        ((_, true), Some(file)) => within(&file.short_name()).0,
+        ((galley, _), _) => galley,
+    };
+    galley.text().to_owned()
+}
+
+/// Says the whole names of slices where the pointer is at them, and the paths of their files.
+fn tips(ui: &Ui, request: &Request, built: &Built, ground: &Ground, screen: &Screen) {
+    let Ground::Slices(places) = ground else { return };
+    let all = built.sheet.slices.iter().zip(&built.slots).zip(places);
+    for ((slice, slot), [left, top, right, _]) in all {
+        let corners = [[*left, top - 2.6 * NAME], [left + room(right - left), top - 1.3 * NAME]];
+        let [min, max] = corners.map(|corner| screen.place(corner));
+        let name = ui.interact(Rect::from_min_max(min, max), ui.id().with(("name", slot)), Sense::hover());
+        theme::says(&name, WidgetType::Label, &slice.name);
+        theme::tip(name, 480.0, |ui| {
+            ui.label(&slice.name);
+            if let Some(path) = request.file(*slot).as_ref().and_then(NamedFile::path) {
+                ui.label(theme::small(ui, path.shown().to_string()));
+            }
+        });
     }
-    let letters: Vec<char> = name.chars().collect();
-    let with = |count: usize| letters[..count].iter().collect::<String>().trim_end().to_owned() + "…";
-    let most = (1..letters.len()).take_while(|count| fits(&with(*count))).last();
-    with(most.unwrap_or(1))
 }
 
 /// The angle to which arrow keys bring the reading.

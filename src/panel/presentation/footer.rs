@@ -227,7 +227,8 @@ fn numbers(ui: &Ui, session: &Session, size: f32, room: f32) -> String {
     let with = LETTERS.get(session.compared_with()).copied().unwrap_or("B");
     let mut line = format!("{with} compared with A:");
     if let Some(reason) = session.no_difference() {
-        return reason;
+        // A map says it itself.
+        return if session.document.comparison.layout.is_map() { String::new() } else { reason };
     }
     let Some(numbers) = &session.facts.comparison else { return line + " …" };
     for (i, (name, value, _)) in numbers.entries().filter(|(_, value, _)| !value.is_empty()).enumerate() {

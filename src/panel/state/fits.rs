@@ -111,7 +111,12 @@ impl Session {
     }
 
     /// Handles the end of the fits of every model. `ranking` is `None` if the search crashed.
-    pub fn ranked(&mut self, (view, measure): (usize, Measure), ranking: Option<Ranking>) {
+    pub fn ranked(
+        &mut self,
+        (view, measure): (usize, Measure),
+        ranking: Option<Ranking>,
+        registry: &Registry,
+    ) {
         let Some(ranking) = ranking else {
             self.fits = None;
             return self.say(Severity::Error, "The models were not fitted: an internal error.");
@@ -119,9 +124,10 @@ impl Session {
         let text = match ranking.matched.first() {
             None => "No model was fitted to the measurement.".to_owned(),
             Some(Matched { model, found }) => format!(
-                "{} fitted to the measurement of view {}; {model} comes nearest. Error: {} ({}).",
+                "{} fitted to the measurement of view {}; {} comes nearest. Error: {} ({}).",
                 crate::text::plural(ranking.matched.len(), "model"),
                 LETTERS[view.min(MAX_VARIANTS)],
+                registry.model(model).map_or(*model, |entry| entry.declaration.name),
                 digits(found.after),
                 measure.unit()
             ),

@@ -8,6 +8,7 @@ use super::{
     ABOVE_ZERO, Cursor, Declarations, Encoding, Header, Json, Kind, Limits, Member, Parameter, ParameterKind,
     Payload, Place, Reader, Type, Value, check_range, header, text::number,
 };
+use crate::parameter::limits::end;
 
 /// The content of a value.
 pub type Given = f32;
@@ -71,8 +72,8 @@ impl Kind for Number {
 
     fn rule(&self) -> String {
         match self.min {
-            ABOVE_ZERO => format!("greater than 0 and at most {}", self.max),
-            min => format!("between {min} and {}", self.max),
+            ABOVE_ZERO => format!("greater than 0 and at most {}", end(self.max)),
+            min => format!("between {} and {}", end(min), end(self.max)),
         }
     }
 

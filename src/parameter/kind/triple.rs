@@ -9,6 +9,7 @@ use super::{
     Place, Reader, Type, Value, Vec3, check_range, header, joined,
     text::{self, number},
 };
+use crate::parameter::limits::end;
 
 /// The content of a value.
 pub type Given = [f32; 3];
@@ -45,7 +46,8 @@ impl Kind for Triple {
     }
 
     fn rule(&self) -> String {
-        format!("three numbers between {} and {}, [red, green, blue], or one for all", self.min, self.max)
+        let [min, max] = [self.min, self.max].map(end);
+        format!("three numbers between {min} and {max}, [red, green, blue], or one for all")
     }
 
     fn parse(&self, text: &str) -> Option<Value> {

@@ -118,6 +118,9 @@ impl Reader<'_> {
         let registry = self.registry;
         let rule = || match (field.kind, object_type) {
             (Kind::Count(_), Some(shape)) => check::tessellation_rule(shape),
+            (Kind::Count(_), None) if value.number().is_some_and(|n| n > u32::MAX as f32) => {
+                format!("{} and at most {}", field.rule(registry), u32::MAX)
+            }
             _ => field.rule(registry),
         };
         match field.kind {
@@ -142,7 +145,7 @@ impl Reader<'_> {
                 Some(text.into())
             }
             Kind::Position | Kind::Direction | Kind::Step | Kind::Rotation => {
-                Some(self.vector(value, rule).into())
+                Some(self.vector(value, matches!(field.kind, Kind::Position), rule).into())
             }
             Kind::Colour => colour::read(self, value, &rule()).map(Value::Colour),
             Kind::Material | Kind::Parameters | Kind::List | Kind::Part | Kind::Parts => None,

@@ -41,8 +41,9 @@ impl Reader<'_> {
         Vec::new()
     }
 
-    /// Three numbers; NaN if they could not be read.
-    pub(super) fn vector(&mut self, value: Cursor, rule: impl Fn() -> String) -> Vec3 {
+    /// Three numbers; NaN if they could not be read. Numbers that are too large for 32 bits break the rule of those that have a
+    /// range.
+    pub(super) fn vector(&mut self, value: Cursor, has_range: bool, rule: impl Fn() -> String) -> Vec3 {
         let Some(list) = value.list().filter(|list| list.len() == 3) else {
             self.wrong(value, &rule());
             return Vec3::NAN;
@@ -50,11 +51,12 @@ impl Reader<'_> {
         let mut vector = Vec3::NAN;
         let mut good = true;
         for (i, element) in list.enumerate() {
-            match element.number() {
+            let excess = element.too_large().filter(|_| !has_range);
+            match element.number().filter(|_| excess.is_none()) {
                 Some(number) => vector[i] = number,
                 None => {
                     good = false;
-                    self.wrong(element, &rule());
+                    self.wrong(element, &excess.map_or_else(&rule, str::to_owned));
                 }
             }
         }

@@ -112,12 +112,12 @@ fn every_model_is_listed_by_what_remains_and_a_click_shows_it_in_view_b() {
     bench.click("Cancel");
     assert_eq!(asked(&mut bench), [Effect::CancelMatch]);
     bench.session.facts.ranking = None;
-    bench.session.ranked((0, Measure::default()), Some(ranking()));
+    bench.session.ranked((0, Measure::default()), Some(ranking()), &bench.registry);
     bench.settle();
     let last = bench.session.messages.last().expect("it is said");
     assert!(
         last.text
-            .starts_with("2 models fitted to the measurement of view A; ward comes nearest. Error: 0.01"),
+            .starts_with("2 models fitted to the measurement of view A; Ward comes nearest. Error: 0.01"),
         "{}",
         last.text
     );
@@ -151,7 +151,7 @@ fn a_fit_does_not_replace_a_measurement_in_view_b() {
     assert_eq!(asked(&mut bench), [every(1, Metric::Cosine)]);
     let fitted = bench.session.to_fit(1, &bench.registry);
     assert!(fitted.variants.is_empty() && fitted.reflection_model == "measured_merl", "{fitted:?}");
-    bench.session.ranked((1, Measure::default()), Some(ranking()));
+    bench.session.ranked((1, Measure::default()), Some(ranking()), &bench.registry);
     bench.apply(Action::Match(MatchCommand::Show("ward")));
     let models: Vec<_> = bench
         .session

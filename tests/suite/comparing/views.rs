@@ -494,10 +494,38 @@ fn numbers_and_map_wait_for_pictures_that_have_not_converged() {
         assert!(!bench.says("RMSE"), "{layout:?}");
         let written = crate::window::layout::texts(&mut bench).iter().filter(|(text, _)| text == why).count();
         assert_eq!(written, times, "{layout:?}: in the bar, and in the place of a map");
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let written = crate::window::layout::texts(&mut bench).iter().filter(|(text, _)| text == why).count();
+        assert_eq!(written, 1, "{layout:?}: a presentation says it once");
+        bench.apply(Action::View(ViewChange::Presenting(false)));
     }
     bench.session.facts.converged[1] = all;
     bench.settle();
     assert!(bench.says("RMSE 0.031") && !bench.says("Not converged"));
+}
+
+#[test]
+fn the_buttons_of_layouts_stay_where_they_are() {
+    for (size, scale) in [(vec2(1280.0, 720.0), 100), (vec2(1280.0, 720.0), 150), (vec2(1920.0, 300.0), 100)]
+    {
+        let mut bench = bench();
+        bench.size = size;
+        bench.key(Key::B, CTRL);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        let mut known = None;
+        for layout in Layout::ALL {
+            bench.apply(Action::Compare(CompareCommand::Layout(*layout)));
+            bench.settle();
+            let places: Vec<_> = bench
+                .tree
+                .iter()
+                .filter(|s| s.label.starts_with("Layout: "))
+                .map(|s| (s.label.clone(), s.rect))
+                .collect();
+            assert!(!places.is_empty() || scale > 100, "{layout:?}");
+            assert_eq!(*known.get_or_insert(places.clone()), places, "{layout:?} at {scale} %");
+        }
+    }
 }
 
 #[test]

@@ -811,7 +811,8 @@ fn the_picture_keeps_its_room_and_no_text_leaves_the_panel() {
     let desk = Desk::new();
     for (size, scale, share) in [
         (vec2(1280.0, 720.0), 100, 0.45),
-        (vec2(1280.0, 720.0), 150, 0.3),
+        (vec2(1280.0, 720.0), 150, 0.4),
+        (vec2(1280.0, 720.0), 200, 0.4),
         (vec2(1920.0, 1080.0), 150, 0.45),
         (vec2(1920.0, 1080.0), 200, 0.38),
     ] {

@@ -486,8 +486,14 @@ fn numbers_too_large_for_32_bits_break_the_rule_of_their_field() {
             assert!(said.contains(&format!("is {huge}, {expected}")), "{from} {huge}: {said}");
         }
     }
+    // Directions and rotations have no range.
+    let rule = "numbers must be between -3.4e38 and 3.4e38, the largest of 32 bits";
     let text = full_scene().to_string().replacen("[0,45,0]", "[0,1e39,0]", 1);
-    assert!(said(&text).contains("but a rotation must be three finite numbers"), "{}", said(&text));
+    assert!(said(&text).contains(&format!(".rotation[1] is 1e39, but {rule}")), "{}", said(&text));
+    let said_of = said(&changed(|s| s["observer"]["direction"] = json!([0, 1, -1e300])));
+    assert!(said_of.contains(&format!("observer.direction[2] is -1e+300, but {rule}")), "{said_of}");
+    let said_of = said(&changed(|s| s["observer"]["direction"] = json!([0, 1, -1e38])));
+    assert!(!said_of.contains(rule), "{said_of}");
     let text = full_scene().to_string().replacen("[1,2,3]", "[1,1e999,3]", 1);
     assert!(said(&text).contains("must be inside the room"), "{}", said(&text));
 }

@@ -26,7 +26,7 @@ fn bench(scale: u16) -> Bench {
 
 #[test]
 fn panels_give_way_to_the_picture_and_the_width_of_a_user_counts() {
-    for (scale, share) in [(100, 0.45), (125, 0.45), (150, 0.45), (200, 0.36)] {
+    for (scale, share) in [(100, 0.45), (125, 0.45), (150, 0.45), (200, 0.4)] {
         let whole = 1280.0 / (f32::from(scale) / 100.0);
         let mut bench = bench(scale);
         let picture = bench.area.rect;

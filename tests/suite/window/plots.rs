@@ -3,6 +3,7 @@
 //! `scripts/pictures` writes pictures, to be looked at.
 
 use std::{
+    fmt::Write as _,
     fs,
     path::{Path, PathBuf},
     sync::atomic::{AtomicUsize, Ordering},
@@ -25,7 +26,7 @@ use lights_camera_models::{
         },
         theme,
     },
-    parameter::{Value, Values},
+    parameter::{NamedFile, Value, Values},
     parameters,
     progress::Progress,
     reflection::{self, ReflectionModel},
@@ -269,6 +270,51 @@ fn models_and_measured_data_are_laid_over() {
     let angle = angle.and_then(|angle| angle.parse().ok()).expect("an angle");
     ask(&mut bench, PlotCommand::Light(angle));
     wait(&mut bench, |bench| surface(bench).label.contains("Garnet red (measured)"));
+}
+
+#[test]
+fn slices_of_several_files_say_which_each_is_of() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut bench = plots("lambert", Kind::Slice);
+    let parameter =
+        bench.registry.model("measured_table").and_then(|model| model.file()).expect("it reads one");
+    let format = parameter.kind.format().expect("a file");
+    let mut samples = "theta_i,phi_i,theta_o,phi_o,value\n".to_owned();
+    for (i, o, azimuth) in [0, 20, 40, 60, 80]
+        .iter()
+        .flat_map(|i| [0, 20, 40, 60, 80].map(|o| (i, o)))
+        .flat_map(|(i, o)| [0, 45, 90, 135, 180].map(|azimuth| (i, o, azimuth)))
+    {
+        let _ = writeln!(samples, "{i},0,{o},{azimuth},0.2");
+    }
+    let names = [1, 2, 3, 4].map(|n| format!("paper_measured_by_the_goniometer_of_the_institute_{n}.csv"));
+    for name in &names {
+        fs::write(folder.path().join(name), &samples).expect("writable");
+        let mut values = Values::default();
+        values.set(parameter.name, Value::File(NamedFile::chosen(name, folder.path(), format)));
+        let of = Of::Model { id: "measured_table".to_owned(), values, encoding: Encoding::Srgb };
+        ask(&mut bench, PlotCommand::Add(of));
+    }
+    let whole = |bench: &Bench, name: &str| {
+        let right = surface(bench).rect.right();
+        let label = format!("Measured (table), {name}");
+        let is = |s: &&Seen| s.label == label && s.rect.left() < right;
+        bench.tree.iter().find(is).map(|s| s.rect)
+    };
+    wait(&mut bench, |bench| names.iter().all(|name| whole(bench, name).is_some()));
+    let right = surface(&bench).rect.right();
+    let texts = bench.texts_in_sight();
+    for name in &names {
+        // Shortened in the middle: what differs is at the end.
+        let end = &name[name.len() - 5..];
+        let said = texts.iter().any(|(text, at)| {
+            text.starts_with("pap") && text.contains('…') && text.ends_with(end) && at.left() < right
+        });
+        assert!(said, "{name} in {texts:?}");
+    }
+    let at = whole(&bench, &names[0]).expect("there").left_center() + vec2(4.0, 0.0);
+    bench.hover(at);
+    assert!(bench.says(&folder.path().join(&names[0]).display().to_string()), "its path");
 }
 
 #[test]
