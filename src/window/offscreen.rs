@@ -111,6 +111,6 @@ impl OffScreen<'_> {
         let rgb8 = renderer.read_rgb8().map_err(Undrawn::of)?;
         let sampled = seen.rests_on_samples(registry).then_some(reached);
         let shown = Shown::of_codes(width, height, rgb8).map_err(Undrawn::of)?;
-        Ok((if lit { shown.covering_objects(seen, registry, samples) } else { shown }, sampled))
+        Ok((if lit { shown.covering_objects(seen, registry, samples.into()) } else { shown }, sampled))
     }
 }
