@@ -35,8 +35,8 @@ struct Side {
 }
 
 impl Side {
-    /// The widths of panels that the user has not resized, in a window of this width: where they would leave the picture too
-    /// little, they are narrower than they should be, the left one first.
+    /// The widths of panels that the user has not resized, in a window of this width: where they would leave the picture
+    /// too little, they are narrower than they should be, the left one first.
     fn widths(sides: &[Self; 2], whole: f32) -> [f32; 2] {
         let taken = |widths: [f32; 2]| -> f32 {
             sides.iter().zip(widths).filter(|(side, _)| side.open).map(|(_, width)| width).sum()
