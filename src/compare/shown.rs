@@ -65,8 +65,8 @@ impl Shown {
         Ok(self)
     }
 
-    /// Adds which pixels the objects of the scene that it shows cover with this number of samples, unless that is known:
-    /// the GPU renderer, for one, does not tell.
+    /// Adds which pixels the objects of the scene that it shows cover with this number of samples, unless that is
+    /// known: the GPU renderer, for one, does not tell.
     #[must_use]
     pub fn covering_objects(mut self, scene: &Scene, registry: &Registry, samples: u32) -> Self {
         let (width, height) = (self.width, self.height);

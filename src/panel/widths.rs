@@ -34,14 +34,23 @@ struct Side {
     most: f32,
 }
 
-/// Narrows the minimum widths of open panels, the left one first, until the picture keeps its least part of a window.
-fn narrow(sides: &mut [Side; 2], whole: f32) {
-    let taken: f32 = sides.iter().filter(|side| side.open).map(|side| side.least).sum();
-    let mut over = (taken - (1.0 - LEAST) * whole).max(0.0);
-    for side in sides.iter_mut().filter(|side| side.open) {
-        let cut = over.min((side.least - side.floor).max(0.0));
-        side.least -= cut;
-        over -= cut;
+impl Side {
+    /// The widths of panels that the user has not resized, in a window of this width: where they would leave the picture
+    /// too little, they are narrower than they should be, the left one first.
+    fn widths(sides: &[Self; 2], whole: f32) -> [f32; 2] {
+        let taken = |widths: [f32; 2]| -> f32 {
+            sides.iter().zip(widths).filter(|(side, _)| side.open).map(|(_, width)| width).sum()
+        };
+        let usual = taken(sides.each_ref().map(|side| side.usual));
+        let share = ((1.0 - PICTURE) * whole / usual.max(1.0)).min(1.0);
+        let mut widths = sides.each_ref().map(|side| (share * side.usual).max(side.least));
+        let mut over = (taken(widths) - (1.0 - LEAST) * whole).max(0.0);
+        for (side, width) in sides.iter().zip(&mut widths).filter(|(side, _)| side.open) {
+            let cut = over.min((*width - side.floor).max(0.0));
+            *width -= cut;
+            over -= cut;
+        }
+        widths
     }
 }
 
@@ -69,7 +78,7 @@ impl Widths {
         };
         // Beside a lesson, every knob must remain usable.
         let least = if session.lesson.is_some() { 294.0 } else { 280.0 };
-        let mut sides = [
+        let sides = [
             match session.lesson {
                 Some(_) => {
                     side(view.left_open, own.lesson_width, usual.lesson_width, [184.0, 264.0], 0.45 * whole)
@@ -78,18 +87,20 @@ impl Widths {
             },
             side(view.right_open, own.right_width, usual.right_width, [200.0, least], 0.45 * whole),
         ];
-        narrow(&mut sides, whole);
         // Resizing one panel does not change the other.
-        let taken: f32 = sides.iter().filter(|side| side.open).map(|side| side.usual).sum();
-        let share = ((1.0 - PICTURE) * whole / taken.max(1.0)).min(1.0);
+        let [of_left, of_right] = Side::widths(&sides, whole);
         let dragged = ctx.data(|d| d.get_temp(dragging())).unwrap_or(false)
             || ctx.input(|i| i.pointer.any_down()) && ctx.dragged_id().is_some();
-        let [left, right] = sides.map(|Side { own, usual, least, most, .. }| {
-            let default = own.unwrap_or((share * usual).max(least));
-            let range =
-                if own.is_some() || dragged { Rangef::new(least, most) } else { Rangef::point(default) };
+        let width = |Side { own, least, most, .. }: Side, usual: f32| {
+            let default = own.unwrap_or(usual);
+            let range = match own.is_some() || dragged {
+                true => Rangef::new(least.min(usual), most),
+                false => Rangef::point(default),
+            };
             Width { default, range }
-        });
+        };
+        let [left, right] = sides;
+        let (left, right) = (width(left, of_left), width(right, of_right));
         Self { left, right }
     }
 
@@ -118,20 +129,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn minimum_widths_leave_the_picture_its_part_and_the_left_one_gives_way_first() {
-        let widths = |[floor, least]: [f32; 2], right: f32, open: bool, whole: f32| {
-            let side = |open, floor, least| Side { open, own: None, usual: 300.0, least, floor, most: 400.0 };
-            let mut sides = [side(true, floor, least), side(open, 200.0, right)];
-            narrow(&mut sides, whole);
-            sides.map(|side| side.least.round())
+    fn panels_leave_the_picture_its_part_and_the_left_one_gives_way_first() {
+        let widths = |left: [f32; 3], right: [f32; 2], open: bool, whole: f32| {
+            let side = |open, [floor, least, usual]: [f32; 3]| {
+                let most = 0.45 * whole;
+                let [least, usual] = [least, usual].map(|width| f32::min(width, most));
+                Side { open, own: None, usual, least, floor, most }
+            };
+            let sides = [side(true, left), side(open, [200.0, right[0], right[1]])];
+            Side::widths(&sides, whole).map(f32::round)
         };
-        let lesson = [184.0, 264.0];
-        assert_eq!(widths(lesson, 294.0, true, 1280.0), [264.0, 294.0], "there is room");
-        assert_eq!(widths(lesson, 294.0, true, 900.0), [246.0, 294.0]);
+        let (lesson, right) = ([184.0, 264.0, 340.0], [294.0, 340.0]);
+        assert_eq!(widths(lesson, right, true, 1280.0), [340.0, 340.0], "there is room");
+        assert_eq!(widths(lesson, right, true, 1000.0), [275.0, 294.0]);
+        assert_eq!(widths(lesson, right, true, 900.0), [246.0, 294.0]);
         // Type at 200 % in a window of 1280 pixels.
-        assert_eq!(widths(lesson, 288.0, true, 640.0), [184.0, 200.0]);
-        assert_eq!(widths([96.0, 120.0], 280.0, true, 640.0), [104.0, 280.0]);
-        assert_eq!(widths(lesson, 294.0, true, 300.0), [184.0, 200.0], "not narrower than that");
-        assert_eq!(widths(lesson, 294.0, false, 640.0), [264.0, 294.0], "a closed one takes nothing");
+        assert_eq!(widths(lesson, right, true, 640.0), [184.0, 200.0]);
+        assert_eq!(widths([96.0, 120.0, 200.0], [280.0, 340.0], true, 640.0), [104.0, 280.0]);
+        assert_eq!(widths(lesson, right, true, 500.0), [184.0, 200.0], "not narrower than that");
+        assert_eq!(widths(lesson, right, false, 640.0)[0], 288.0, "a closed one takes nothing");
     }
 }

@@ -1,5 +1,5 @@
-//! The pixels that objects cover, and the outlines of objects: the borders between pixels that show different objects or
-//! the background.
+//! The pixels that objects cover, and the outlines of objects: the borders between pixels that show different objects
+//! or the background.
 
 use super::{Settings, render};
 use crate::{
@@ -23,8 +23,8 @@ fn plain(scene: &Scene) -> Scene {
     plain
 }
 
-/// True for each pixel of which objects, or lights that are seen, cover a sample, as in the light of [`render`]. No model
-/// of the scene has to run on the CPU.
+/// True for each pixel of which objects, or lights that are seen, cover a sample, as in the light of [`render`]. No
+/// model of the scene has to run on the CPU.
 #[must_use]
 pub fn covered(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<bool> {
     render(&plain(scene), registry, settings).pixels.iter().map(|pixel| pixel.w > 0.0).collect()

@@ -476,6 +476,8 @@ mod tests {
             ("display.tone_mapping", "acess", "did you mean"),
             ("lights[0].colour[0]", "300", "a whole number from 0 to 255"),
             ("lights[0].position", "[1, 2]", "three numbers"),
+            ("lights[0].position[1]", "1e39", "is 1e39, but numbers must be between -3.4e38 and 3.4e38"),
+            ("lights[0].position[1]", "high", "it must be a number"),
             ("lights[0].position", "[1, 2, 99]", "must be inside the room"),
         ] {
             let said = set(path, text).expect_err(path);

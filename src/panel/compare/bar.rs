@@ -36,8 +36,8 @@ pub(super) fn bar(
     };
     let left = |place: Rect| UiBuilder::new().max_rect(place).layout(Direction::left_to_right(Align::Center));
     let right = Direction::right_to_left(Align::Center);
-    // In a low window there are fewer rows: the numbers go first, then the choices. The layouts are below, where they stay as
-    // other rows come and go.
+    // In a low window there are fewer rows: the numbers go first, then the choices. The layouts are below, where they
+    // stay as other rows come and go.
     let count = (rect.height() / ROW).round() as usize;
     let choices = arranging.rows[usize::from(!wide)];
     ui.scope_builder(left(row(count.saturating_sub(1) as f32)), |ui| {

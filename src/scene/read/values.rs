@@ -41,8 +41,8 @@ impl Reader<'_> {
         Vec::new()
     }
 
-    /// Three numbers; NaN if they could not be read. Numbers that are too large for 32 bits break the rule of those that have a
-    /// range.
+    /// Three numbers; NaN if they could not be read. Numbers that are too large for 32 bits are left to the check of the
+    /// range, if there is one.
     pub(super) fn vector(&mut self, value: Cursor, has_range: bool, rule: impl Fn() -> String) -> Vec3 {
         let Some(list) = value.list().filter(|list| list.len() == 3) else {
             self.wrong(value, &rule());

@@ -229,6 +229,7 @@ fn mistakes_are_reported_with_their_place_and_the_remedy() {
         "objects[0].repeat.columns is 0, but the number of columns must be a whole number of at least 1",
     );
     about(json!({ "columns": -3 }), "objects[0].repeat.columns is -3");
+    about(json!({ "columns": 1e300 }), "must be a whole number of at least 1 and at most 4294967295");
     about(json!({}), "objects[0].repeat.columns is missing; a row needs the number of its copies");
     about(
         json!({ "columns": 1_000_000 }),
