@@ -11,9 +11,6 @@ struct Illumination {
 }
 // The lights of the scene.
 @group({{group}}) @binding(1) var<uniform> illumination: Illumination;
-fn light_at(i: u32) -> Light {
-    return illumination.lights[i];
-}
 [[curve]]
 // The directional albedo of the material, by the angle of view.
 struct AlbedoCurve {

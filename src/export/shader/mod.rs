@@ -287,7 +287,7 @@ fn specialised(mut text: String, lights: &Lights, edited: bool) -> String {
 
 /// Parts of the built-in light loop, and their replacements if all terms are shown.
 const SIMPLER: &[(&str, &str)] = &[
-    (" `illumination`, `parameters` and `observer_position` come from the wrapper.", ""),
+    (" `illumination`, `light_at`, `parameters` and `observer_position` come from the wrapper.", ""),
     (
         "    let count = min(illumination.count, MAX_LIGHTS);
     let selection = illumination.terms;
@@ -323,6 +323,7 @@ const SIMPLER: &[(&str, &str)] = &[
 ];
 /// Expressions known for the scene, in any light loop.
 const KNOWN: &[(&str, &str)] = &[
+    ("light_at(i)", "illumination.lights[i]"),
     ("min(illumination.count, MAX_LIGHTS)", "LIGHT_COUNT"),
     ("illumination.count", "LIGHT_COUNT"),
     ("illumination.terms", "TERM_ALL"),
