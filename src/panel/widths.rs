@@ -85,7 +85,7 @@ impl Widths {
                 }
                 None => side(view.left_open, own.left_width, usual.left_width, [96.0, 120.0], 0.26 * whole),
             },
-            side(view.right_open, own.right_width, usual.right_width, [200.0, least], 0.45 * whole),
+            side(view.right_open, own.right_width, usual.right_width, [264.0, least], 0.45 * whole),
         ];
         // Resizing one panel does not change the other.
         let [of_left, of_right] = Side::widths(&sides, whole);
@@ -136,7 +136,7 @@ mod tests {
                 let [least, usual] = [least, usual].map(|width| f32::min(width, most));
                 Side { open, own: None, usual, least, floor, most }
             };
-            let sides = [side(true, left), side(open, [200.0, right[0], right[1]])];
+            let sides = [side(true, left), side(open, [264.0, right[0], right[1]])];
             Side::widths(&sides, whole).map(f32::round)
         };
         let (lesson, right) = ([184.0, 264.0, 340.0], [294.0, 340.0]);
@@ -144,9 +144,9 @@ mod tests {
         assert_eq!(widths(lesson, right, true, 1000.0), [275.0, 294.0]);
         assert_eq!(widths(lesson, right, true, 900.0), [246.0, 294.0]);
         // Type at 200 % in a window of 1280 pixels.
-        assert_eq!(widths(lesson, right, true, 640.0), [184.0, 200.0]);
+        assert_eq!(widths(lesson, right, true, 640.0), [184.0, 264.0]);
         assert_eq!(widths([96.0, 120.0, 200.0], [280.0, 340.0], true, 640.0), [104.0, 280.0]);
-        assert_eq!(widths(lesson, right, true, 500.0), [184.0, 200.0], "not narrower than that");
+        assert_eq!(widths(lesson, right, true, 500.0), [184.0, 225.0], "not narrower than that");
         assert_eq!(widths(lesson, right, false, 640.0)[0], 288.0, "a closed one takes nothing");
     }
 }
