@@ -348,9 +348,10 @@ pub fn compose(
     c.push("(channels)", &debug::wgsl());
     c.source(&DISPLAY);
     c.source(&WRAPPER);
-    if solid {
-        // Only what follows the wrapper knows what it imports.
-        c.push("(the place of the body)", &part("placement", &[]));
+    // Only what follows the wrapper knows what it imports.
+    match solid {
+        true => c.push("(the place of the body)", &part("placement", &[])),
+        false => c.push("(a pixel of no body)", &part("opaque_pixel", &[])),
     }
     c.composed
 }
