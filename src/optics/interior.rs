@@ -35,10 +35,12 @@ impl Interior {
         Self { ior: dispersion::cauchy(self.ior, self.cauchy_b, nm), cauchy_b: 0.0, ..*self }
     }
 
-    /// True if light takes one of many ways through the boundary, by chance.
+    /// True if light takes one of many ways through the boundary, by chance. Facets of an [invisible](is_matched) boundary
+    /// turn no light.
     #[must_use]
     pub fn is_rough(&self) -> bool {
-        self.alpha >= MINIMUM_ALPHA
+        let is_invisible = self.cauchy_b == 0.0 && is_matched(self.ior);
+        self.alpha >= MINIMUM_ALPHA && !is_invisible
     }
 
     /// η for a ray that enters: the refractive index, or 1 for a body whose boundary is [invisible](is_matched).
@@ -65,7 +67,8 @@ impl Interior {
     #[must_use]
     pub fn rows(&self, by_polygon: bool) -> [Vec4; 2] {
         let normals = if by_polygon { 1.0 } else { 0.0 };
-        [Vec4::new(self.ior, self.cauchy_b, self.alpha, normals), self.absorption.extend(0.0)]
+        let alpha = if self.is_rough() { self.alpha } else { 0.0 };
+        [Vec4::new(self.ior, self.cauchy_b, alpha, normals), self.absorption.extend(0.0)]
     }
 
     /// The part of the light left after a way in metres.
@@ -92,6 +95,10 @@ mod tests {
         assert!((d - 1.62).abs() < 1e-6 && ((d - 1.0) / (f - c) - 36.0).abs() < 0.01, "{f} {d} {c}");
         assert_eq!(flint.at(400.0).at(700.0), flint.at(400.0));
         assert_eq!((flint.eta(), Interior { ior: 1.000_5, ..flint }.eta()), (1.62, 1.0));
+        let rough = Interior { alpha: 0.3, ..flint };
+        let matched = Interior { ior: 1.0, cauchy_b: 0.0, ..rough };
+        assert!(rough.is_rough() && !matched.is_rough() && Interior { ior: 1.0, ..rough }.is_rough());
+        assert_eq!((rough.rows(false)[0].z, matched.rows(false)[0].z), (0.3, 0.0));
         assert!((flint.left(0.5) - Vec3::new(-0.05, 0.0, -1.0).exp()).length() < 1e-6);
     }
 }

@@ -335,6 +335,10 @@ fn clear_glass_is_invisible_in_uniform_light() {
     let [_, mean] = visible(&furnace("sphere", &rough), 64);
     // Light that facets reflect several times is lost at each boundary.
     assert!(mean < 0.15, "{mean}");
+    // Facets between equal indices turn no light, at the rim neither.
+    let matched = solid(vec![number("roughness", 0.3), number("specular_ior", 1.0)]);
+    let [most, _] = visible(&furnace("sphere", &matched), 16);
+    assert!(most < 1e-3, "{most}");
     // Wrong twins are seen: an opaque one, half of one, and a tint at depth 0.
     let half = vec![number("transmission_weight", 0.5), number("base_weight", 0.0), number("roughness", 0.0)];
     let mut tint = smooth();
