@@ -131,8 +131,9 @@ fn compare(
     };
     let presenting = session.view.presenting;
     let rest = a.drawing.rests() && b.drawing.rests();
+    let mut outdated = true;
     if rest && let (Some(texture_a), Some(texture_b)) = (a.texture(), b.texture()) {
-        comparing.ask(
+        outdated = !comparing.ask(
             Question {
                 // The edge of a wipe does not affect the statistics.
                 comparison: Comparison { split: 0.0, ..comparison },
@@ -144,6 +145,11 @@ fn compare(
             },
             &mut commands,
         );
+    }
+    if let Some(numbers) = &mut session.bypass_change_detection().facts.comparison
+        && std::mem::replace(&mut numbers.outdated, outdated) != outdated
+    {
+        settling.draw(SETTLING_FRAMES);
     }
     if comparing.asked.is_some() {
         requests.write(RequestRedraw);
@@ -169,12 +175,14 @@ fn compare(
 }
 
 impl Comparing {
-    /// Begins to read back views, unless the answer is known or another question is under way.
-    fn ask(&mut self, question: Question, commands: &mut Commands) {
-        if self.asked.is_none() && self.known.as_ref() != Some(&question) {
+    /// Begins to read back views, unless the answer is known or another question is under way. True if it is known.
+    fn ask(&mut self, question: Question, commands: &mut Commands) -> bool {
+        let known = self.known.as_ref() == Some(&question);
+        if self.asked.is_none() && !known {
             self.read = Some(Reading::begin(&question.textures, commands));
             self.asked = Some(question);
         }
+        known
     }
 }
 
@@ -224,5 +232,5 @@ fn numbers(answer: &Answer, with: usize, several: bool, values: Compared) -> Num
         );
         all.push([LARGEST.to_owned(), format!("{}{unit}", short(difference)), help]);
     }
-    Numbers { all, largest: answer.largest.map(|(difference, _)| difference) }
+    Numbers { all, largest: answer.largest.map(|(difference, _)| difference), outdated: false }
 }

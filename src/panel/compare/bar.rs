@@ -142,11 +142,12 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
         return;
     }
     let Some(numbers) = session.facts.comparison.as_ref() else { return };
+    let ink = if numbers.outdated { palette.weak } else { palette.text };
     let mut left = room;
     let entries = numbers.entries().filter(|(name, ..)| wanted(name));
     let laid_out = entries.map(|(name, value, help)| {
         let text = format!("{name} {value}").trim_end().to_owned();
-        (theme::elided(ui, &text, TextStyle::Body, palette.text, f32::INFINITY), text, help)
+        (theme::elided(ui, &text, TextStyle::Body, ink, f32::INFINITY), text, help)
     });
     let mut fits = |(galley, ..): &(std::sync::Arc<Galley>, String, &str)| {
         left -= galley.size().x + SPACE;
@@ -156,9 +157,12 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
     // From right to left.
     for (galley, text, help) in shown.into_iter().rev() {
         let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
-        ui.painter().galley(rect.min, galley, palette.text);
+        ui.painter().galley(rect.min, galley, ink);
         theme::says(&response, WidgetType::Label, text);
         theme::tip(response, 320.0, |ui| {
+            if numbers.outdated {
+                ui.label("The views have changed; these numbers are of the pictures before.");
+            }
             ui.label(help);
         });
         ui.add_space(SPACE - ui.spacing().item_spacing.x);

@@ -231,14 +231,16 @@ fn numbers(ui: &Ui, session: &Session, size: f32, room: f32) -> String {
         return if session.document.comparison.layout.is_map() { String::new() } else { reason };
     }
     let Some(numbers) = &session.facts.comparison else { return line + " …" };
+    let end = if numbers.outdated { " …" } else { "" };
     for (i, (name, value, _)) in numbers.entries().filter(|(_, value, _)| !value.is_empty()).enumerate() {
         let more = format!("{line}{} {name} {value}", if i > 0 { " ·" } else { "" });
+        let whole = format!("{more}{end}");
         let galley =
-            theme::elided(ui, &more, FontId::proportional(size), Palette::here(ui).text, f32::INFINITY);
+            theme::elided(ui, &whole, FontId::proportional(size), Palette::here(ui).text, f32::INFINITY);
         if galley.size().x > room {
             break;
         }
         line = more;
     }
-    line
+    line + end
 }

@@ -135,6 +135,8 @@ pub struct Numbers {
     pub all: Vec<[String; 3]>,
     /// The largest difference, in the compared quantity; `None` if the views are equal.
     pub largest: Option<f32>,
+    /// True if the views have changed since.
+    pub outdated: bool,
 }
 
 impl Numbers {

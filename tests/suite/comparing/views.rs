@@ -459,7 +459,7 @@ fn a_channel_is_not_compared_with_a_picture() {
     let mut bench = bench();
     bench.key(Key::B, CTRL);
     let numbers = vec![["RMSE", "0.031", "help"].map(str::to_owned)];
-    bench.session.facts.comparison = Some(Numbers { all: numbers, largest: None });
+    bench.session.facts.comparison = Some(Numbers { all: numbers, ..Numbers::default() });
     bench.settle();
     assert!(bench.says("RMSE 0.031"));
     let why = "Not compared: A shows the picture, B shows N·V.";
@@ -483,7 +483,7 @@ fn numbers_and_map_wait_for_pictures_that_have_not_converged() {
     let mut bench = bench();
     bench.key(Key::B, CTRL);
     let numbers = vec![["RMSE", "0.031", "help"].map(str::to_owned)];
-    bench.session.facts.comparison = Some(Numbers { all: numbers, largest: None });
+    bench.session.facts.comparison = Some(Numbers { all: numbers, ..Numbers::default() });
     let all = Converging { done: 256, total: 256, noise: Some(0.01) };
     bench.session.facts.converged[0] = all;
     bench.session.facts.converged[1] = Converging { done: 63, ..all };
@@ -502,6 +502,13 @@ fn numbers_and_map_wait_for_pictures_that_have_not_converged() {
     bench.session.facts.converged[1] = all;
     bench.settle();
     assert!(bench.says("RMSE 0.031") && !bench.says("Not converged"));
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    let mut ends = |outdated| {
+        bench.session.facts.comparison.as_mut().expect("set above").outdated = outdated;
+        let texts = crate::window::layout::texts(&mut bench);
+        texts.iter().any(|(text, _)| text.contains("RMSE 0.031") && text.ends_with('…'))
+    };
+    assert!(ends(true) && !ends(false), "numbers of the pictures before");
 }
 
 #[test]
@@ -574,7 +581,7 @@ fn a_presentation_of_two_views_says_both_and_their_difference_and_covers_nothing
             bench.apply(Action::View(ViewChange::Scale(scale)));
             bench.apply(Action::Compare(CompareCommand::Activate(1)));
             let numbers = vec![["RMSE", "0.031", "help"].map(str::to_owned)];
-            bench.session.facts.comparison = Some(Numbers { all: numbers, largest: None });
+            bench.session.facts.comparison = Some(Numbers { all: numbers, ..Numbers::default() });
             bench.apply(Action::View(ViewChange::Presenting(true)));
             bench.settle();
             let said = crate::window::layout::texts(&mut bench);
