@@ -14,4 +14,5 @@ pub(super) const ALBEDO: Quantity<1, Vec3> = Quantity {
     input: |[mu]| DVec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu).as_vec3(),
     on_cpu: |surface, views| views.par_iter().map(|v| surface.directional_albedo(*v).as_vec3()).collect(),
     on_gpu: |gpu, views| Ok(gpu.albedos(views)?.iter().map(|e| e.as_vec3()).collect()),
+    left_out: |_, _, _| Vec::new(),
 };

@@ -11,6 +11,7 @@ use super::{
 };
 use crate::{
     explain::{
+        dark_glass::dark_glass,
         finite::{Scope, Tried, probe},
         solids::{Tested, thin},
     },
@@ -73,12 +74,15 @@ fn only_on_gpu(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
     said
 }
 
-/// A line for each object of a legal scene that a solid model draws as thin glass in any of its views.
-pub(super) fn drawn_thin(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
+/// Remarks on the glass of a legal scene in any of its views: a line for each object that a solid model draws as thin glass,
+/// and one on smooth glass through which no light is seen.
+pub(super) fn of_glass(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
     let (mut said, mut tested) = (Vec::new(), Tested::default());
     for (seen, _) in (0..=scene.variants.len()).filter_map(|view| scene.seen(view, registry)) {
-        for thin in thin(&seen, registry, &mut tested) {
-            let line = format!("{name}: {thin}");
+        let thin = thin(&seen, registry, &mut tested).into_iter().map(|thin| thin.to_string());
+        let dark = dark_glass(&seen, registry).map(|dark| dark.to_string());
+        for remark in thin.chain(dark) {
+            let line = format!("{name}: {remark}");
             if !said.contains(&line) {
                 said.push(line);
             }
@@ -130,8 +134,8 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             Ok(loaded) => {
                 let (scene, name) = (&loaded.scene, source.name());
                 let gpu = only_on_gpu(scene, &name, &workshop.registry);
-                let thin = drawn_thin(scene, &name, &workshop.registry);
-                gpu.into_iter().chain(thin).for_each(|line| options.tell(line));
+                let glass = of_glass(scene, &name, &workshop.registry);
+                gpu.into_iter().chain(glass).for_each(|line| options.tell(line));
                 let Scene { lights, objects, variants, .. } = &loaded.scene;
                 let mut counts = vec![plural(lights.len(), "light"), plural(objects.len(), "object")];
                 counts.extend((!variants.is_empty()).then(|| plural(variants.len(), "variant")));

@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use glam::Vec3;
 
 use super::{
-    Outcome,
+    Options, Outcome,
     angles::{self, Column},
     engine::{Evaluator, engine},
     workshop::{Workshop, not_on_cpu, valid},
@@ -105,16 +105,19 @@ pub(super) struct Quantity<const N: usize, I> {
     pub input: fn([f64; N]) -> I,
     pub on_cpu: fn(&dyn Surface, &[I]) -> Vec<Vec3>,
     pub on_gpu: fn(&dyn Evaluator, &[I]) -> Result<Vec<Vec3>, Failure>,
+    /// Remarks on rows of a model whose result on the machine is 0 because they are not evaluated.
+    pub left_out: fn(&dyn Surface, Machine, &[I]) -> Vec<&'static str>,
 }
 
 impl<const N: usize, I> Quantity<N, I> {
     /// Answers the rows on standard input: each as it was, with the results behind it.
-    pub(super) fn print(&self, arguments: &Arguments, workshop: &mut Workshop) -> Outcome {
+    pub(super) fn print(&self, arguments: &Arguments, options: Options, workshop: &mut Workshop) -> Outcome {
         let (registry, model, values) = arguments.open(workshop)?;
         let surface = model.instantiate(&values, Encoding::Srgb);
         // The GPU starts at the first row.
         let mut gpu: Option<Box<dyn Evaluator>> = None;
         let mut header = Some(self.header);
+        let mut told = Vec::new();
         let mut out = BufWriter::new(io::stdout().lock());
         angles::stream(io::stdin().lock(), &self.columns, |rows| {
             let inputs: Vec<_> = rows.iter().map(|row| (self.input)(row.numbers)).collect();
@@ -129,6 +132,12 @@ impl<const N: usize, I> Quantity<N, I> {
                 }
             };
             arguments.on.can_run(model)?;
+            for remark in (self.left_out)(surface.as_ref(), arguments.on, &inputs) {
+                if !told.contains(&remark) {
+                    options.tell(format_args!("{}: {remark}", model.declaration.id));
+                    told.push(remark);
+                }
+            }
             if let Some(header) = header.take() {
                 writeln!(out, "{header}")?;
             }
@@ -157,7 +166,27 @@ pub(super) const BRDF: Quantity<4, (Vec3, Vec3)> = Quantity {
         let of = |(terms, (l, v)): (Terms, &(Vec3, Vec3))| brdf_of(terms, *l, *v, &Frame::LOCAL);
         Ok(gpu.evaluate(pairs)?.into_iter().zip(pairs).map(of).collect())
     },
+    left_out,
 };
+
+/// The remark on light from within a solid body, which leaves it elsewhere.
+const FROM_WITHIN: &str = "rows with light from inside the body (theta_i beyond 90°) are 0: such light follows the mesh of \
+                           the object, which no function of two directions knows; rows with the observer inside give what \
+                           enters a rough body";
+/// The remark on observers behind a surface, whom the WGSL of models does not know.
+const ON_GPU: &str = "rows with the observer behind the surface (theta_o beyond 90°) are 0: the GPU does not evaluate them; \
+                      --on cpu does";
+
+/// Remarks on pairs of directions that are not evaluated.
+fn left_out(surface: &dyn Surface, on: Machine, pairs: &[(Vec3, Vec3)]) -> Vec<&'static str> {
+    let any = |wanted: fn(Vec3, Vec3) -> bool| pairs.iter().any(|(l, v)| wanted(*l, *v));
+    let from_within = surface.interior().is_some() && any(|l, v| l.z < 0.0 && v.z > 0.0);
+    let on_gpu = matches!(on, Machine::Gpu) && surface.transmits() && any(|l, v| l.z > 0.0 && v.z < 0.0);
+    [(from_within, FROM_WITHIN), (on_gpu, ON_GPU)]
+        .into_iter()
+        .filter_map(|(is, why)| is.then_some(why))
+        .collect()
+}
 
 /// The model with this id.
 pub(super) fn find<'a>(registry: &'a Registry, id: &str) -> Result<&'a ModelEntry, Failure> {
@@ -224,6 +253,34 @@ pub(super) fn setting(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_that_are_not_evaluated_are_remarked_on() {
+        let registry = Registry::builtin();
+        let said = |id: &str, set: &[(&'static str, f32)], on: Machine, [theta_i, theta_o]: [f64; 2]| {
+            let mut values = Values::default();
+            set.iter().for_each(|(name, value)| values.set(*name, Value::Number(*value)));
+            let surface = find(&registry, id).expect("built in").instantiate(&values, Encoding::Srgb);
+            let pair = (direction(theta_i, 0.0), direction(theta_o, 180.0));
+            left_out(surface.as_ref(), on, &[pair])
+        };
+        let (within, inwards) = ([150.0, 45.0], [45.0, 151.9]);
+        let body = [("transmission_weight", 1.0), ("roughness", 0.4)];
+        for (id, set) in [("glass", &body[1..]), ("openpbr", &body[..])] {
+            assert_eq!(said(id, set, Machine::Cpu, within), [FROM_WITHIN], "{id}");
+            assert_eq!(said(id, set, Machine::Cpu, inwards), [""; 0], "{id}");
+            assert_eq!(said(id, set, Machine::Gpu, inwards), [ON_GPU], "{id}");
+            assert_eq!(said(id, set, Machine::Gpu, [45.0, 30.0]), [""; 0], "{id}");
+        }
+        assert_eq!(said("rough_dielectric", &[], Machine::Cpu, within), [""; 0], "one boundary has it");
+        assert_eq!(said("rough_dielectric", &[], Machine::Gpu, inwards), [ON_GPU]);
+        for (id, set) in [("lambert", &body[..0]), ("openpbr", &body[1..])] {
+            for on in [Machine::Cpu, Machine::Gpu] {
+                assert_eq!(said(id, set, on, within), [""; 0], "{id} is opaque");
+                assert_eq!(said(id, set, on, inwards), [""; 0], "{id} is opaque");
+            }
+        }
+    }
 
     #[test]
     fn settings_are_checked_like_scene_files() {

@@ -12,7 +12,7 @@ use clap::{Args, ValueEnum};
 use super::{
     FINE, Options, Outcome,
     changes::Changes,
-    check::drawn_thin,
+    check::of_glass,
     collected,
     engine::{ENGINE, Order, Pictures, engine},
     finite::{self, has_untested},
@@ -261,7 +261,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         drawable(registry, &part.scene)?;
     }
     for (scene, source) in scenes.iter().zip(&sources) {
-        drawn_thin(scene, &source.name(), registry).into_iter().for_each(|line| options.tell(line));
+        of_glass(scene, &source.name(), registry).into_iter().for_each(|line| options.tell(line));
     }
     // All files are in a single folder.
     files.first().into_iter().for_each(|file| outputs::tidy_beside(file));

@@ -425,6 +425,18 @@ fn light_into_a_body_is_denser_by_the_square_of_its_index() {
     let solid = subject("glass", &[("roughness", number(0.3f32.sqrt()))]).brdf(l, v).x;
     assert!((solid / there - 1.0).abs() < 1e-4, "{solid} {there}");
     assert_eq!(subject("glass", &[]).brdf(l, v).x, 0.0, "a smooth one has no lobe");
+    // OpenPBR's body has it in the share of its weight, coloured where it crosses the surface.
+    let body = |weight: f32, roughness: f32| {
+        let colour = ("transmission_colour", Value::Colour([255, 255, 0]));
+        let set = [("transmission_weight", number(weight)), ("roughness", number(roughness)), colour];
+        subject("openpbr", &set).brdf(l, v)
+    };
+    for weight in [1.0, 0.5] {
+        let found = body(weight, 0.3f32.sqrt());
+        assert!((found.x / (weight * there) - 1.0).abs() < 1e-3 && found.z == 0.0, "{found} {there}");
+    }
+    assert_eq!(body(1.0, 0.0).x, 0.0, "a smooth one has no lobe");
+    assert_eq!(body(0.0, 0.3f32.sqrt()).x, 0.0, "an opaque one neither");
 }
 
 #[test]

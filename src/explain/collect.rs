@@ -4,6 +4,7 @@ use std::{f32::consts::PI, sync::Arc};
 
 use super::{
     Asked, Brightest, Geometry, Integral, Lamp, Lit, Model, Part, Place, Refraction, Seen, Setting, Spot,
+    dark_glass::is_dark_glass,
 };
 use glam::Vec3;
 
@@ -49,6 +50,7 @@ impl Shot<'_> {
             spots: at_corners.chain(at_pixel).collect(),
             per_pixel: found.phong.as_ref().map(|point| spot(Place::Pixel, point)),
             light: found.light.truncate(),
+            dark_glass: is_dark_glass(self.scene, object, self.registry),
             // Checked last: an endless function is detected only when it runs.
             model: Model::of(model, &object.material, self.scene.display.encoding, found.surface.clone()),
         })

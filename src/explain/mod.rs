@@ -38,6 +38,7 @@ use crate::{
 
 mod arriving;
 mod collect;
+pub mod dark_glass;
 mod factor_curve;
 pub mod finite;
 mod geometry;
@@ -198,6 +199,8 @@ pub struct Seen {
     pub per_pixel: Option<Spot>,
     /// The light of the pixel: the result of the shading model.
     pub light: Vec3,
+    /// True for smooth glass [through which no light is seen](dark_glass).
+    pub dark_glass: bool,
 }
 
 /// A reflection model with its parameters.

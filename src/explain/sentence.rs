@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use super::{Explanation, Lamp, Seen};
+use super::{Explanation, Lamp, Seen, dark_glass::WHY};
 use crate::optics::{TERMS, TermSelection, Terms, colour::luminance};
 
 /// Fraction above which a term counts as all of a lamp's light.
@@ -93,7 +93,7 @@ fn most(seen: &Seen, terms: TermSelection, name: &dyn Fn(usize) -> String) -> St
     format!("{} gives {part}{by}", name(*index))
 }
 
-/// The explanation in one or two sentences: the colour of the pixel, the light that contributes most, and by
+/// The explanation in a few sentences: the colour of the pixel, the light that contributes most, and by
 /// which term. It begins with `subject`, such as "This pixel is". `name` gives the name of the light with
 /// that index in the scene.
 ///
@@ -122,7 +122,11 @@ pub fn sentence(explanation: &Explanation, subject: &str, name: &dyn Fn(usize) -
         () if mapped.max_element() > 1.0 => " It is brighter than the display can show, and clipped.",
         () => "",
     };
-    format!("{subject} ({r}, {g}, {b}): {}.{end}", most(seen, explanation.terms, name))
+    let glass = match seen.dark_glass && explanation.terms == TermSelection::All {
+        true => format!(" It is smooth glass: {WHY}."),
+        false => String::new(),
+    };
+    format!("{subject} ({r}, {g}, {b}): {}.{end}{glass}", most(seen, explanation.terms, name))
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use glam::Vec3;
 use super::{
     Brightest, Explanation, Geometry, Influence, Inside, Line, Lit, Model, Part, Place, Refraction, Seen,
     Spot, agrees, angle,
+    dark_glass::WHY,
     lines::{self, calculation, reading},
     noise::{estimated, told, within},
     number,
@@ -141,6 +142,9 @@ impl Explanation {
     fn object(&self, out: &mut Writer, seen: &Seen) {
         let part = named("objects", &seen.object);
         say!(out, 0, "{part}, {}, polygon {}", seen.object.type_name, seen.polygon);
+        if seen.dark_glass {
+            say!(out, 1, "It is smooth glass: {WHY}.");
+        }
         out.gap();
         model(out, seen);
         shading(out, seen);

@@ -24,6 +24,7 @@ use crate::{
     caught::lock,
     declared::entry,
     optics::{
+        Frame,
         albedo::{AlbedoCurve, LobeAlbedo, NODES, NamedCurve},
         colour::Encoding,
         interior::Interior,
@@ -232,6 +233,19 @@ impl ModelEntry {
         let Passage { sharp, solid, .. } = self.passage(values);
         let may_be_exact = sharp || solid;
         !may_be_exact || samples(self.instantiate(values, Encoding::default()))
+    }
+
+    /// True if light passes through surfaces with these parameters without spreading, as through smooth glass: lights without
+    /// extent are then not seen through them.
+    #[must_use]
+    pub fn is_clear(&self, values: &Values) -> bool {
+        let is_smooth = |surface: Arc<dyn Surface>| match surface.interior() {
+            Some(inside) => !inside.is_rough(),
+            None => surface.sharp(Vec3::Z, &Frame::LOCAL).iter().any(|sharp| sharp.transmitted),
+        };
+        let Passage { sharp, solid, .. } = self.passage(values);
+        let may_be_clear = sharp || solid;
+        may_be_clear && is_smooth(self.instantiate(values, Encoding::default()))
     }
 
     /// True if the parameters decide how light passes.

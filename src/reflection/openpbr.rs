@@ -24,6 +24,7 @@ use crate::{
         film::thin_film,
         fresnel::{dielectric, schlick},
         geometry::half_vector,
+        interface::{Facets, Interface},
         interior::Interior,
         lobes::{self, Lobe, Lobes, MAX_LOBES},
         masking::{separable, smith_ggx},
@@ -521,9 +522,8 @@ impl OpenPbr {
         }
     }
 
-    /// The part of the light from within a body that enters it at a cosine and leaves it elsewhere, over that of a body
-    /// without coat, film and tint.
-    fn entered(&self, mu: f32) -> Vec3 {
+    /// The part of the light that passes into a body at a cosine, over that of a body without coat, film and tint.
+    fn passed(&self, mu: f32) -> Vec3 {
         let p = &self.prepared;
         // The way inside begins at the boundary of the body to air: what the coat and the film change about that.
         // Light that would be reflected totally there enters along the normal.
@@ -531,10 +531,21 @@ impl OpenPbr {
         let at = if p.is_smooth() { mu } else { scattered };
         let bare = (1.0 - dielectric(p.ior(), at)).max(1e-6);
         let entered = (Vec3::ONE - self.boundary(at)) / bare;
+        (1.0 - self.metallic) * self.transmission_weight * self.above(mu) * entered
+    }
+
+    /// The tint of light that crosses the surface of a body.
+    fn tint(&self) -> Vec3 {
+        if self.transmission_depth > 0.0 { Vec3::ONE } else { self.transmission_colour }
+    }
+
+    /// The part of the light from within a body that enters it at a cosine and leaves it elsewhere, over that of a body
+    /// without coat, film and tint.
+    fn entered(&self, mu: f32) -> Vec3 {
         // The coat colours the light once more where it leaves, as at this angle.
         let left = if self.coat_weight > 0.0 { self.through_coat(mu) } else { Vec3::ONE };
-        let tint = if self.transmission_depth > 0.0 { Vec3::ONE } else { self.transmission_colour };
-        (1.0 - self.metallic) * self.transmission_weight * self.above(mu) * entered * left * tint * tint
+        let tint = self.tint();
+        self.passed(mu) * left * tint * tint
     }
 
     /// The lobes of reflection, with that of a rough sheet: as many as there is room for.
@@ -698,6 +709,19 @@ impl ReflectionModel for OpenPbr {
 
     fn sharp(&self, v: Vec3, frame: &Frame) -> Sharps {
         self.straight_through(v, frame.n.dot(v)).into_iter().collect()
+    }
+
+    fn behind(&self, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
+        if !self.passage().solid {
+            return self.response(v, l, frame).transmitted / (PI * frame.n.dot(v).abs());
+        }
+        let p = &self.prepared;
+        if p.is_smooth() {
+            return Vec3::ZERO;
+        }
+        let (l, v) = (frame.to_local(l), frame.to_local(v));
+        let interface = Interface::new(Facets::Ggx, Vec2::splat(p.alpha), p.ior());
+        self.passed(l.z.max(GRAZING)) * self.tint() * interface.transmitted(l, v)
     }
 
     fn interior(&self) -> Option<Interior> {

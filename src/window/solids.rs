@@ -1,9 +1,13 @@
-//! Notices about objects of solid models whose meshes are not solids.
+//! Notices about glass: objects of solid models whose meshes are not solids, and smooth glass through which no light is
+//! seen.
 
 use bevy::ecs::prelude::*;
 
 use crate::{
-    explain::solids::{Tested, Thin, thin},
+    explain::{
+        dark_glass::dark_glass,
+        solids::{Tested, Thin, thin},
+    },
     panel::state::{Session, Severity},
     registry::Registry,
 };
@@ -22,4 +26,17 @@ pub(super) fn report_solids_drawn_thin(
         }
         *known = found;
     }
+}
+
+/// Reports, after changes of the document or the registry, that no light is seen through smooth glass.
+pub(super) fn report_dark_glass(
+    mut session: ResMut<Session>,
+    registry: Res<Registry>,
+    mut known: Local<bool>,
+) {
+    let found = dark_glass(session.document.scene(), &registry);
+    if let Some(new) = found.as_ref().filter(|_| !*known) {
+        session.say(Severity::Warning, format!("{new}."));
+    }
+    *known = found.is_some();
 }

@@ -50,6 +50,23 @@ fn evaluate_answers_for_the_whole_sphere() {
 }
 
 #[test]
+fn evaluate_says_which_rows_of_a_solid_body_it_leaves_out() {
+    let asked = "theta_i,phi_i,theta_o,phi_o\n150,0,45,180\n45,0,151.9,180\n155,0,45,180\n";
+    for (model, set) in [("glass", "roughness=0.4"), ("openpbr", "transmission_weight=1")] {
+        let run = lcm(&["evaluate", model, "--set", set, "--set", "roughness=0.4"], asked);
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        let first = |row: usize| {
+            run.out.lines().nth(row).and_then(|line| line.split(',').nth(4)?.parse::<f32>().ok())
+        };
+        assert!(first(1) == Some(0.0) && first(2).is_some_and(|f| f > 10.0), "{model}:\n{}", run.out);
+        let begins = format!("{model}: rows with light from inside the body (theta_i beyond 90°) are 0: ");
+        assert!(run.err.starts_with(&begins) && run.err.lines().count() == 1, "{}", run.err);
+    }
+    let run = lcm(&["evaluate", "rough_dielectric"], asked);
+    assert!(run.err.is_empty() && !run.out.contains("150,0,45,180,0,"), "{} {}", run.out, run.err);
+}
+
+#[test]
 fn curves_are_what_evaluate_prints() {
     for (model, name, set) in [
         ("phong:alpha=20", "Phong, α = 20", "alpha=20"),

@@ -1,4 +1,5 @@
-//! Solid models on meshes that are not solids: every command and the window say so, with the reason.
+//! Solid models on meshes that are not solids, and smooth glass through which no light is seen: every command and the
+//! window say so, with the reason.
 
 use std::fs;
 
@@ -81,4 +82,62 @@ fn the_window_says_once_what_is_drawn_as_thin_glass() {
     assert_eq!(said.len(), 2, "{:?}", session.messages);
     assert!(said.iter().all(|message| message.severity == Severity::Warning));
     assert!(said[0].text.starts_with(TENT) && said[1].text.starts_with(TEAPOT), "{said:?}");
+}
+
+/// A ball of smooth glass, a light without extent, and another light, if any.
+fn ball(light: &str) -> String {
+    format!(
+        r#"{{
+  "reflection_model": "glass", "shading_model": "phong",
+  "scene_size": {{ "height": 10, "width": 10, "depth": 10 }},
+  "lights": [{{ "type": "point", "position": [3, 8, 9], "intensity": 60 }}{light}],
+  "observer": {{ "position": [5, 5, 9], "direction": [0, 0, -1] }},
+  "objects": [{{ "type": "sphere", "name": "ball", "position": [5, 5, 5] }}]
+}}"#
+    )
+}
+
+const ENVIRONMENT: &str = r#", { "type": "environment", "source": "uniform", "intensity": 0.2 }"#;
+const DARK: &str = "objects[0] (\"ball\") is smooth glass and looks dark: lights without extent are not seen through it; add a light \
+                    with extent or an environment, or make the glass rough";
+
+#[test]
+fn commands_say_why_smooth_glass_is_dark() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let commands =
+        [&["check", "room.json"][..], &["render", "room.json", "--size", "32x18", "--renderer", "cpu"]];
+    for (light, dark) in [("", true), (ENVIRONMENT, false)] {
+        fs::write(folder.path().join("room.json"), ball(light)).expect("written");
+        for command in commands {
+            let run = lcm_in(folder.path(), command, b"");
+            assert_eq!(run.status, Some(0), "{command:?}: {}", run.err);
+            let count = run.err.lines().filter(|line| *line == format!("room.json: {DARK}")).count();
+            assert_eq!(count, usize::from(dark), "{command:?}: {}", run.err);
+        }
+        let explained =
+            lcm_in(folder.path(), &["explain", "room.json", "--at", "32,18", "--size", "64x36"], b"");
+        assert_eq!(
+            explained.out.contains("It is smooth glass: lights without extent"),
+            dark,
+            "{}",
+            explained.out
+        );
+    }
+}
+
+#[test]
+fn the_window_says_once_why_smooth_glass_is_dark() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("room.json");
+    for (light, count) in [("", 1), (ENVIRONMENT, 0)] {
+        fs::write(&file, ball(light)).expect("written");
+        let plugins = LabPlugins::default().scene(&file).size(120, 90).exit_after(100_000).headless();
+        let mut app = app(plugins.build(), |_| ());
+        for _ in 0..5 {
+            app.update();
+        }
+        let session = app.world().resource::<Session>();
+        let said = session.messages.iter().filter(|message| message.text == format!("{DARK}.")).count();
+        assert_eq!(said, count, "{:?}", session.messages);
+    }
 }
