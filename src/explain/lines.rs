@@ -84,6 +84,11 @@ impl Line {
         self.is_term() || self.quantity.is_none()
     }
 
+    /// True if a number of the line stands for this symbol.
+    fn names(&self, symbol: &str) -> bool {
+        self.symbols.iter().flatten().any(|known| mathematics::same_symbol(known, symbol))
+    }
+
     /// The value as red, green and blue.
     #[must_use]
     pub fn rgb(&self) -> Option<Vec3> {
@@ -207,6 +212,23 @@ impl Lit {
         };
         calculation(DIGITS, &colour(self.contribution), with)
     }
+}
+
+/// The lines that the displayed terms need: their own, and those that define what a needed line names.
+#[must_use]
+pub fn shown_lines(lines: &[Line], terms: TermSelection) -> Vec<&Line> {
+    let mut needed: Vec<_> =
+        lines.iter().map(|line| terms == TermSelection::All || line.term.alone() == Some(terms)).collect();
+    loop {
+        let more = lines.iter().enumerate().find(|(i, line)| {
+            !needed[*i]
+                && !line.is_term()
+                && lines.iter().zip(&needed).any(|(other, is)| *is && other.names(line.defines()))
+        });
+        let Some((more, _)) = more else { break };
+        needed[more] = true;
+    }
+    lines.iter().zip(needed).filter(|(_, is)| *is).map(|(line, _)| line).collect()
 }
 
 /// A sum as a factor: in brackets if there are several.

@@ -64,7 +64,7 @@ pub use factor_curve::{Along, FactorCurve};
 pub use geometry::Geometry;
 pub use influence::{Influence, Knob};
 pub use integral::{Brightest, Integral};
-pub use lines::{Line, agrees, reading};
+pub use lines::{Line, agrees, reading, shown_lines};
 pub use noise::{told, triple_within, within};
 pub use numbers::{measured, number, of_value, rounded, rounded_number_or_triple, rounded_triple, triple};
 pub use pairs::{Pair, pairs};

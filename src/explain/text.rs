@@ -215,8 +215,8 @@ impl Explanation {
         if lit.is_dark() {
             return;
         }
-        for line in lit.lines(&seen.model) {
-            equation(out, &line);
+        for line in lines::shown_lines(&lit.lines(&seen.model), self.terms) {
+            equation(out, line);
         }
         let sum = lit.sum(self.terms);
         if lit.integral.is_some() {
@@ -257,8 +257,8 @@ impl Explanation {
         directions(out, seen, &brightest.geometry);
         let luminance = rounded_number_or_triple(brightest.luminance, DIGITS);
         out.mathematics(2, format_args!("L(l) = {luminance} cd/m²"), ": the luminance from there");
-        for line in brightest.lines(&seen.model, DIGITS) {
-            equation(out, &line);
+        for line in lines::shown_lines(&brightest.lines(&seen.model, DIGITS), self.terms) {
+            equation(out, line);
         }
         let gives = triple(brightest.gives(self.terms));
         say!(out, 2, "from there to the observer, per steradian: {gives}");

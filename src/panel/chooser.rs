@@ -56,8 +56,8 @@ pub(super) fn reason(said: &str, unsaid: &[(String, String)], search: &str) -> O
     words.find_map(name)
 }
 
-/// Models that match a search, in the order of the chooser: matching names first, then matching synonyms, then by
-/// family and registration order. Every word of the search must begin a word of the name, id, author, family, summary,
+/// Models that match a search, in the order of the chooser: the model of that very name first, then matching names, then
+/// matching synonyms, then by family and registration order. Every word of the search must begin a word of the name, id, author, family, summary,
 /// a synonym, a parameter or one of its choices.
 #[must_use]
 pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
@@ -76,14 +76,16 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
         .flat_map(|f| registry.models().iter().filter(move |m| m.declaration.family == *f))
         .filter(hit)
         .collect();
+    let whole = search.trim().to_lowercase();
     found.sort_by_key(|m| {
         let d = m.declaration;
         let names = [d.name, d.id].join(" ");
         let with_synonyms = synonyms(m).fold(names.clone(), |all, synonym| all + " " + synonym);
         match (matches(&names, search), matches(&with_synonyms, search)) {
-            (true, _) => 0,
-            (_, true) => 1,
-            _ => 2,
+            _ if [d.name, d.id].iter().any(|name| name.to_lowercase() == whole) => 0,
+            (true, _) => 1,
+            (_, true) => 2,
+            _ => 3,
         }
     });
     found
@@ -466,6 +468,18 @@ mod tests {
             assert_eq!(ids(search).first(), Some(&first), "{search}");
         }
         assert!(ids("no such model").is_empty());
+    }
+
+    #[test]
+    fn the_model_of_that_very_name_comes_first() {
+        let registry = Registry::builtin();
+        for model in registry.models() {
+            let d = model.declaration;
+            for search in [d.name.to_owned(), d.id.to_owned(), format!(" {} ", d.name.to_uppercase())] {
+                let first = find(&registry, &search).first().map(|m| m.declaration.id);
+                assert_eq!(first, Some(d.id), "{search}");
+            }
+        }
     }
 
     #[test]

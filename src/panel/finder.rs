@@ -28,7 +28,7 @@ const PADDING: f32 = 8.0;
 /// The part of the window above it, and the part that its list takes.
 const ABOVE: f32 = 0.09;
 const LIST: f32 = 0.58;
-/// The rank above every other, of a model by another of its names.
+/// The rank above every other, of a model by another of its names; twice that by its very name.
 const FIRST: i32 = 10_000;
 /// Number of the latest commands that come first.
 const RECENT: usize = 5;
@@ -168,8 +168,16 @@ fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> 
     let name = search.trim().to_lowercase();
     // Who types another name of a model looks for the model, not for a scene whose title has the word.
     let is_model = |found: &Found| found.unsaid.iter().any(|(text, _)| text.to_lowercase() == name);
+    let is_named = |found: &Found| {
+        let title = found.title.to_lowercase();
+        found.id.starts_with("model.") && title.rsplit(": ").next() == Some(&*name)
+    };
     let fits = |found: &'f Found| {
-        let first = if is_model(found) { FIRST } else { 0 };
+        let first = match is_model(found) {
+            _ if is_named(found) => 2 * FIRST,
+            true => FIRST,
+            false => 0,
+        };
         let unsaid = found.unsaid.iter().map(|(text, _)| text);
         let more = unsaid.fold(found.said.clone(), |all, text| all + " " + text);
         Some((rank(&found.title, &more, search)? + first, found))

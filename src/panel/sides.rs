@@ -38,7 +38,13 @@ pub(super) fn side(
     panels: &mut Panels,
     context: &mut PanelContext<'_>,
 ) -> f32 {
-    let shown = edge.show(ui, |ui| within(ui, place, panels, context));
+    // What is too wide for a panel must not widen it: egui would paint the panel over its neighbour.
+    let shown = edge.show(ui, |ui| {
+        let room = ui.available_rect_before_wrap();
+        let mut inside = ui.new_child(UiBuilder::new().max_rect(room));
+        within(&mut inside, place, panels, context);
+        ui.expand_to_include_rect(room);
+    });
     focus::region(ui.ctx(), Region::Panel(place), shown.response.rect);
     shown.response.rect.width()
 }

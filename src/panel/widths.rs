@@ -35,6 +35,29 @@ struct Side {
 }
 
 impl Side {
+    /// The panels that are open, left and right, in a window of this width.
+    fn both([left, right]: [bool; 2], own: &Settings, lesson: bool, whole: f32) -> [Self; 2] {
+        let usual = Settings::default();
+        let side = |open, wanted: f32, usual: f32, [floor, least]: [f32; 2], most| Self {
+            open,
+            own: (wanted != usual).then_some(wanted.min(most)),
+            usual: usual.min(most),
+            least: least.min(most),
+            floor,
+            most,
+        };
+        // Beside a lesson, every knob must remain usable.
+        let least = if lesson { 294.0 } else { 280.0 };
+        [
+            if lesson {
+                side(left, own.lesson_width, usual.lesson_width, [184.0, 264.0], 0.45 * whole)
+            } else {
+                side(left, own.left_width, usual.left_width, [96.0, 120.0], 0.26 * whole)
+            },
+            side(right, own.right_width, usual.right_width, [264.0, least], 0.45 * whole),
+        ]
+    }
+
     /// The widths of panels that the user has not resized, in a window of this width: where they would leave the picture
     /// too little, they are narrower than they should be, the left one first.
     fn widths(sides: &[Self; 2], whole: f32) -> [f32; 2] {
@@ -67,26 +90,8 @@ fn dragging() -> Id {
 impl Widths {
     /// The widths in a window that is `whole` points wide.
     pub(super) fn of(ctx: &Context, session: &Session, whole: f32) -> Self {
-        let (view, own, usual) = (&session.view, &session.settings, Settings::default());
-        let side = |open, wanted: f32, usual: f32, [floor, least]: [f32; 2], most| Side {
-            open,
-            own: (wanted != usual).then_some(wanted.min(most)),
-            usual: usual.min(most),
-            least: least.min(most),
-            floor,
-            most,
-        };
-        // Beside a lesson, every knob must remain usable.
-        let least = if session.lesson.is_some() { 294.0 } else { 280.0 };
-        let sides = [
-            match session.lesson {
-                Some(_) => {
-                    side(view.left_open, own.lesson_width, usual.lesson_width, [184.0, 264.0], 0.45 * whole)
-                }
-                None => side(view.left_open, own.left_width, usual.left_width, [96.0, 120.0], 0.26 * whole),
-            },
-            side(view.right_open, own.right_width, usual.right_width, [264.0, least], 0.45 * whole),
-        ];
+        let (view, own) = (&session.view, &session.settings);
+        let sides = Side::both([view.left_open, view.right_open], own, session.lesson.is_some(), whole);
         // Resizing one panel does not change the other.
         let [of_left, of_right] = Side::widths(&sides, whole);
         let dragged = ctx.data(|d| d.get_temp(dragging())).unwrap_or(false)
@@ -127,6 +132,27 @@ impl Widths {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::panel::state::SCALES;
+
+    #[test]
+    fn panels_and_the_least_picture_fit_into_every_window_at_every_scale() {
+        let wide =
+            Settings { lesson_width: 900.0, left_width: 900.0, right_width: 900.0, ..Settings::default() };
+        for pixels in [640.0, 800.0, 1000.0, 1280.0, 1920.0] {
+            for (scale, lesson) in SCALES.into_iter().flat_map(|scale| [(scale, false), (scale, true)]) {
+                let whole = pixels * 100.0 / f32::from(scale);
+                let here = format!("{pixels} pixels, {scale} %, lesson: {lesson}");
+                let sides = Side::both([true, true], &Settings::default(), lesson, whole);
+                let picture = whole - Side::widths(&sides, whole).iter().sum::<f32>();
+                let least = if pixels < 1280.0 { 0.099 } else { 0.29 };
+                assert!(picture >= least * whole, "{here}: {picture} of {whole}");
+                // What the user drags leaves some of it too.
+                let own =
+                    Side::both([true, true], &wide, lesson, whole).map(|side| side.own.unwrap_or(side.usual));
+                assert!(whole - own.iter().sum::<f32>() >= 0.099 * whole, "{here}: {own:?} of {whole}");
+            }
+        }
+    }
 
     #[test]
     fn panels_leave_the_picture_its_part_and_the_left_one_gives_way_first() {

@@ -8,7 +8,9 @@ use super::{
     rows::{self, Name},
 };
 use crate::{
-    explain::{Brightest, Explanation, Geometry, Line, Lit, Model, Place, Seen, Spot, angle, of_value},
+    explain::{
+        Brightest, Explanation, Geometry, Line, Lit, Model, Place, Seen, Spot, angle, of_value, shown_lines,
+    },
     panel::{
         linked::{self, Domain, linked},
         maths,
@@ -153,7 +155,7 @@ fn light(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
         None => arriving(ui, lit),
     });
     if let Some(brightest) = lit.integral.and_then(|integral| integral.brightest) {
-        most(ui, seen, &brightest);
+        most(ui, explanation, seen, &brightest);
     }
     if lit.geometry.is_some() {
         ui.add_space(4.0);
@@ -183,13 +185,15 @@ fn samples(ui: &mut Ui) {
 
 /// The direction of a light with extent that contributes most; at the level of factors, with the equation for that
 /// direction.
-fn most(ui: &mut Ui, seen: &Seen, brightest: &Brightest) {
+fn most(ui: &mut Ui, explanation: &Explanation, seen: &Seen, brightest: &Brightest) {
     ui.add_space(4.0);
     theme::note(ui, "of the directions that were sampled, the one that gives most");
     directions(ui, seen, Some(&brightest.geometry));
     rows::light(ui, "L(l) =", brightest.luminance, false);
     if probe::choice(ui.ctx()).level == Level::Factors {
-        for line in brightest.lines(&seen.model, rows::DIGITS).iter().filter(|line| line.is_equation()) {
+        let lines = brightest.lines(&seen.model, rows::DIGITS);
+        let lines = shown_lines(&lines, explanation.terms);
+        for line in lines.into_iter().filter(|line| line.is_equation()) {
             written(ui, line, &|symbol| meaning(&seen.model, symbol));
         }
     }
@@ -208,7 +212,7 @@ fn terms(ui: &mut Ui, explanation: &Explanation, seen: &Seen, lit: &Lit) {
     let is_sum = |line: &Line| {
         line.term == Term::Total && line.is_term() && lines.iter().any(|l| l.term != Term::Total)
     };
-    for line in lines.iter().filter(|line| !is_sum(line)) {
+    for line in shown_lines(&lines, explanation.terms).into_iter().filter(|line| !is_sum(line)) {
         // The second level shows the equation, whose symbols show their values; the third shows everything.
         let factor = !line.is_term() && (line.quantity.is_some() || factors);
         if factor {

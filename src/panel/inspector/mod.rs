@@ -15,6 +15,9 @@ mod room;
 mod row;
 mod variant;
 
+/// Minimum width of the content, in points: in a narrower panel, it is scrolled sideways too.
+const LEAST: f32 = 244.0;
+
 /// See the module.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let part = context.session().selection;
@@ -22,9 +25,10 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.push_id((part, context.document().others().len()), |ui| {
         // The scroll bar floats over a margin, so that nothing moves when it comes.
         ui.spacing_mut().scroll.floating_allocated_width = 0.0;
-        let scroll = ScrollArea::vertical().auto_shrink(false).animated(!point::jumps(ui));
+        let room = ui.available_width();
+        let scroll = ScrollArea::new([room < LEAST, true]).auto_shrink(false).animated(!point::jumps(ui));
         scroll.show(ui, |ui| {
-            ui.set_max_width(ui.available_width() - 8.0);
+            ui.set_max_width(room.max(LEAST) - 8.0);
             variant::variant(ui, context);
             match part {
                 _ if context.session().has_group() => many(ui, context),

@@ -12,6 +12,7 @@ use crate::{
         state::{CodeCommand, SHADER_TAB},
     },
     reflection::ModelEntry,
+    scene::shines_from_everywhere,
     shading::ShadingEntry,
 };
 
@@ -96,13 +97,20 @@ pub(super) fn terms(ui: &mut Ui, model: &ModelEntry, context: &mut PanelContext<
     let written: Vec<_> = model.declaration.equation.iter().filter_map(|p| p.term.alone()).collect();
     let mut options = session.offered_terms(context.registry());
     options.retain(|t| written.is_empty() || *t == TermSelection::All || written.contains(t));
-    if options.len() == 2 {
-        // One term is the whole equation.
-        options.truncate(1);
+    if options.len() < 3 {
+        // One term is the whole equation. Where it has more, the row stays while a knob makes one of them 0: no knob may
+        // move under the hand.
+        let scene = session.scene();
+        let everywhere = shines_from_everywhere(scene.shining(), scene.display.encoding, context.registry());
+        options = written;
+        options.retain(|t| *t != TermSelection::Ambient || everywhere);
+        options.dedup();
+        if options.len() == 1 {
+            options.clear();
+        }
     }
-    if !options.contains(&session.terms()) {
-        options.push(session.terms());
-    }
+    options.extend([TermSelection::All, session.terms()]);
+    let options: Vec<_> = TermSelection::ALL.into_iter().filter(|t| options.contains(t)).collect();
     if options.len() == 1 {
         return;
     }

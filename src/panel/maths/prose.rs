@@ -29,6 +29,9 @@ pub fn prose(ui: &Ui, text: &str, style: TextStyle) -> LayoutJob {
     job
 }
 
+/// Space between a slanted index and what touches it, relative to the font size: egui slants letters beyond their width.
+const LEAN: f32 = 0.12;
+
 /// The formats of a sentence.
 struct Formats {
     plain: TextFormat,
@@ -77,8 +80,12 @@ impl Formats {
     }
 
     fn plainly(&self, text: &str, job: &mut LayoutJob) {
+        // A slanted index leans over what follows it.
+        let leans = job.sections.last().is_some_and(|last| last.format.italics);
+        let touches = leans && text.starts_with(|c: char| !c.is_whitespace());
+        let space = if touches { LEAN * self.plain.font_id.size } else { 0.0 };
         if !text.is_empty() {
-            job.append(text, 0.0, self.plain.clone());
+            job.append(text, space, self.plain.clone());
         }
     }
 }
@@ -168,6 +175,21 @@ mod tests {
         let power = find("−8").expect("there");
         assert!(power.valign == Align::TOP && !power.italics && power.font_id.size < size);
         assert_eq!(find("lcm models").expect("there").font_id.family, egui::FontFamily::Monospace);
+    }
+
+    #[test]
+    fn a_stop_keeps_clear_of_the_index_before_it() {
+        let ctx = Context::default();
+        let mut seen = Vec::new();
+        let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+            let job = prose(ui, "read θ_t. Below θ_c: so (k_d) is", TextStyle::Body);
+            let of = |s: &egui::text::LayoutSection| {
+                (job.text[s.byte_range.start.0..s.byte_range.end.0].to_owned(), s.leading_space > 0.0)
+            };
+            seen = job.sections.iter().map(of).collect();
+        });
+        let apart: Vec<_> = seen.iter().filter(|(_, space)| *space).map(|(text, _)| text.as_str()).collect();
+        assert_eq!(apart, [". Below ", ": so (", ") is"]);
     }
 
     #[test]

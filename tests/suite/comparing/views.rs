@@ -7,11 +7,14 @@ use lights_camera_models::{
     caption::header,
     channel::DebugChannel,
     compare::{Pair, Shown, fitting_amplification},
-    document::Edit,
+    document::{Edit, Selection},
     optics::TermSelection,
     panel::marks::Lens,
     panel::picture::letters_of_map,
-    panel::state::{Action, Clipping, CompareCommand, Converging, Numbers, Session, ViewChange},
+    panel::state::{
+        Action, Clipping, CompareCommand, Converging, LessonCommand, LessonSource, Numbers, SCALES, Session,
+        ViewChange,
+    },
     parameter::{Value, Values},
     registry::Registry,
     scene::{
@@ -702,4 +705,29 @@ fn headings_of_compared_views_say_the_same_things() {
     let registry = Registry::builtin();
     let said: Vec<_> = (0..4).map(|view| header(&scene, view, &registry)).collect();
     assert_eq!(said, ["A · α 32, 0 EV", "B · α 80, 0 EV", "C · α 32, +1 EV", "D · as A"]);
+}
+
+#[test]
+fn panels_and_views_do_not_overlap_beside_a_lesson_at_any_scale() {
+    for size in [vec2(1280.0, 690.0), vec2(1280.0, 720.0), vec2(1920.0, 1080.0)] {
+        for scale in SCALES {
+            let mut bench = bench();
+            bench.size = size;
+            bench.apply(Action::View(ViewChange::Scale(scale)));
+            bench.apply(Action::Lesson(LessonCommand::Open(LessonSource::Shipped(1))));
+            bench.settle();
+            bench.apply(Action::Select(Selection::Object(0)));
+            bench.apply(Action::Compare(CompareCommand::Add));
+            bench.settle();
+            let whole = size.x / bench.ctx.zoom_factor();
+            let here = format!("{size:?} at {scale} %");
+            assert_eq!(bench.area.cells.len(), 2, "{here}");
+            assert!(bench.area.cells.iter().all(|cell| bench.area.rect.contains_rect(cell.rect)), "{here}");
+            assert!(bench.area.rect.width() >= 0.29 * whole - 2.0, "{here}: {:?}", bench.area.rect);
+            // What the properties say begins where the picture ends.
+            let name = place(&bench, "Name of view B");
+            assert!(name.left() >= bench.area.rect.right(), "{here}: {name:?} over {:?}", bench.area.rect);
+            assert!(name.right() <= whole, "{here}: {name:?} of {whole}");
+        }
+    }
 }

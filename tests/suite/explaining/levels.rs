@@ -4,6 +4,7 @@
 use bevy_egui::egui::{Key, accesskit::Role, vec2};
 use lights_camera_models::{
     document::Selection,
+    optics::TermSelection,
     panel::state::{Action, EXPLAIN_TAB, Session, ViewChange},
     registry::Registry,
     scene::{
@@ -97,6 +98,22 @@ fn a_sentence_stands_alone_the_equation_has_numbers_and_every_factor_unfolds() {
     bench.click(&factor);
     bench.settle();
     assert!(begins(&bench, "Λ(θ_i) over the angle of the light").is_none(), "folded again");
+}
+
+#[test]
+fn a_term_that_is_not_shown_is_not_listed() {
+    let mut bench = under("metallic_roughness");
+    let factor = "Λ(θ_i) = ";
+    bench.click("Level: Every factor");
+    bench.settle();
+    assert!(begins(&bench, "= π × ").is_some() && begins(&bench, factor).is_some());
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
+    bench.settle();
+    assert!(begins(&bench, "= π × ").is_none(), "the specular term does not count");
+    assert!(begins(&bench, factor).is_none(), "nor does what it alone needs");
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
+    bench.settle();
+    assert!(begins(&bench, "= π × ").is_some() && begins(&bench, factor).is_some());
 }
 
 #[test]

@@ -296,6 +296,7 @@ fn each_light_has_its_own_formula() {
 #[test]
 fn terms_that_are_left_out_are_left_out() {
     let scene = scene("phong", "phong");
+    let mut specular = None;
     for terms in TermSelection::ALL {
         let settings = Settings { terms, ..SMALL };
         let explained =
@@ -304,6 +305,16 @@ fn terms_that_are_left_out_are_left_out() {
         assert!(near(lit.contribution, lit.response.select(terms) * lit.arriving, 1e-5), "{terms:?}");
         let text = explained.to_text();
         assert_eq!(text.contains("Only the"), terms != TermSelection::All, "{text}");
+        // Nor are they listed under the light.
+        let lines = lit.lines(&explained.seen.as_ref().expect("the sphere").model);
+        let shown = explain::shown_lines(&lines, terms);
+        let counts = |line: &&explain::Line| terms == TermSelection::All || line.term.alone() == Some(terms);
+        assert!(shown.iter().filter(|line| line.is_term()).all(counts), "{terms:?}: {shown:?}");
+        assert_eq!(shown.len() == lines.len(), terms == TermSelection::All, "{terms:?}: {lines:?}");
+        let listed = text.matches("I_s = ").count();
+        let most = *specular.get_or_insert(listed);
+        let hidden = !matches!(terms, TermSelection::All | TermSelection::Specular);
+        assert_eq!(listed < most, hidden, "{terms:?}: {text}");
         if terms == TermSelection::Diffuse {
             assert!(text.contains("light to the observer: I_d × "), "{text}");
         }

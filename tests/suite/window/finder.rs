@@ -104,6 +104,11 @@ fn scenes_lessons_models_and_parameters_are_found() {
     let mut bench = bench();
     run(&mut bench, "oren nayar");
     assert_eq!(bench.session.document.reflection_model, "oren_nayar");
+    for (name, id) in [("glass", "glass"), ("Thin glass", "thin_glass"), ("phong", "phong"), ("ward", "ward")]
+    {
+        run(&mut bench, name);
+        assert_eq!(bench.session.document.reflection_model, id, "by its very name");
+    }
     run(&mut bench, "1994 oren");
     run(&mut bench, "shininess phong 1975");
     assert_eq!(bench.session.document.reflection_model, "phong", "by a parameter and the year");

@@ -581,3 +581,31 @@ fn the_row_of_terms_has_those_of_the_equation_above_it() {
     assert_eq!(offered(1), ["all", "diffuse", "specular"], "I = I_d + I_s");
     assert_eq!(offered(2), [""; 0], "one term is all of it");
 }
+
+/// The choices of terms, from left to right.
+fn terms_in_row(bench: &Bench) -> Vec<String> {
+    let mut all: Vec<_> =
+        bench.tree.iter().filter_map(|s| Some((s.rect.left(), s.label.strip_prefix("Terms: ")?))).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all.into_iter().map(|(_, name)| name.to_owned()).collect()
+}
+
+#[test]
+fn the_row_of_terms_has_their_order_also_with_one_that_is_not_there() {
+    let mut bench = Bench::with_model("diffuse_transmission");
+    let offered = terms_in_row(&bench);
+    assert_eq!(offered, ["all", "diffuse", "transmitted"]);
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
+    assert_eq!(terms_in_row(&bench), ["all", "diffuse", "specular", "transmitted"]);
+}
+
+#[test]
+fn the_row_of_terms_stays_while_a_knob_makes_a_term_0() {
+    let mut bench = Bench::with_model("glass");
+    bench.apply(Action::Select(Selection::Object(0)));
+    let place = |bench: &Bench| bench.field("refractive index").rect;
+    let (before, terms) = (place(&bench), terms_in_row(&bench));
+    assert_eq!(terms, ["all", "specular", "transmitted"]);
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "refractive_index", Value::Number(1.0))));
+    assert_eq!((place(&bench), terms_in_row(&bench)), (before, terms), "nothing moves under the hand");
+}
