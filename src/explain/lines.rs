@@ -219,13 +219,14 @@ impl Lit {
 pub fn shown_lines(lines: &[Line], terms: TermSelection) -> Vec<&Line> {
     let mut needed: Vec<_> =
         lines.iter().map(|line| terms == TermSelection::All || line.term.alone() == Some(terms)).collect();
-    loop {
-        let more = lines.iter().enumerate().find(|(i, line)| {
-            !needed[*i]
-                && !line.is_term()
-                && lines.iter().zip(&needed).any(|(other, is)| *is && other.names(line.defines()))
-        });
-        let Some((more, _)) = more else { break };
+    let is_named = |line: &Line, needed: &[bool]| {
+        lines.iter().zip(needed).any(|(other, is)| *is && other.names(line.defines()))
+    };
+    let next = |needed: &[bool]| {
+        let mut all = lines.iter().zip(needed);
+        all.position(|(line, is)| !is && !line.is_term() && is_named(line, needed))
+    };
+    while let Some(more) = next(&needed) {
         needed[more] = true;
     }
     lines.iter().zip(needed).filter(|(_, is)| *is).map(|(line, _)| line).collect()

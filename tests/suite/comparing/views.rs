@@ -717,7 +717,9 @@ fn panels_and_views_do_not_overlap_beside_a_lesson_at_any_scale() {
             bench.apply(Action::Lesson(LessonCommand::Open(LessonSource::Shipped(1))));
             bench.settle();
             bench.apply(Action::Select(Selection::Object(0)));
+            bench.apply(Action::View(ViewChange::Right(true)));
             bench.apply(Action::Compare(CompareCommand::Add));
+            bench.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)));
             bench.settle();
             let whole = size.x / bench.ctx.zoom_factor();
             let here = format!("{size:?} at {scale} %");
