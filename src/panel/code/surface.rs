@@ -91,11 +91,11 @@ impl CodePanel {
         theme::column(ui, foot, |ui| self.foot(ui, open, context));
         let line = self.before().rsplit('\n').next().unwrap_or_default();
         let indent = line.chars().take_while(|c| matches!(c, ' ' | '\t')).collect();
-        let finds = self.finder.open;
+        let (finds, bar) = (self.finder.open, self.finder.widgets.clone());
         let (offers, takes_enter) = (self.offer.is_some(), self.offer.as_ref().is_some_and(|o| o.wanted));
         kept::with(&ctx, |typing: &mut Typing| {
             (typing.id, typing.offers, typing.takes_enter) = (Some(id), offers, takes_enter);
-            (typing.finds, typing.indent) = (finds, indent);
+            (typing.finds, typing.bar, typing.indent) = (finds, bar, indent);
         });
     }
 
