@@ -246,6 +246,32 @@ mod tests {
     }
 
     #[test]
+    fn a_text_whose_file_can_no_longer_be_read_is_unsaved() {
+        for bad in [Some(b"\xff\xff".to_vec()), Some(vec![b' '; 10 << 20]), None] {
+            let (_folder, path, mut session) = opened(b"one\n");
+            let command = |session: &mut Session, command| {
+                assert_eq!(session.apply(Action::Code(command), &Registry::builtin()), []);
+            };
+            match &bad {
+                Some(bad) => fs::write(&path, bad).expect("writable"),
+                None => fs::remove_file(&path).expect("deleted"),
+            }
+            look(&mut session, &path);
+            assert!(session.has_unsaved_code());
+            assert_eq!(session.names_at_risk(&Action::Quit), ["a.wgsl"]);
+            command(&mut session, CodeCommand::Close);
+            assert!(session.code.open[0].closing, "the user is asked");
+            command(&mut session, CodeCommand::Stay);
+            // The file is as it was.
+            fs::write(&path, "one\n").expect("writable");
+            look(&mut session, &path);
+            assert!(!session.has_unsaved_code());
+            command(&mut session, CodeCommand::Close);
+            assert!(session.code.open.is_empty());
+        }
+    }
+
+    #[test]
     fn what_cannot_be_written_stays_in_the_editor() {
         let (folder, path, mut session) = opened(b"one\n");
         type_text(&mut session, "mine\n");

@@ -60,10 +60,10 @@ pub struct OpenCode {
 }
 
 impl OpenCode {
-    /// True if there are changes that are nowhere but in the editor.
+    /// True if there are changes that are nowhere but in the editor, or if the whole text is.
     #[must_use]
     pub fn is_unsaved(&self) -> bool {
-        self.text != self.base || self.theirs == Some(Theirs::Gone)
+        self.text != self.base || matches!(self.theirs, Some(Theirs::Gone | Theirs::Unreadable(_)))
     }
 
     /// The text as it is written to the file.
@@ -250,8 +250,13 @@ impl Session {
         }
         let Some(open) = self.code.visible() else { return };
         match (&open.of, &open.theirs) {
-            (_, Some(Theirs::Changed(_) | Theirs::Unreadable(_))) => {
+            (_, Some(Theirs::Changed(_))) => {
                 let text = format!("{} has changed on both sides: choose which version to keep.", open.name);
+                self.say(Severity::Warning, text);
+            }
+            (_, Some(Theirs::Unreadable(_))) => {
+                let text =
+                    format!("{} can no longer be read: “Write mine over it” replaces the file.", open.name);
                 self.say(Severity::Warning, text);
             }
             (CodeOf::File(_), _) => self.write_code(false),
