@@ -48,6 +48,16 @@ impl CodePanel {
         self.reveals = true;
     }
 
+    /// Lets undoing bring back an earlier text.
+    fn can_bring_back(&self, ctx: &Context, open: &OpenCode) {
+        let Some(before) = &open.replaced else { return };
+        let mut state = TextEditState::load(ctx, id_of(open)).unwrap_or_default();
+        let mut undoer = state.undoer();
+        undoer.add_undo(&(state.cursor.char_range().unwrap_or_default(), before.to_string()));
+        state.set_undoer(undoer);
+        state.store(ctx, id_of(open));
+    }
+
     /// Replaces the text as typing would.
     pub(super) fn put(&mut self, text: String, context: &mut PanelContext<'_>) {
         self.buffer = text;
@@ -72,6 +82,7 @@ impl CodePanel {
         if let Some((number, wanted)) = context.session().code.goto
             && number == open.number
         {
+            self.can_bring_back(&ctx, open);
             let start = line(&self.buffer, wanted).start;
             self.select(&ctx, open, start..start);
             ctx.memory_mut(|memory| memory.request_focus(id));

@@ -1,7 +1,10 @@
 //! The editor in the window, by keyboard alone.
 
 use bevy_egui::egui::{Event, Key, Modifiers};
-use lights_camera_models::panel::state::{Action, CodeCommand, CodeOf, ModelCommand, OpenCode, Session};
+use lights_camera_models::{
+    panel::state::{Action, CodeCommand, CodeOf, KeptCode, ModelCommand, OpenCode, Session},
+    recovery::texts::OF_SCENE,
+};
 
 use crate::window::panels::Bench;
 
@@ -106,6 +109,26 @@ fn what_is_typed_after_finding_again_replaces_what_was_looked_for_and_tab_goes_t
     bench.click("Replace all");
     let text = &open(&bench).text;
     assert_eq!((text.matches("size").count(), text.matches("extent").count()), (0, before + count));
+}
+
+#[test]
+fn undoing_in_the_text_brings_back_what_that_of_an_earlier_window_replaced() {
+    for opened in [true, false] {
+        let mut bench = if opened { with_scene() } else { Bench::new(Session::default()) };
+        if opened {
+            types(&mut bench, "x");
+            bench.key(Key::Escape, Modifiers::NONE);
+            assert_eq!(bench.ctx.memory(|memory| memory.focused()), None);
+        }
+        let before = bench.session.code.visible().map(|open| open.text.clone());
+        let kept = KeptCode { path: OF_SCENE.into(), text: "kept".into(), when: "5 minutes ago".to_owned() };
+        bench.session.offer_code(vec![kept]);
+        bench.apply(Action::Code(CodeCommand::Recover(OF_SCENE.into())));
+        assert_eq!(&*open(&bench).text, "kept");
+        let base = open(&bench).base.clone();
+        bench.key(Key::Z, CTRL);
+        assert_eq!(open(&bench).text, before.unwrap_or(base), "open before: {opened}");
+    }
 }
 
 #[test]
