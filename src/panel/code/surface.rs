@@ -37,6 +37,16 @@ pub(super) fn character(text: &str, byte: usize) -> usize {
     text[..text.floor_char_boundary(byte)].chars().count()
 }
 
+/// Lets undoing bring back the text that another has replaced.
+fn let_bring_back(ctx: &Context, open: &OpenCode) {
+    let Some(before) = &open.replaced else { return };
+    let mut state = TextEditState::load(ctx, id_of(open)).unwrap_or_default();
+    let mut undoer = state.undoer();
+    undoer.add_undo(&(state.cursor.char_range().unwrap_or_default(), before.to_string()));
+    state.set_undoer(undoer);
+    state.store(ctx, id_of(open));
+}
+
 impl CodePanel {
     /// Selects a place of the text, and brings it into sight.
     pub(super) fn select(&mut self, ctx: &Context, open: &OpenCode, place: Range<usize>) {
@@ -46,16 +56,6 @@ impl CodePanel {
         state.store(ctx, id_of(open));
         self.cursor = [place.end, place.start];
         self.reveals = true;
-    }
-
-    /// Lets undoing bring back an earlier text.
-    fn can_bring_back(&self, ctx: &Context, open: &OpenCode) {
-        let Some(before) = &open.replaced else { return };
-        let mut state = TextEditState::load(ctx, id_of(open)).unwrap_or_default();
-        let mut undoer = state.undoer();
-        undoer.add_undo(&(state.cursor.char_range().unwrap_or_default(), before.to_string()));
-        state.set_undoer(undoer);
-        state.store(ctx, id_of(open));
     }
 
     /// Replaces the text as typing would.
@@ -82,7 +82,7 @@ impl CodePanel {
         if let Some((number, wanted)) = context.session().code.goto
             && number == open.number
         {
-            self.can_bring_back(&ctx, open);
+            let_bring_back(&ctx, open);
             let start = line(&self.buffer, wanted).start;
             self.select(&ctx, open, start..start);
             ctx.memory_mut(|memory| memory.request_focus(id));

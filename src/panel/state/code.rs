@@ -291,9 +291,10 @@ impl Session {
         }
         let of = CodeOf::File(kept.path.clone());
         self.view.unfold(CODE_TAB);
-        match self.code.of(&of) {
-            Some(_) => self.continue_with(&of, kept.text),
-            None => self.request(Effect::RecoverCode { path: kept.path, text: kept.text }),
+        if self.code.of(&of).is_some() {
+            self.continue_with(&of, kept.text);
+        } else {
+            self.request(Effect::RecoverCode { path: kept.path, text: kept.text });
         }
     }
 
