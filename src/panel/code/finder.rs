@@ -112,6 +112,9 @@ pub(super) fn show(ui: &mut Ui, panel: &mut CodePanel, open: &OpenCode, context:
             }
             if asked == Asked::Replace {
                 panel.find_next(ui.ctx(), open, false);
+            } else {
+                // A button that has nothing left to do loses the focus, and Esc with it.
+                ui.ctx().memory_mut(|memory| memory.request_focus(Id::new(FIELDS[1])));
             }
         }
         None => {}

@@ -162,6 +162,7 @@ fn places_are_found_and_replaced_from_the_keyboard() {
     assert!(!open(&bench).text.contains("position"));
     assert_eq!(open(&bench).text.matches("place").count(), before + count);
     bench.key(Key::Escape, Modifiers::NONE);
+    assert!(bench.find("Replace all").is_none());
     assert!(bench.session.has_unsaved_code());
 }
 
