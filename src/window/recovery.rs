@@ -262,7 +262,7 @@ struct CodeCopies {
 }
 
 /// Hands unsaved texts of the editor to their keeper, and offers those left by earlier windows. A copy stays until the
-/// text is open here.
+/// text is open here, or its file has been saved.
 fn keep_texts(mut copies: ResMut<CodeCopies>, mut session: ResMut<Session>) {
     let copies = &mut *copies;
     if !std::mem::replace(&mut copies.offered, true) && !copies.kept.is_empty() {
@@ -279,9 +279,11 @@ fn keep_texts(mut copies: ResMut<CodeCopies>, mut session: ResMut<Session>) {
     let unsaved = session.code.open.iter().filter(|open| open.is_unsaved());
     let place = |open: &OpenCode| open.path().unwrap_or(Path::new(OF_SCENE)).to_owned();
     let texts: Texts = unsaved.map(|open| (place(open), open.text.clone())).collect();
-    let opened =
-        copies.kept.extract_if(.., |kept| texts.get(&kept.path).is_some_and(|text| **text == *kept.text));
-    opened.for_each(KeptText::remove);
+    let is_done = |kept: &mut KeptText| {
+        let is_open = texts.get(&kept.path).is_some_and(|text| **text == *kept.text);
+        is_open || session.code.outdated.contains(&kept.path)
+    };
+    copies.kept.extract_if(.., is_done).for_each(KeptText::remove);
     copies.keeper.keep(texts);
 }
 

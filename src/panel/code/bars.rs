@@ -80,8 +80,12 @@ pub(super) fn nothing(ui: &mut Ui, context: &mut PanelContext<'_>) {
 pub(super) fn conflict(ui: &mut Ui, open: &OpenCode, context: &mut PanelContext<'_>) {
     let name = &open.name;
     let (text, commands): (String, Vec<(&str, CodeCommand)>) = if open.closing {
-        let text = format!("{name} has changes that are not saved.");
-        (text, vec![("Discard them", CodeCommand::Discard), ("Keep it open", CodeCommand::Stay)])
+        let (text, discard) = if open.text == open.base {
+            (format!("The text of {name} is in no file any more."), "Discard it")
+        } else {
+            (format!("{name} has changes that are not saved."), "Discard them")
+        };
+        (text, vec![(discard, CodeCommand::Discard), ("Keep it open", CodeCommand::Stay)])
     } else {
         match &open.theirs {
             None => return,

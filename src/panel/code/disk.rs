@@ -71,9 +71,7 @@ pub(in crate::panel) fn recover(session: &mut Session, path: PathBuf, text: Arc<
         Read::Gone | Read::Not(_) => String::new(),
     };
     session.code.add(of.clone(), name(&path), &before, 1);
-    if let Some(open) = session.code.of_mut(&of) {
-        open.text = text;
-    }
+    session.continue_with(&of, text);
     look(session, &path);
 }
 
@@ -124,6 +122,7 @@ pub(in crate::panel) fn save(session: &mut Session, path: &Path, overwrite: bool
         Ok(()) => {
             (open.base, open.theirs) = (open.text.clone(), None);
             session.healed(path);
+            session.outdate_kept(path);
         }
         Err(error) => {
             let why = match error {
@@ -142,7 +141,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        panel::state::{Action, CodeCommand, Effect},
+        panel::state::{Action, CodeCommand, Effect, KeptCode},
         registry::Registry,
     };
 
@@ -246,6 +245,32 @@ mod tests {
     }
 
     #[test]
+    fn a_text_whose_file_can_no_longer_be_read_is_unsaved() {
+        for bad in [Some(b"\xff\xff".to_vec()), Some(vec![b' '; 10 << 20]), None] {
+            let (_folder, path, mut session) = opened(b"one\n");
+            let command = |session: &mut Session, command| {
+                assert_eq!(session.apply(Action::Code(command), &Registry::builtin()), []);
+            };
+            match &bad {
+                Some(bad) => fs::write(&path, bad).expect("writable"),
+                None => fs::remove_file(&path).expect("deleted"),
+            }
+            look(&mut session, &path);
+            assert!(session.has_unsaved_code());
+            assert_eq!(session.names_at_risk(&Action::Quit), ["a.wgsl"]);
+            command(&mut session, CodeCommand::Close);
+            assert!(session.code.open[0].closing, "the user is asked");
+            command(&mut session, CodeCommand::Stay);
+            // The file is as it was.
+            fs::write(&path, "one\n").expect("writable");
+            look(&mut session, &path);
+            assert!(!session.has_unsaved_code());
+            command(&mut session, CodeCommand::Close);
+            assert!(session.code.open.is_empty());
+        }
+    }
+
+    #[test]
     fn what_cannot_be_written_stays_in_the_editor() {
         let (folder, path, mut session) = opened(b"one\n");
         type_text(&mut session, "mine\n");
@@ -258,12 +283,28 @@ mod tests {
     }
 
     #[test]
+    fn the_text_of_an_earlier_window_is_no_longer_offered_once_its_file_is_saved() {
+        let (_folder, path, mut session) = opened(b"one\n");
+        let kept = |path: PathBuf| KeptCode { path, text: "kept".into(), when: "5 minutes ago".to_owned() };
+        session.offer_code(vec![kept(path.clone()), kept("/models/other.wgsl".into())]);
+        type_text(&mut session, "mine\n");
+        let paths = |session: &Session| session.code.kept.iter().map(|k| k.path.clone()).collect::<Vec<_>>();
+        assert_eq!(paths(&session).len(), 2);
+        press_save(&mut session);
+        assert_eq!(paths(&session), [PathBuf::from("/models/other.wgsl")]);
+        assert_eq!(session.code.outdated, [path]);
+        let offers: Vec<_> = session.messages.iter().filter(|note| note.offer.is_some()).collect();
+        assert!(matches!(offers[..], [note] if note.text.contains("other.wgsl")), "{offers:?}");
+    }
+
+    #[test]
     fn the_text_of_an_earlier_window_comes_back_as_unsaved() {
         let (_folder, path, _) = opened(b"one\n");
         let mut session = Session::default();
         recover(&mut session, path.clone(), "kept\n".into());
         let open = &session.code.open[0];
         assert_eq!((&*open.text, &*open.base, open.is_unsaved()), ("kept\n", "one\n", true));
+        assert_eq!(open.replaced.as_deref(), Some("one\n"));
         assert_eq!(fs::read_to_string(&path).expect("there"), "one\n");
     }
 }

@@ -23,6 +23,8 @@ pub(super) struct Finder {
     exact: bool,
     /// True until its field has the focus.
     fresh: bool,
+    /// Its widgets, as shown last.
+    pub(super) widgets: Vec<Id>,
     /// The places, and what they were found in.
     found: Option<(String, String, bool, Vec<Range<usize>>)>,
 }
@@ -86,6 +88,7 @@ enum Asked {
 
 /// Shows the bar, if it is open.
 pub(super) fn show(ui: &mut Ui, panel: &mut CodePanel, open: &OpenCode, context: &mut PanelContext<'_>) {
+    panel.finder.widgets.clear();
     if !panel.finder.open {
         return;
     }
@@ -109,6 +112,9 @@ pub(super) fn show(ui: &mut Ui, panel: &mut CodePanel, open: &OpenCode, context:
             }
             if asked == Asked::Replace {
                 panel.find_next(ui.ctx(), open, false);
+            } else {
+                // A button that has nothing left to do loses the focus, and Esc with it.
+                ui.ctx().memory_mut(|memory| memory.request_focus(Id::new(FIELDS[1])));
             }
         }
         None => {}
@@ -127,8 +133,14 @@ impl Finder {
     fn bar(&mut self, ui: &mut Ui, count: usize, selected: Option<usize>) -> Option<Asked> {
         let mut asked = None;
         let wanted = field(ui, FIELDS[0], "Find", &mut self.wanted);
+        let mut widgets = vec![wanted.id];
         if std::mem::take(&mut self.fresh) {
             wanted.request_focus();
+            theme::select_all(ui, wanted.id, &self.wanted);
+        }
+        // Tab leads from one field to the other.
+        if self.replaces {
+            widgets.push(field(ui, FIELDS[1], "Replace by", &mut self.by).id);
         }
         let said = match (count, selected) {
             _ if self.wanted.is_empty() => String::new(),
@@ -139,21 +151,27 @@ impl Finder {
         };
         ui.label(theme::small(ui, said));
         let mut button = |ui: &mut Ui, word: &str, possible: bool, help: &str, does: Asked| {
-            if ui.add_enabled(possible, Button::new(word)).on_hover_text(help).clicked() {
+            let button = ui.add_enabled(possible, Button::new(word)).on_hover_text(help);
+            if button.clicked() {
                 asked = Some(does);
             }
+            button
         };
-        button(ui, "Previous", count > 0, "Shift+F3", Asked::Next(true));
-        button(ui, "Next", count > 0, "F3 or Enter", Asked::Next(false));
-        ui.checkbox(&mut self.exact, "Aa").on_hover_text("Small and capital letters differ");
+        let mut all = vec![
+            button(ui, "Previous", count > 0, "Shift+F3", Asked::Next(true)),
+            button(ui, "Next", count > 0, "F3 or Enter", Asked::Next(false)),
+            ui.checkbox(&mut self.exact, "Aa").on_hover_text("Small and capital letters differ"),
+        ];
         if self.replaces {
-            field(ui, FIELDS[1], "Replace by", &mut self.by);
-            button(ui, "Replace", selected.is_some(), "The place that is selected", Asked::Replace);
-            button(ui, "Replace all", count > 0, "Every place that is found", Asked::ReplaceAll);
+            all.push(button(ui, "Replace", selected.is_some(), "The place that is selected", Asked::Replace));
+            all.push(button(ui, "Replace all", count > 0, "Every place that is found", Asked::ReplaceAll));
         }
-        if icon::button(ui, Icon::Cross, "Stop finding (Esc)").clicked() {
-            self.open = false;
-        }
+        // After a click, too, Esc closes the bar.
+        all.iter().filter(|button| button.clicked()).for_each(Response::request_focus);
+        let close = icon::button(ui, Icon::Cross, "Stop finding (Esc)");
+        self.open &= !close.clicked();
+        widgets.extend(all.iter().chain([&close]).map(|button| button.id));
+        self.widgets = widgets;
         asked
     }
 }

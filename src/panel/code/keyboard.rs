@@ -35,6 +35,8 @@ pub(super) struct Typing {
     pub(super) takes_enter: bool,
     /// True while the bar to find is open.
     pub(super) finds: bool,
+    /// The widgets of that bar.
+    pub(super) bar: Vec<Id>,
     /// The indentation of the line of the cursor.
     pub(super) indent: String,
     /// What the keys asked for.
@@ -54,16 +56,11 @@ pub(in crate::panel) fn keys(ctx: &Context, session: &Session) -> Vec<Action> {
     let Some(id) = typing.id.filter(|_| in_sight && session.questions.open.is_none()) else {
         return Vec::new();
     };
-    let focused = ctx.memory(|memory| memory.focused());
-    let writes = focused == Some(id);
-    let finds = focused.is_some_and(|focused| super::finder::FIELDS.map(Id::new).contains(&focused));
-    if !writes && !finds {
-        return Vec::new();
-    }
+    let Some(at) = focus(ctx, id, &typing.bar) else { return Vec::new() };
     let (mut actions, mut asked) = (Vec::new(), Vec::new());
     ctx.input_mut(|input| {
         for event in std::mem::take(&mut input.events) {
-            match meant(&event, &typing, writes) {
+            match meant(&event, &typing, at) {
                 Meant::Itself => input.events.push(event),
                 Meant::Text(text) => input.events.push(Event::Text(text)),
                 Meant::Save => actions.push(Action::Code(CodeCommand::Save)),
@@ -75,11 +72,38 @@ pub(in crate::panel) fn keys(ctx: &Context, session: &Session) -> Vec<Action> {
             input.events.retain(|event| !matches!(event, Event::Text(text) if text == " "));
         }
     });
+    if asked.contains(&Ask::Escape) {
+        ctx.memory_mut(|memory| memory.request_focus(id));
+    }
     if !asked.is_empty() {
         kept::with(ctx, |typing: &mut Typing| typing.asked.extend(asked));
         ctx.request_repaint();
     }
     actions
+}
+
+/// The part of the editor that has the focus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Focus {
+    Text,
+    /// A field of the bar to find.
+    Field,
+    /// A button of that bar.
+    Button,
+}
+
+/// The part of the editor that has the focus, or had it until Escape was pressed: egui takes the focus away by that key
+/// before anything else sees it.
+fn focus(ctx: &Context, text: Id, bar: &[Id]) -> Option<Focus> {
+    let id = ctx.memory(|memory| {
+        let own = || bar.iter().copied().chain([text]);
+        memory.focused().or_else(|| own().find(|id| memory.had_focus_last_frame(*id)))
+    })?;
+    if id == text {
+        return Some(Focus::Text);
+    }
+    let is_field = super::finder::FIELDS.map(Id::new).contains(&id);
+    bar.contains(&id).then_some(if is_field { Focus::Field } else { Focus::Button })
 }
 
 /// The meaning of an event in the editor.
@@ -90,19 +114,19 @@ enum Meant {
     Ask(Ask),
 }
 
-/// `writes` says that the focus is in the text, and not in the bar to find.
-fn meant(event: &Event, typing: &Typing, writes: bool) -> Meant {
+fn meant(event: &Event, typing: &Typing, at: Focus) -> Meant {
     let Event::Key { key, pressed: true, modifiers, .. } = event else { return Meant::Itself };
     let is = |wanted: Modifiers| modifiers.matches_exact(wanted);
     let (plain, ctrl, shift) = (is(Modifiers::NONE), is(Modifiers::COMMAND), is(Modifiers::SHIFT));
+    let writes = at == Focus::Text;
     let offers = typing.offers && writes && plain;
     Meant::Ask(match key {
         Key::S | Key::Enter if ctrl => return Meant::Save,
         Key::F if ctrl => Ask::Find(false),
         Key::H if ctrl => Ask::Find(true),
         Key::F3 if plain || shift => Ask::Next(shift),
-        Key::Enter if !writes && (plain || shift) => Ask::Next(shift),
-        Key::Escape if typing.offers || typing.finds => Ask::Escape,
+        Key::Enter if at == Focus::Field && (plain || shift) => Ask::Next(shift),
+        Key::Escape if plain && (typing.offers || typing.finds) => Ask::Escape,
         Key::Space if writes && ctrl => Ask::Complete,
         Key::ArrowDown if offers => Ask::Choose(1),
         Key::ArrowUp if offers => Ask::Choose(-1),

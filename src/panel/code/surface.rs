@@ -37,6 +37,16 @@ pub(super) fn character(text: &str, byte: usize) -> usize {
     text[..text.floor_char_boundary(byte)].chars().count()
 }
 
+/// Lets undoing bring back the text that another has replaced.
+fn let_bring_back(ctx: &Context, open: &OpenCode) {
+    let Some(before) = &open.replaced else { return };
+    let mut state = TextEditState::load(ctx, id_of(open)).unwrap_or_default();
+    let mut undoer = state.undoer();
+    undoer.add_undo(&(state.cursor.char_range().unwrap_or_default(), before.to_string()));
+    state.set_undoer(undoer);
+    state.store(ctx, id_of(open));
+}
+
 impl CodePanel {
     /// Selects a place of the text, and brings it into sight.
     pub(super) fn select(&mut self, ctx: &Context, open: &OpenCode, place: Range<usize>) {
@@ -72,6 +82,7 @@ impl CodePanel {
         if let Some((number, wanted)) = context.session().code.goto
             && number == open.number
         {
+            let_bring_back(&ctx, open);
             let start = line(&self.buffer, wanted).start;
             self.select(&ctx, open, start..start);
             ctx.memory_mut(|memory| memory.request_focus(id));
@@ -91,11 +102,11 @@ impl CodePanel {
         theme::column(ui, foot, |ui| self.foot(ui, open, context));
         let line = self.before().rsplit('\n').next().unwrap_or_default();
         let indent = line.chars().take_while(|c| matches!(c, ' ' | '\t')).collect();
-        let finds = self.finder.open;
+        let (finds, bar) = (self.finder.open, self.finder.widgets.clone());
         let (offers, takes_enter) = (self.offer.is_some(), self.offer.as_ref().is_some_and(|o| o.wanted));
         kept::with(&ctx, |typing: &mut Typing| {
             (typing.id, typing.offers, typing.takes_enter) = (Some(id), offers, takes_enter);
-            (typing.finds, typing.indent) = (finds, indent);
+            (typing.finds, typing.bar, typing.indent) = (finds, bar, indent);
         });
     }
 

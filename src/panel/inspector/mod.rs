@@ -25,10 +25,10 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.push_id((part, context.document().others().len()), |ui| {
         // The scroll bar floats over a margin, so that nothing moves when it comes.
         ui.spacing_mut().scroll.floating_allocated_width = 0.0;
-        let room = ui.available_width();
-        let scroll = ScrollArea::new([room < LEAST, true]).auto_shrink(false).animated(!point::jumps(ui));
+        let width = ui.available_width();
+        let scroll = ScrollArea::new([width < LEAST, true]).auto_shrink(false).animated(!point::jumps(ui));
         scroll.show(ui, |ui| {
-            ui.set_max_width(room.max(LEAST) - 8.0);
+            ui.set_max_width(width.max(LEAST) - 8.0);
             variant::variant(ui, context);
             match part {
                 _ if context.session().has_group() => many(ui, context),

@@ -109,7 +109,11 @@ impl Session {
             stays
         });
         let way: Vec<_> = self.desk.travels.way(who, from, to).filter_map(|id| registry.model(id)).collect();
-        let journey = registry.model(to).map(|to| journey(&way, to, &material)).unwrap_or_default();
+        let mut journey = registry.model(to).map(|to| journey(&way, to, &material)).unwrap_or_default();
+        if let Some((from, to)) = registry.model(from).zip(registry.model(to)) {
+            let gone = |name: &str| changes.contains_key(name);
+            journey.left.extend(copies_left(from, to, &object.material, gone));
+        }
         for one in &journey.carried {
             changes.insert(one.to.name.into(), Some(one.value.clone()));
         }
@@ -201,11 +205,28 @@ impl Session {
             }
         }
         if !left.is_empty() {
-            let space = if said.is_empty() { "" } else { " " };
-            said += &format!("{space}{}", left_behind(&left, Some(from.declaration.name), to));
+            said += &match said.is_empty() {
+                true => {
+                    let miss: Vec<_> = arrivals.iter().filter(|one| !one.journey.left.is_empty()).collect();
+                    format!("{}: ", of(&miss))
+                }
+                false => " ".to_owned(),
+            };
+            said += &left_behind(&left, Some(from.declaration.name), to);
         }
         said
     }
+}
+
+/// The parameters for which a new model has no place, of those whose values were carried to the model that is left and
+/// are `gone` with it. What they came from belongs to an earlier model, so that it is not missed on this step.
+pub(super) fn copies_left(
+    from: &ModelEntry,
+    to: &ModelEntry,
+    material: &Values,
+    gone: impl Fn(&str) -> bool,
+) -> impl Iterator<Item = &'static Parameter> {
+    journey(&[from], to, material).left.into_iter().filter(move |p| gone(p.name))
 }
 
 /// "becomes", or "become" for several.
@@ -300,6 +321,29 @@ mod tests {
         let _ = session.apply(Action::Edit(edit), &registry);
         choose(&mut session, &registry, "openpbr");
         assert_eq!(value(&session, "coat_weight"), Some(number(0.25)));
+    }
+
+    #[test]
+    fn carried_values_without_a_place_are_named_too() {
+        for values in [&[("clearcoat", 0.8), ("sheen", 0.4)][..], &[("clearcoat", 0.0), ("sheen", 0.0)]] {
+            let (mut session, registry) = begin("disney", 1, values);
+            let is_set = values[0].1 > 0.0;
+            choose(&mut session, &registry, "openpbr");
+            let said = "OpenPBR for Sphere 1: clear coat 0.8 becomes coat 0.2, sheen 0.4 becomes fuzz 0.4.";
+            assert_eq!(last(&session) == said, is_set, "{}", last(&session));
+            session.messages.clear();
+            choose(&mut session, &registry, "metallic_roughness");
+            let name = registry.model("metallic_roughness").expect("built in").declaration.name;
+            let said =
+                format!("Sphere 1: {name} has no place for coat and fuzz; they come back with OpenPBR.");
+            assert_eq!(last(&session), if is_set { said.as_str() } else { "" });
+            // Nor is anything missed where the values came from.
+            session.messages.clear();
+            choose(&mut session, &registry, "openpbr");
+            session.messages.clear();
+            choose(&mut session, &registry, "disney");
+            assert_eq!(last(&session), "");
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 
 use super::{
     Session, Severity, Traveller,
-    carry::{left_behind, without_values},
+    carry::{copies_left, left_behind, without_values},
 };
 use crate::{
     document::{Edit, Extent},
@@ -85,7 +85,7 @@ impl Session {
             })
             .map(|(name, _)| name.clone())
             .collect();
-        let mut kept = merged.material;
+        let mut kept = merged.material.clone();
         gone.iter().for_each(|name| drop(kept.0.remove(name)));
         let mut common = Common::default();
         let mut models = None;
@@ -94,10 +94,15 @@ impl Session {
             let mut material = object.material.clone();
             material.0.extend(kept.0.clone());
             let way: Vec<_> = travels.way(who, from, to).filter_map(|id| registry.model(id)).collect();
-            let found = match registry.model(to).filter(|_| from != to) {
+            let mut found = match registry.model(to).filter(|_| from != to) {
                 Some(to) => journey(&way, to, &material),
                 None => Journey::default(),
             };
+            if let Some((from, to)) = registry.model(from).zip(registry.model(to)).filter(|_| from != to) {
+                material.0.extend(merged.material.0.clone());
+                let is_gone = |name: &str| gone.iter().any(|known| known == name);
+                found.left.extend(copies_left(from, to, &material, is_gone));
+            }
             if from != to {
                 models.get_or_insert_with(|| (from.clone(), to.to_owned()));
             }
@@ -199,6 +204,20 @@ mod tests {
         assert!(*session.document.scene() == there);
         let _ = session.apply(Action::Undo, &registry);
         assert!(*session.document.scene() == start);
+    }
+
+    #[test]
+    fn carried_values_without_a_place_are_named_too() {
+        let (mut session, registry) = begin(&[0.5, 0.5]);
+        for i in 0..2 {
+            let edit = Edit::material(Part::Object(i), "clearcoat", Value::Number(0.8));
+            let _ = session.apply(Action::Edit(edit), &registry);
+        }
+        choose(&mut session, &registry, "openpbr");
+        session.messages.clear();
+        choose(&mut session, &registry, "metallic_roughness");
+        let said = session.messages.last().map_or("", |note| &note.text);
+        assert!(said.ends_with(" has no place for coat; it comes back with OpenPBR."), "{said}");
     }
 
     #[test]

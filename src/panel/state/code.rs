@@ -4,7 +4,8 @@
 //! file now. Where both the first and the last have changed, the user decides; until then nothing is written.
 
 use std::{
-    path::{Path, PathBuf},
+    mem,
+    path::{self, Path, PathBuf},
     sync::Arc,
 };
 
@@ -53,6 +54,8 @@ pub struct OpenCode {
     pub theirs: Option<Theirs>,
     /// True while the difference from the other version is shown in place of the text.
     pub shows_difference: bool,
+    /// The text that was here before, which undoing in the editor brings back; the panel takes it.
+    pub replaced: Option<Arc<str>>,
     /// True while the user is asked about unsaved changes, because the text is being closed.
     pub closing: bool,
     /// Unique number.
@@ -60,10 +63,10 @@ pub struct OpenCode {
 }
 
 impl OpenCode {
-    /// True if there are changes that are nowhere but in the editor.
+    /// True if there are changes that are nowhere but in the editor, or if the whole text is.
     #[must_use]
     pub fn is_unsaved(&self) -> bool {
-        self.text != self.base || self.theirs == Some(Theirs::Gone)
+        self.text != self.base || matches!(self.theirs, Some(Theirs::Gone | Theirs::Unreadable(_)))
     }
 
     /// The text as it is written to the file.
@@ -104,6 +107,8 @@ pub struct Code {
     pub goto: Option<(u64, usize)>,
     /// Texts of earlier windows that wait for the user.
     pub kept: Vec<KeptCode>,
+    /// Files whose texts of earlier windows are no longer needed.
+    pub outdated: Vec<PathBuf>,
     /// Number of texts opened so far.
     opened: u64,
 }
@@ -150,6 +155,7 @@ impl Code {
             crlf,
             theirs: None,
             shows_difference: false,
+            replaced: None,
             closing: false,
             number: self.opened,
         };
@@ -177,7 +183,10 @@ impl Session {
                     (open.text, open.closing) = (text, false);
                 }
             }
-            CodeCommand::Arrived => self.code.goto = None,
+            CodeCommand::Arrived => {
+                self.code.goto = None;
+                self.code.visible_mut().into_iter().for_each(|open| open.replaced = None);
+            }
             CodeCommand::Save => self.save_code(registry),
             CodeCommand::Close => match self.code.visible_mut() {
                 Some(open) if open.is_unsaved() => open.closing = true,
@@ -250,8 +259,13 @@ impl Session {
         }
         let Some(open) = self.code.visible() else { return };
         match (&open.of, &open.theirs) {
-            (_, Some(Theirs::Changed(_) | Theirs::Unreadable(_))) => {
+            (_, Some(Theirs::Changed(_))) => {
                 let text = format!("{} has changed on both sides: choose which version to keep.", open.name);
+                self.say(Severity::Warning, text);
+            }
+            (_, Some(Theirs::Unreadable(_))) => {
+                let text =
+                    format!("{} can no longer be read: “Write mine over it” replaces the file.", open.name);
                 self.say(Severity::Warning, text);
             }
             (CodeOf::File(_), _) => self.write_code(false),
@@ -270,17 +284,57 @@ impl Session {
     fn recover_code(&mut self, path: &Path, registry: &Registry) {
         let Some(at) = self.code.kept.iter().position(|kept| kept.path == path) else { return };
         let kept = self.code.kept.remove(at);
+        self.withdraw_kept(path);
         if kept.path == Path::new(OF_SCENE) {
             self.edit_scene_here(registry);
-            self.code.of_mut(&CodeOf::Scene).into_iter().for_each(|open| open.text = kept.text.clone());
-            return;
+            return self.continue_with(&CodeOf::Scene, kept.text);
         }
         let of = CodeOf::File(kept.path.clone());
         self.view.unfold(CODE_TAB);
-        match self.code.of_mut(&of) {
-            Some(open) => open.text = kept.text,
-            None => self.request(Effect::RecoverCode { path: kept.path, text: kept.text }),
+        if self.code.of(&of).is_some() {
+            self.continue_with(&of, kept.text);
+        } else {
+            self.request(Effect::RecoverCode { path: kept.path, text: kept.text });
         }
+    }
+
+    /// Puts the text of an earlier window in the place of an open one, as a step that the editor undoes.
+    pub(in crate::panel) fn continue_with(&mut self, of: &CodeOf, text: Arc<str>) {
+        self.code.show(of, 1);
+        let Some(open) = self.code.of_mut(of) else { return };
+        (open.closing, open.shows_difference) = (false, false);
+        let before = mem::replace(&mut open.text, text);
+        if before == open.text {
+            let place = open.path().unwrap_or(Path::new(OF_SCENE)).to_owned();
+            self.code.outdated.push(place);
+        } else if !before.is_empty() {
+            open.replaced = Some(before);
+            let said = format!(
+                "The unsaved text of {} is in the editor. Ctrl+Z there brings back the text that it replaces.",
+                open.name
+            );
+            self.say(Severity::Info, said);
+        }
+    }
+
+    /// Withdraws the offers to continue with texts of a file that has been saved since they were kept.
+    pub(in crate::panel) fn outdate_kept(&mut self, path: &Path) {
+        let Ok(path) = path::absolute(path) else { return };
+        let count = self.code.kept.len();
+        self.code.kept.retain(|kept| kept.path != path);
+        if self.code.kept.len() < count {
+            self.withdraw_kept(&path);
+            self.code.outdated.push(path);
+        }
+    }
+
+    /// Removes the messages that offer to continue with the text of a file, if there is none any more.
+    fn withdraw_kept(&mut self, path: &Path) {
+        if self.code.kept.iter().any(|kept| kept.path == path) {
+            return;
+        }
+        let offer = super::Action::Code(CodeCommand::Recover(path.to_owned()));
+        self.messages.retain(|note| note.offer.as_ref().is_none_or(|(_, action)| **action != offer));
     }
 
     /// True if the editor has changes that are nowhere else.
@@ -469,6 +523,33 @@ mod tests {
         assert_eq!(command(&mut session, CodeCommand::Recover(OF_SCENE.into())), []);
         assert_eq!((&of(&session).of, &*of(&session).text), (&CodeOf::Scene, "{"));
         assert!(of(&session).is_unsaved());
+    }
+
+    #[test]
+    fn the_text_of_an_earlier_window_takes_the_place_of_a_newer_one_as_a_step_that_can_be_undone() {
+        let kept = || KeptCode {
+            path: "models/a.wgsl".into(),
+            text: "kept".into(),
+            when: "5 minutes ago".to_owned(),
+        };
+        let offers = |session: &Session| session.messages.iter().filter(|note| note.offer.is_some()).count();
+        let mut session = open();
+        typed(&mut session, "newer");
+        command(&mut session, CodeCommand::Arrived);
+        session.offer_code(vec![kept()]);
+        assert_eq!(offers(&session), 1);
+        let number = of(&session).number;
+        assert_eq!(command(&mut session, CodeCommand::Recover("models/a.wgsl".into())), []);
+        assert_eq!((&*of(&session).text, of(&session).replaced.as_deref()), ("kept", Some("newer")));
+        assert_eq!(session.code.goto, Some((number, 1)), "the focus goes there");
+        assert!(session.messages.last().is_some_and(|note| note.text.contains("Ctrl+Z there brings back")));
+        assert_eq!(offers(&session), 0);
+        command(&mut session, CodeCommand::Arrived);
+        assert_eq!(of(&session).replaced, None);
+        // The text is what was kept: there is nothing to bring back, and no need for the copy.
+        session.offer_code(vec![kept()]);
+        command(&mut session, CodeCommand::Recover("models/a.wgsl".into()));
+        assert_eq!((of(&session).replaced.clone(), session.code.outdated.len()), (None, 1));
     }
 
     #[test]

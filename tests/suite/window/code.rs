@@ -1,7 +1,10 @@
 //! The editor in the window, by keyboard alone.
 
 use bevy_egui::egui::{Event, Key, Modifiers};
-use lights_camera_models::panel::state::{Action, CodeCommand, CodeOf, ModelCommand, OpenCode, Session};
+use lights_camera_models::{
+    panel::state::{Action, CodeCommand, CodeOf, KeptCode, ModelCommand, OpenCode, Session},
+    recovery::texts::OF_SCENE,
+};
 
 use crate::window::panels::Bench;
 
@@ -49,6 +52,86 @@ fn keys_in_the_text_are_those_of_the_editor() {
 }
 
 #[test]
+fn esc_closes_the_list_of_words_and_what_is_typed_next_is_text() {
+    const LIST: &str = "Esc closes the list";
+    let mut bench = with_scene();
+    let scene = bench.session.document.scene().clone();
+    let before = open(&bench).text.clone();
+    // Behind the first brace, where a key is expected.
+    bench.key(Key::ArrowRight, Modifiers::NONE);
+    types(&mut bench, "\"re");
+    assert!(bench.says(LIST), "{:?}", bench.tree);
+    let focused = bench.ctx.memory(|memory| memory.focused());
+    assert!(focused.is_some());
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.says(LIST));
+    assert_eq!(bench.ctx.memory(|memory| memory.focused()), focused);
+    types(&mut bench, "x");
+    assert_eq!(*open(&bench).text, *before.replacen('{', "{\"rex", 1));
+    // The text takes what it undoes.
+    bench.key(Key::Z, CTRL);
+    assert_eq!(open(&bench).text, before);
+    assert_eq!(*bench.session.document.scene(), scene);
+    // Without a list, Esc leaves the text.
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert_eq!(bench.ctx.memory(|memory| memory.focused()), None);
+}
+
+#[test]
+fn esc_closes_the_bar_to_find_from_each_of_its_parts() {
+    let mut bench = with_scene();
+    let text = bench.ctx.memory(|memory| memory.focused());
+    for part in ["", "Next", "Aa"] {
+        bench.key(Key::F, CTRL);
+        types(&mut bench, "position");
+        if !part.is_empty() {
+            bench.click(part);
+        }
+        assert!(bench.find("Previous").is_some());
+        bench.key(Key::Escape, Modifiers::NONE);
+        assert!(bench.find("Previous").is_none(), "“{part}”");
+        assert_eq!(bench.ctx.memory(|memory| memory.focused()), text, "“{part}”");
+    }
+}
+
+#[test]
+fn what_is_typed_after_finding_again_replaces_what_was_looked_for_and_tab_goes_to_what_replaces_it() {
+    let mut bench = with_scene();
+    bench.key(Key::H, CTRL);
+    types(&mut bench, "position");
+    bench.key(Key::H, CTRL);
+    types(&mut bench, "size");
+    let count = open(&bench).text.matches("size").count();
+    assert!(bench.says(&format!("{count} place")), "{:?}", bench.words());
+    bench.key(Key::Tab, Modifiers::NONE);
+    let before = open(&bench).text.matches("extent").count();
+    types(&mut bench, "extent");
+    bench.click("Replace all");
+    let text = &open(&bench).text;
+    assert_eq!((text.matches("size").count(), text.matches("extent").count()), (0, before + count));
+}
+
+#[test]
+fn undoing_in_the_text_brings_back_what_that_of_an_earlier_window_replaced() {
+    for opened in [true, false] {
+        let mut bench = if opened { with_scene() } else { Bench::new(Session::default()) };
+        if opened {
+            types(&mut bench, "x");
+            bench.key(Key::Escape, Modifiers::NONE);
+            assert_eq!(bench.ctx.memory(|memory| memory.focused()), None);
+        }
+        let before = bench.session.code.visible().map(|open| open.text.clone());
+        let kept = KeptCode { path: OF_SCENE.into(), text: "kept".into(), when: "5 minutes ago".to_owned() };
+        bench.session.offer_code(vec![kept]);
+        bench.apply(Action::Code(CodeCommand::Recover(OF_SCENE.into())));
+        assert_eq!(&*open(&bench).text, "kept");
+        let base = open(&bench).base.clone();
+        bench.key(Key::Z, CTRL);
+        assert_eq!(open(&bench).text, before.unwrap_or(base), "open before: {opened}");
+    }
+}
+
+#[test]
 fn what_is_typed_is_applied_as_one_step_that_the_scene_undoes() {
     let mut bench = with_scene();
     let (number, text) = (open(&bench).number, open(&bench).text.to_string());
@@ -79,6 +162,7 @@ fn places_are_found_and_replaced_from_the_keyboard() {
     assert!(!open(&bench).text.contains("position"));
     assert_eq!(open(&bench).text.matches("place").count(), before + count);
     bench.key(Key::Escape, Modifiers::NONE);
+    assert!(bench.find("Replace all").is_none());
     assert!(bench.session.has_unsaved_code());
 }
 
