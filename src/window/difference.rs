@@ -146,9 +146,7 @@ fn compare(
             &mut commands,
         );
     }
-    if let Some(numbers) = &mut session.bypass_change_detection().facts.comparison
-        && std::mem::replace(&mut numbers.outdated, outdated) != outdated
-    {
+    if outdate(&mut session, outdated) {
         settling.draw(SETTLING_FRAMES);
     }
     if comparing.asked.is_some() {
@@ -164,14 +162,19 @@ fn compare(
     comparing.known = comparing.asked.take();
     let Some(known) = &comparing.known else { return };
     let several = session.document.variants.len() > 1;
-    let size = known.size;
     let numbers = numbers(&answer, known.with, several, known.comparison.values);
     session.bypass_change_detection().facts.comparison = Some(numbers);
     if let Some(colours) = answer.map {
-        map.0 = Some((images.add(image(&colours, size)), size));
+        map.0 = Some((images.add(image(&colours, known.size)), known.size));
     }
     settling.draw(SETTLING_FRAMES);
     requests.write(RequestRedraw);
+}
+
+/// Marks the numbers as those of pictures before a change, or as those of the present ones. True if that is news.
+fn outdate(session: &mut ResMut<Session>, outdated: bool) -> bool {
+    let numbers = session.bypass_change_detection().facts.comparison.as_mut();
+    numbers.is_some_and(|numbers| std::mem::replace(&mut numbers.outdated, outdated) != outdated)
 }
 
 impl Comparing {
