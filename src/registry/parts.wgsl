@@ -194,12 +194,11 @@ fn entering(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
 fn solid_placement() -> mat4x4<f32> {
     return mesh_functions::get_world_from_local(object_instance);
 }
-// Glass shows edges within a pixel, which samples of the covered part of the pixel do not smooth. So each eight samples of
-// light see another point of the pixel; the first eight its centre.
+// Glass shows edges within a pixel, which samples of the covered part of the pixel do not smooth. So eight samples of light
+// see one point of the pixel, and the next eight another. Each block of samples has both, so that the noise does not count them.
 fn within_pixel(seen: Varying) -> Varying {
 #ifdef MULTISAMPLED
-    let eight = illumination.first_sample / 8u;
-    let place = select(sequence_point(0u, 65537u, eight) - 0.5, vec2(0.0), eight == 0u);
+    let place = select(vec2(0.25, -0.25), vec2(-0.25, 0.25), (illumination.first_sample & 8u) != 0u);
     return Varying(
         seen.position + dpdx(seen.position) * place.x + dpdy(seen.position) * place.y,
         seen.normal + dpdx(seen.normal) * place.x + dpdy(seen.normal) * place.y,
