@@ -98,7 +98,8 @@ pub fn show(ui: &mut Ui, arrangement: &Arrangement, context: &mut PanelContext<'
         if !session.view.presenting {
             let font = TextStyle::Body.resolve(ui.style());
             let words = format!("{} adds a view", keys::word(ui.ctx(), "add_view"));
-            ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, font, palette.weak);
+            let galley = ui.painter().layout(words, font, palette.weak, rect.width() - 16.0);
+            ui.painter().galley(rect.center() - galley.size() / 2.0, galley, palette.weak);
         }
         places.push(rect);
     }

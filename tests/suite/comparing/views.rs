@@ -648,6 +648,11 @@ fn the_empty_place_beside_three_views_says_nothing_in_a_presentation() {
     (0..2).for_each(|_| bench.apply(Action::Compare(CompareCommand::Add)));
     let said = |bench: &mut Bench| bench.texts().iter().any(|text| text.ends_with("adds a view"));
     assert!(said(&mut bench));
+    bench.apply(Action::View(ViewChange::Scale(200)));
+    let texts = crate::window::layout::texts(&mut bench);
+    let (_, words) = texts.into_iter().find(|(text, _)| text.ends_with("adds a view")).expect("it is said");
+    let beside = bench.area.cells[2].rect;
+    assert!(words.left() > beside.right() && words.right() < bench.area.rect.right(), "{words:?}");
     bench.apply(Action::View(ViewChange::Presenting(true)));
     assert!(!said(&mut bench));
 }
