@@ -110,7 +110,7 @@ fn fragment(in: Stages) -> @location(0) vec4<f32> {
     let pixel = vec2<u32>(in.clip_position.xy);
     sample_seed = pixel.x | (pixel.y << 16u);
     let passed = Varying(in.position, in.normal, in.tangent, in.colour, in.offset);
-    let shaded = shade_pixel(within_pixel(passed));
+    let shaded = shade_pixel(passed);
     if illumination.channel != 0u {
         let normal = unit_or_zero(in.normal);
         let face_normal = unit_or_zero(cross(dpdy(in.offset), dpdx(in.offset)));

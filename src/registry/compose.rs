@@ -348,10 +348,9 @@ pub fn compose(
     c.push("(channels)", &debug::wgsl());
     c.source(&DISPLAY);
     c.source(&WRAPPER);
-    // Only what follows the wrapper knows what it imports.
-    match solid {
-        true => c.push("(the place of the body)", &part("placement", &[])),
-        false => c.push("(a pixel of no body)", &part("opaque_pixel", &[])),
+    if solid {
+        // Only what follows the wrapper knows what it imports.
+        c.push("(the place of the body)", &part("placement", &[]));
     }
     c.composed
 }

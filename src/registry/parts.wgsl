@@ -194,26 +194,6 @@ fn entering(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
 fn solid_placement() -> mat4x4<f32> {
     return mesh_functions::get_world_from_local(object_instance);
 }
-// Glass shows edges within a pixel, which samples of the covered part of the pixel do not smooth. So eight samples of light
-// see one point of the pixel, and the next eight another. Each block of samples has both, so that the noise does not count them.
-fn within_pixel(seen: Varying) -> Varying {
-#ifdef MULTISAMPLED
-    let place = select(vec2(0.25, -0.25), vec2(-0.25, 0.25), (illumination.first_sample & 8u) != 0u);
-    return Varying(
-        seen.position + dpdx(seen.position) * place.x + dpdy(seen.position) * place.y,
-        seen.normal + dpdx(seen.normal) * place.x + dpdy(seen.normal) * place.y,
-        seen.tangent + dpdx(seen.tangent) * place.x + dpdy(seen.tangent) * place.y,
-        seen.colour + dpdx(seen.colour) * place.x + dpdy(seen.colour) * place.y,
-        seen.offset + dpdx(seen.offset) * place.x + dpdy(seen.offset) * place.y,
-    );
-#else
-    return seen;
-#endif
-}
-[[opaque_pixel]]
-fn within_pixel(seen: Varying) -> Varying {
-    return seen;
-}
 [[opaque]]
 fn through(position: vec3<f32>, v: vec3<f32>, frame: Frame, selection: u32) -> vec3<f32> {
     return vec3(0.0);

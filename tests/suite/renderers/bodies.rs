@@ -67,25 +67,6 @@ fn unlike(gpu: &[Vec3], cpu: &Picture) -> f32 {
 }
 
 #[test]
-fn edges_seen_in_glass_are_smoother_than_a_pixel_on_the_gpu() {
-    let scene = body("sphere", "studio", &[]);
-    let settings = reference::Settings { width: SIZE, height: SIZE, samples: 16, terms: TermSelection::All };
-    let (registry, odd) = (Registry::builtin(), AtomicBool::default());
-    let smooth = reference::render_samples(&scene, &registry, &settings, LightSamples::of(1), &odd);
-    let error = |samples| {
-        let mut renderer =
-            GpuRenderer::new(SIZE, SIZE, 4, Output::Linear).expect("software Vulkan is installed");
-        renderer.set_light_samples(samples);
-        let pairs = on_gpu(&mut renderer, &scene).into_iter().zip(&smooth.pixels);
-        let within = pairs.filter(|(_, smooth)| smooth.w == 1.0);
-        within.map(|(shown, smooth)| (shown - smooth.truncate()).abs().element_sum()).sum::<f32>()
-    };
-    // The first eight samples see one point of the pixel: the wrong twin.
-    let [one, both] = [8, 16].map(error);
-    assert!(both < 0.75 * one, "{both} after {one}");
-}
-
-#[test]
 fn both_renderers_draw_the_same_bodies() {
     let mut renderer = renderer();
     let flint = [number("refractive_index", 1.7), number("dispersion", 0.03)];
