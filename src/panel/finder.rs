@@ -124,7 +124,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
                 find,
                 |(heading, found)| {
                     let search = typed.borrow();
-                    found.entry(if search.is_empty() { *heading } else { "" }, &search)
+                    found.entry(if search.is_empty() { heading } else { "" }, &search)
                 },
                 |ui, (_, found)| _ = ui.label(&found.tip),
             );
