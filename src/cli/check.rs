@@ -79,9 +79,8 @@ fn only_on_gpu(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
 pub(super) fn of_glass(scene: &Scene, name: &str, registry: &Registry) -> Vec<String> {
     let (mut said, mut tested) = (Vec::new(), Tested::default());
     for (seen, _) in (0..=scene.variants.len()).filter_map(|view| scene.seen(view, registry)) {
-        let thin = thin(&seen, registry, &mut tested).into_iter().map(|thin| thin.to_string());
-        let dark = dark_glass(&seen, registry).map(|dark| dark.to_string());
-        for remark in thin.chain(dark) {
+        let thin = thin(&seen, registry, &mut tested);
+        for remark in thin.into_iter().chain(dark_glass(&seen, registry)) {
             let line = format!("{name}: {remark}");
             if !said.contains(&line) {
                 said.push(line);

@@ -1,51 +1,31 @@
 //! Smooth glass in scenes whose lights have no extent: nothing is seen through it.
 
-use std::fmt;
-
 use crate::{
     registry::Registry,
-    scene::{Object, Scene, error::Path, has_extent, shines_from_everywhere},
-    text::{plural, quoted},
+    scene::{Object, Scene, has_extent, shines_from_everywhere},
+    text::plural,
 };
 
 /// The reason why smooth glass is dark, and the remedy: the end of a sentence.
 pub const WHY: &str = "lights without extent are not seen through it; add a light with extent or an environment, or make the \
                        glass rough";
 
-/// Smooth glass through which no light of the scene is seen.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DarkGlass {
-    /// Path of the first such object.
-    pub path: Path,
-    /// Name of the object.
-    pub name: Option<String>,
-    /// Number of further such objects.
-    more: usize,
-}
-
-impl fmt::Display for DarkGlass {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { path, name, more } = self;
-        let name = name.as_deref().map_or_else(String::new, |name| format!(" ({})", quoted(name)));
-        write!(f, "{path}{name} is smooth glass and looks dark: {WHY}")?;
-        if *more > 0 {
-            write!(f, " (the same for {})", plural(*more, "more object"))?;
-        }
-        Ok(())
-    }
-}
-
-/// The smooth glass of a scene through which no light is seen, if there is any.
+/// A sentence on the smooth glass of a scene through which no light is seen, if there is any.
 #[must_use]
-pub fn dark_glass(scene: &Scene, registry: &Registry) -> Option<DarkGlass> {
+pub fn dark_glass(scene: &Scene, registry: &Registry) -> Option<String> {
     if !has_points_alone(scene, registry) {
         return None;
     }
-    let mut dark =
-        scene.objects.iter().enumerate().filter(|(_, o)| o.visible && is_clear(scene, o, registry));
-    let (i, first) = dark.next()?;
-    let path = Path::root().key("objects").index(i);
-    Some(DarkGlass { path, name: first.name.clone(), more: dark.count() })
+    let objects = scene.objects.iter().enumerate().filter(|(_, object)| object.visible);
+    let mut dark = objects.filter(|(_, object)| is_clear(scene, object, registry));
+    let first = scene.object_path(dark.next()?.0);
+    let same = the_same_for(dark.count());
+    Some(format!("{first} is smooth glass and looks dark: {WHY}{same}"))
+}
+
+/// The end of a sentence on an object that holds for more objects: ` (the same for 2 more objects)`.
+pub(super) fn the_same_for(more: usize) -> String {
+    if more == 0 { String::new() } else { format!(" (the same for {})", plural(more, "more object")) }
 }
 
 /// True if an object of a scene is smooth glass through which no light is seen.
@@ -142,7 +122,7 @@ mod tests {
     fn the_first_object_is_named_and_the_others_are_counted() {
         let mut scene = scene("glass", &[]);
         scene.objects[0].name = Some("ball".to_owned());
-        let said = |scene: &Scene| dark_glass(scene, &Registry::builtin()).map(|dark| dark.to_string());
+        let said = |scene: &Scene| dark_glass(scene, &Registry::builtin());
         let one = format!("objects[0] (\"ball\") is smooth glass and looks dark: {WHY}");
         assert_eq!(said(&scene), Some(one.clone()));
         scene.objects.extend([scene.objects[0].clone(), scene.objects[0].clone()]);

@@ -1,37 +1,19 @@
 //! Objects of solid models that are drawn as thin glass because their meshes are not solids, with the reasons.
 
-use std::{collections::HashMap, fmt};
+use std::collections::HashMap;
 
+use super::dark_glass::the_same_for;
 use crate::{
     registry::Registry,
-    scene::{Object, Scene, error::Path},
+    scene::{Object, Scene},
     shape::{
         Hierarchy, MeshKey, ShapeEntry,
         closed::{self, NotSolid},
     },
-    text::{plural, quoted},
 };
 
 /// Maximum number of meshes whose results are kept.
 const KEPT: usize = 1 << 12;
-
-/// An object that is drawn as thin glass.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Thin {
-    /// Path of the first object with this model and mesh.
-    pub path: Path,
-    /// Name of the object.
-    pub name: Option<String>,
-    /// The rest of the sentence: the reason and the remedy.
-    pub what: String,
-}
-
-impl fmt::Display for Thin {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = self.name.as_deref().map_or_else(String::new, |name| format!(" ({})", quoted(name)));
-        write!(f, "{}{name} {}", self.path, self.what)
-    }
-}
 
 /// The meshes tested so far.
 #[derive(Debug, Default)]
@@ -52,12 +34,13 @@ impl Tested {
     }
 }
 
-/// The objects of a scene that a solid model draws as thin glass, one for each model and mesh.
+/// A sentence on each model and mesh of a scene that a solid model draws as thin glass: the first object with both, the
+/// reason and the remedy.
 #[must_use]
-pub fn thin(scene: &Scene, registry: &Registry, tested: &mut Tested) -> Vec<Thin> {
-    // By model and mesh: the place in the list, and the number of objects.
-    let mut known: HashMap<(&str, MeshKey), (usize, usize)> = HashMap::new();
-    let mut found = Vec::new();
+pub fn thin(scene: &Scene, registry: &Registry, tested: &mut Tested) -> Vec<String> {
+    // By model and mesh: the place in the list.
+    let mut known: HashMap<(&str, MeshKey), usize> = HashMap::new();
+    let mut found: Vec<(String, usize)> = Vec::new();
     for (i, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.visible) {
         let model =
             registry.model(scene.model_of(object)).filter(|model| model.passage(&object.material).solid);
@@ -67,19 +50,16 @@ pub fn thin(scene: &Scene, registry: &Registry, tested: &mut Tested) -> Vec<Thin
             continue;
         }
         let key = (model.declaration.id, shape.key(&object.shape, object.tessellation));
-        if let Some((_, count)) = known.get_mut(&key) {
-            *count += 1;
+        if let Some(place) = known.get(&key) {
+            found[*place].1 += 1;
         } else if let Some(problem) = tested.problem(shape, object) {
-            known.insert(key, (found.len(), 1));
-            let what =
-                format!("is drawn as thin glass, since its mesh is not a solid: {}", reason(problem, shape));
-            found.push(Thin { path: Path::root().key("objects").index(i), name: object.name.clone(), what });
+            known.insert(key, found.len());
+            let (path, reason) = (scene.object_path(i), reason(problem, shape));
+            let said = format!("{path} is drawn as thin glass, since its mesh is not a solid: {reason}");
+            found.push((said, 0));
         }
     }
-    for (place, count) in known.into_values().filter(|(_, count)| *count > 1) {
-        found[place].what += &format!(" (the same for {})", plural(count - 1, "more object"));
-    }
-    found
+    found.into_iter().map(|(said, more)| said + &the_same_for(more)).collect()
 }
 
 /// The problem of a mesh and its remedy; for a built-in shape, the problem and its cause.
@@ -107,8 +87,7 @@ mod tests {
     }
 
     fn said(scene: &Scene) -> Vec<String> {
-        let found = thin(scene, &Registry::builtin(), &mut Tested::default());
-        found.iter().map(ToString::to_string).collect()
+        thin(scene, &Registry::builtin(), &mut Tested::default())
     }
 
     /// A scene with the mesh of an OBJ file.
@@ -182,7 +161,10 @@ mod tests {
         let mut scene = scene("teapot", "glass");
         let first = thin(&scene, &registry, &mut tested);
         scene.objects.push(scene.objects[0].clone());
-        assert_eq!(thin(&scene, &registry, &mut tested)[0].path, first[0].path);
+        assert_eq!(
+            thin(&scene, &registry, &mut tested),
+            [format!("{} (the same for 1 more object)", first[0])]
+        );
         assert_eq!(tested.0.len(), 1);
         scene.objects[1].tessellation = Some(4);
         assert_eq!(thin(&scene, &registry, &mut tested).len(), 2);

@@ -1,7 +1,7 @@
 //! A scene as a program: a copy of the running program with the scene inside.
 
 use super::{
-    Export, ExportError, File, Form, Makes, Progress, Request, light_path, object_path,
+    Export, ExportError, File, Form, Makes, Progress, Request,
     payload::{About, Payload, program_with},
     refusals::Refusals,
 };
@@ -70,14 +70,14 @@ fn with_files(request: &Request, files: &mut Vec<(String, Vec<u8>)>) -> Result<S
     for (i, light) in scene.lights.iter_mut().enumerate() {
         let parameters = request.registry.light(&light.light_type).map_or(&[][..], |entry| entry.parameters);
         carry(&mut light.parameters, parameters, files)
-            .unwrap_or_else(|problem| refused.add(light_path(request.scene, i), problem));
+            .unwrap_or_else(|problem| refused.add(request.scene.light_path(i), problem));
     }
     let materials: Vec<_> = request.registry.material_parameters().collect();
     for (i, object) in scene.objects.iter_mut().enumerate() {
         let shape = request.registry.shape(&object.object_type).map_or(&[][..], |entry| entry.parameters);
         carry(&mut object.shape, shape, files)
             .and_then(|()| carry(&mut object.material, materials.iter().copied(), files))
-            .unwrap_or_else(|problem| refused.add(object_path(request.scene, i), problem));
+            .unwrap_or_else(|problem| refused.add(request.scene.object_path(i), problem));
     }
     refused.or(scene)
 }

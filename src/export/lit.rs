@@ -8,7 +8,6 @@ use super::{
     ExportError, Request,
     lights::Lights,
     names::Names,
-    object_path,
     refusals::Refusals,
     shader::{Host, LIGHT_SAMPLES, Shader, compose},
 };
@@ -174,7 +173,7 @@ impl<'a> Lit<'a> {
             match lit.add(index, object, host, &mut known) {
                 Ok(()) => {}
                 Err(ExportError::Refused(reasons)) => {
-                    reasons.into_iter().for_each(|reason| refused.add(object_path(scene, index), reason));
+                    reasons.into_iter().for_each(|reason| refused.add(scene.object_path(index), reason));
                 }
                 Err(other) => return Err(other),
             }

@@ -173,22 +173,3 @@ impl Form {
         PathBuf::from(FOLDER).join(name)
     }
 }
-
-/// The path of an object in messages: `objects[2] ("Gold")`.
-#[must_use]
-pub fn object_path(scene: &Scene, index: usize) -> String {
-    path("objects", index, scene.objects.get(index).and_then(|object| object.name.as_deref()))
-}
-
-/// The path of a light in messages: `lights[0] ("Key")`.
-#[must_use]
-pub fn light_path(scene: &Scene, index: usize) -> String {
-    path("lights", index, scene.lights.get(index).and_then(|light| light.name.as_deref()))
-}
-
-fn path(list: &str, index: usize, name: Option<&str>) -> String {
-    match name {
-        Some(name) => format!("{list}[{index}] ({})", crate::text::quoted(name)),
-        None => format!("{list}[{index}]"),
-    }
-}

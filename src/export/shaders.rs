@@ -8,7 +8,6 @@ use super::{
     Export, ExportError, File, Form, Makes, Progress, Request,
     lit::Lit,
     manifest::manifest,
-    object_path,
     shader::{Host, module},
     translate::{self, ENTRY_POINTS},
 };
@@ -90,12 +89,12 @@ pub fn alone(request: &Request) -> Result<Host, ExportError> {
 fn lit<'a>(request: &Request<'a>) -> Result<Lit<'a>, ExportError> {
     let lit = Lit::of(*request, alone(request)?, |index| index == request.object)?;
     if lit.objects.is_empty() {
-        let path = object_path(request.scene, request.object);
+        let path = request.scene.object_path(request.object);
         let what = format!("{path} is hidden; make it visible, or choose another object");
         return Err(ExportError::refused(what));
     }
     if let Some(program) = lit.programs.iter().find(|program| program.shader.reads_body) {
-        let (path, model) = (object_path(request.scene, request.object), program.model);
+        let (path, model) = (request.scene.object_path(request.object), program.model);
         let instead = if model.passage_varies() { "make it thin-walled" } else { "choose thin_glass" };
         let what = format!(
             "{path}: {} follows the mesh of the object, which these shaders do not hold; {instead}, or render the picture",

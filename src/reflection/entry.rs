@@ -225,27 +225,27 @@ impl ModelEntry {
     /// glass without dispersion, which shows that light as it is.
     #[must_use]
     pub fn is_by_chance(&self, values: &Values) -> bool {
-        let samples = |surface: Arc<dyn Surface>| {
+        self.not_spreading_all(values).is_none_or(|surface| {
             let disperses = |inside: Interior| inside.is_rough() || inside.cauchy_b != 0.0;
             surface.spreads() || surface.interior().is_some_and(disperses)
-        };
-        // Most models spread light whatever their parameters are, and some take long to prepare.
-        let Passage { sharp, solid, .. } = self.passage(values);
-        let may_be_exact = sharp || solid;
-        !may_be_exact || samples(self.instantiate(values, Encoding::default()))
+        })
     }
 
     /// True if light passes through surfaces with these parameters without spreading, as through smooth glass: lights without
     /// extent are then not seen through them.
     #[must_use]
     pub fn is_clear(&self, values: &Values) -> bool {
-        let is_smooth = |surface: Arc<dyn Surface>| match surface.interior() {
+        self.not_spreading_all(values).is_some_and(|surface| match surface.interior() {
             Some(inside) => !inside.is_rough(),
             None => surface.sharp(Vec3::Z, &Frame::LOCAL).iter().any(|sharp| sharp.transmitted),
-        };
+        })
+    }
+
+    /// The surface with these parameters, unless the model spreads all light whatever they are: most models do, and some
+    /// take long to prepare.
+    fn not_spreading_all(&self, values: &Values) -> Option<Arc<dyn Surface>> {
         let Passage { sharp, solid, .. } = self.passage(values);
-        let may_be_clear = sharp || solid;
-        may_be_clear && is_smooth(self.instantiate(values, Encoding::default()))
+        (sharp || solid).then(|| self.instantiate(values, Encoding::default()))
     }
 
     /// True if the parameters decide how light passes.

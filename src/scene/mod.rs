@@ -115,6 +115,18 @@ impl Scene {
         self.lights.iter().filter(|light| light.enabled)
     }
 
+    /// The path of an object in messages: `objects[2] ("Gold")`.
+    #[must_use]
+    pub fn object_path(&self, index: usize) -> String {
+        named("objects", index, self.objects.get(index).and_then(|object| object.name.as_deref()))
+    }
+
+    /// The path of a light in messages: `lights[0] ("Key")`.
+    #[must_use]
+    pub fn light_path(&self, index: usize) -> String {
+        named("lights", index, self.lights.get(index).and_then(|light| light.name.as_deref()))
+    }
+
     /// True if a picture of the scene is a mean of samples: of lights with extent, or of ways through rough bodies.
     #[must_use]
     pub fn rests_on_samples(&self, registry: &Registry) -> bool {
@@ -178,6 +190,11 @@ impl Scene {
     pub fn shading_model_of<'a>(&'a self, object: &'a Object) -> &'a str {
         object.shading_model.as_deref().unwrap_or(&self.shading_model)
     }
+}
+
+fn named(list: &str, index: usize, name: Option<&str>) -> String {
+    let path = error::Path::root().key(list.to_owned()).index(index);
+    name.map_or_else(|| path.to_string(), |name| format!("{path} ({})", crate::text::quoted(name)))
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ use super::{
     order::Loading,
     plots::PlotFiles,
     sheets::SheetFiles,
-    solids::{report_dark_glass, report_solids_drawn_thin},
+    solids::report_glass,
     views::ShownChannels,
     watching::{FileWatch, FilesChanged, complain},
 };
@@ -108,7 +108,7 @@ impl Plugin for DocumentPlugin {
                         .run_if(resource_exists::<FileWatch>),
                     carry_out.in_set(Loading::Effects),
                     publish.in_set(Loading::Publish).run_if(resource_changed::<Session>),
-                    (report_light_that_is_not_finite, report_solids_drawn_thin, report_dark_glass)
+                    (report_light_that_is_not_finite, report_glass)
                         .chain()
                         .after(Loading::Publish)
                         .in_set(LabSystems::Load)

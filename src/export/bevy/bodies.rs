@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::export::{ExportError, bodies::Body, lit::Lit, names::Names, object_path};
+use crate::export::{ExportError, bodies::Body, lit::Lit, names::Names};
 
 /// Height of a texture that every system takes (WebGPU, *Limits*).
 const TEXTURE: u32 = 8192;
@@ -39,7 +39,7 @@ impl Bodies {
             }
             let tessellation = shape.tessellation(object.tessellation);
             let body = Body::of(&shape.mesh(&object.shape, tessellation));
-            let path = object_path(lit.request.scene, drawn.index);
+            let path = lit.request.scene.object_path(drawn.index);
             body.fits(TEXTURE).map_err(|why| ExportError::refused(format!("{path}: {why}")))?;
             bodies.notes.extend(body.note(&path));
             let bytes = body.rows().iter().flatten().flat_map(|word| word.to_le_bytes()).collect();

@@ -16,7 +16,6 @@ use crate::{
         ExportError, Progress, Request,
         bodies::Body,
         lit::{Lit, Program},
-        object_path,
         shader::LIGHT_SAMPLES,
         shaders::alone,
         view::{called, without_labels},
@@ -55,7 +54,7 @@ fn normals<'a>(lit: &'a Lit) -> impl Iterator<Item = String> + 'a {
         shape.parameters.iter().any(|p| p.kind.format().is_some()).then_some(())?;
         let mesh = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
         mesh.has_own_normals().then(|| {
-            let path = object_path(scene, drawn.index);
+            let path = scene.object_path(drawn.index);
             format!("{path}: the page calculates the normals of its mesh and does not use those of the file.")
         })
     })
@@ -284,7 +283,7 @@ impl Meshes {
                     place.insert(body);
                 }
                 let note =
-                    self.bodies.get(&index).and_then(|body| body.note(&object_path(scene, drawn.index)));
+                    self.bodies.get(&index).and_then(|body| body.note(&scene.object_path(drawn.index)));
                 open.extend(note);
             }
         }

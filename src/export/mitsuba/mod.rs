@@ -16,8 +16,7 @@ use self::{
     xml::{Xml, look_at, to_world},
 };
 use super::{
-    Export, ExportError, File, Form, Makes, Progress, Request, light_path, object_path, refusals::Refusals,
-    view::without_labels,
+    Export, ExportError, File, Form, Makes, Progress, Request, refusals::Refusals, view::without_labels,
 };
 use crate::{
     light::Incident,
@@ -121,7 +120,7 @@ fn lights(request: &Request, refused: &mut Refusals) -> Vec<(String, Emitter)> {
     let mut emitters: Vec<(String, Emitter)> = Vec::new();
     for (i, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
         let Some(entry) = registry.light(&light.light_type) else { continue };
-        let name = light_path(scene, i);
+        let name = scene.light_path(i);
         let record = record(light, registry, scene.display.encoding);
         let lamp = Lamp { entry, record, values: &light.parameters, number: i };
         let shader = entry.declaration.wgsl.path;
@@ -165,7 +164,7 @@ fn objects<'a>(request: &'a Request, refused: &mut Refusals) -> Vec<Counterpart<
         let (Some(model), Some(shading)) = (registry.model(model), registry.shading_model(shading)) else {
             continue;
         };
-        let name = object_path(scene, i);
+        let name = scene.object_path(i);
         let mut wrong = Vec::new();
         let drawn = (model, model.passage(&object.material));
         let changed = compose::files(registry.sources(), drawn, shading, &[]);

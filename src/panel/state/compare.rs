@@ -41,6 +41,18 @@ pub enum CompareCommand {
     Reset(usize, Key),
 }
 
+/// A field of a part and its new value; `None` stands for the default.
+type Set = (Key, Option<Value>);
+
+fn is_overridable(key: Key) -> bool {
+    match key {
+        Key::Material(_) => true,
+        Key::Own(name) => {
+            Variant::FIELDS.iter().any(|field| field.key == name && !matches!(field.kind, Kind::Text(_)))
+        }
+    }
+}
+
 impl Session {
     /// The active view, which the panels show and change: 0 is the scene itself, 1 view B.
     #[must_use]
@@ -152,32 +164,45 @@ impl Session {
     /// The edit that has the effect of `edit` in the active view. Fields that a variant cannot override are changed in
     /// the scene itself.
     pub(super) fn redirected(&self, edit: Edit, registry: &Registry) -> Edit {
-        let Some(i) = self.active().checked_sub(1) else { return edit };
-        let overrides = |(key, _): &(Key, Option<Value>)| match key {
-            Key::Material(_) => true,
-            Key::Own(name) => {
-                Variant::FIELDS.iter().any(|field| field.key == *name && !matches!(field.kind, Kind::Text(_)))
-            }
-        };
-        let differs = |(key, value): &(Key, Option<Value>)| self.scene().display.value(*key) != *value;
+        let Some(view) = self.active().checked_sub(1) else { return edit };
         match edit {
-            Edit::Set { part: from @ (Part::Scene | Part::Display | Part::Object(_)), mut values, what }
-                if values.iter().all(|set| overrides(set) || from == Part::Display && !differs(set)) =>
-            {
-                if let Part::Object(o) = from
-                    && let Some(object) = self.document.objects.get(o)
-                    && let [(key, value @ None)] = &mut values[..]
-                    && *key == Object::tessellation.into()
-                {
-                    *value = registry.shape(&object.object_type).map(|shape| shape.tessellation(None).into());
-                }
-                if from == Part::Display {
-                    values.retain(differs);
-                }
-                Edit::Set { part: Part::Variant(i), values, what }
+            Edit::Set { part, values, what } if self.can_override(part, &values) => {
+                let values = self.overrides(part, values, registry);
+                Edit::Set { part: Part::Variant(view), values, what }
             }
             edit => edit,
         }
+    }
+
+    /// True if a variant can override these fields of a part, those aside that stay as they are.
+    fn can_override(&self, part: Part, values: &[Set]) -> bool {
+        match part {
+            Part::Scene | Part::Object(_) => values.iter().all(|(key, _)| is_overridable(*key)),
+            Part::Display => values.iter().all(|set| is_overridable(set.0) || !self.changes_display(set)),
+            _ => false,
+        }
+    }
+
+    /// Values of a part as those of a variant.
+    fn overrides(&self, part: Part, mut values: Vec<Set>, registry: &Registry) -> Vec<Set> {
+        match part {
+            Part::Display => values.retain(|set| self.changes_display(set)),
+            // A variant without a value shows the scene's. To have the default, it needs the number itself.
+            Part::Object(o) => {
+                if let [(key, value @ None)] = &mut values[..]
+                    && *key == Object::tessellation.into()
+                    && let Some(object) = self.document.objects.get(o)
+                {
+                    *value = registry.shape(&object.object_type).map(|shape| shape.tessellation(None).into());
+                }
+            }
+            _ => {}
+        }
+        values
+    }
+
+    fn changes_display(&self, (key, value): &Set) -> bool {
+        self.scene().display.value(*key) != *value
     }
 
     pub(super) fn compare(&mut self, command: CompareCommand, registry: &Registry) {
