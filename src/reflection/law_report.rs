@@ -85,9 +85,17 @@ impl LawReport {
     /// The findings of an examination, in which these parameters were given.
     #[must_use]
     pub fn new(model: &ModelEntry, given: &Values, findings: &Findings) -> Self {
+        let [difference, albedo] = if model.declaration.transmits {
+            [
+                "largest relative difference of f(l, v) and f(v, l), reflected",
+                "largest directional albedo, both sides",
+            ]
+        } else {
+            ["largest relative difference of f(l, v) and f(v, l)", "largest directional albedo"]
+        };
         let evidence = [
-            ("largest relative difference of f(l, v) and f(v, l)", &findings.reciprocity),
-            ("largest directional albedo", &findings.albedo),
+            (difference, &findings.reciprocity),
+            (albedo, &findings.albedo),
             ("smallest value", &findings.smallest),
         ];
         let kept = findings.kept().list();
@@ -243,5 +251,18 @@ mod tests {
         let report = LawReport::new(lambert, &Values::default(), &findings);
         assert!(report.to_string().contains("lobes for sampling: they miss highlights"), "{report}");
         assert!(report.broken().is_empty());
+    }
+
+    #[test]
+    fn of_models_that_transmit_it_says_which_side_is_meant() {
+        let registry = Registry::builtin();
+        let text = |id: &str| {
+            let model = registry.model(id).expect("built in");
+            LawReport::new(model, &Values::default(), &Findings::default()).to_string()
+        };
+        for words in ["of f(l, v) and f(v, l), reflected: ", "largest directional albedo, both sides: "] {
+            assert!(text("thin_glass").contains(words), "{words}");
+            assert!(!text("lambert").contains(words), "{words}");
+        }
     }
 }
