@@ -184,14 +184,7 @@ impl CodePanel {
         let found = self.checked.as_ref().filter(|(question, _)| question.number == open.number);
         let mut all = found.map(|(_, checked)| checked.marks.clone()).unwrap_or_default();
         if all.is_empty() && !open.is_unsaved() {
-            let own =
-                |path: &Option<std::path::PathBuf>| path.as_deref().is_some_and(|p| Some(p) == open.path());
-            let troubles = session.shaders.troubles.iter().filter(|trouble| own(&trouble.path));
-            all.extend(troubles.map(|trouble| Mark {
-                line: trouble.problem.line,
-                column: trouble.problem.column,
-                message: trouble.problem.message.clone(),
-            }));
+            all = check::drawn(open, session);
         }
         all
     }
