@@ -161,6 +161,14 @@ pub(super) fn reveal(ctx: &Context) {
     ctx.input_mut(|input| input.events.push(Event::AccessKitActionRequest(request)));
 }
 
+/// Leaves it to a widget with the focus to scroll. The middle of a text that is longer than its area, which all others
+/// would come to, says nothing. Call before [`show`].
+pub(super) fn scrolls_itself(ctx: &Context, id: Id) {
+    if ctx.memory(|memory| memory.has_focus(id)) {
+        with(ctx, |known| known.looked_for = Some(id));
+    }
+}
+
 /// Records a widget that got the focus outside the visible area. Focus by pointer scrolls nothing.
 fn look_for(ctx: &Context, widget: &WidgetRect) {
     if with(ctx, |known| known.looked_for.replace(widget.id)) == Some(widget.id) {

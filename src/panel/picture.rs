@@ -34,7 +34,8 @@ const AXES_CORNER: f32 = 84.0;
 const NARROWEST: f32 = 140.0;
 /// Width of a wide legend, in points.
 const WIDE_PLATE: f32 = 330.0;
-/// Maximum fraction of a picture that the plate about an error covers.
+/// Maximum fraction of a picture that the plate about an error covers, and of its height down to the end of the plate
+/// where the editor shows the error.
 const PLATE: f32 = 0.25;
 
 /// The picture's own panel: all that is written over the picture.
@@ -245,8 +246,13 @@ impl<'a> Overlaid<'_, 'a> {
         let painter = ui.painter_at(rect);
         painter.rect_stroke(rect, 0.0, Stroke::new(3.0, palette.error), StrokeKind::Inside);
         // Without them, there is room for the frame only.
-        let Some(galleys) = that_fit(ui, rect, &heading, &lines) else { return Rect::NOTHING };
-        let place = Rect::from_min_size(rect.min + vec2(10.0, 10.0), size_of(&galleys));
+        // The editor has the messages at their lines, and the object is what is looked at.
+        let (said, tallest) = match session.edits_troubles() {
+            true => (&lines[..0], PLATE * rect.height() - MARGIN),
+            false => (&lines[..], f32::INFINITY),
+        };
+        let Some(galleys) = that_fit(ui, rect, &heading, said, tallest) else { return Rect::NOTHING };
+        let place = Rect::from_min_size(rect.min + Vec2::splat(MARGIN), size_of(&galleys));
         let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
         theme::says(&response, WidgetType::Button, format!("{heading}: {}", lines.join("; ")));
         // The rim stands out even where the picture has the colour of the plate.
@@ -341,6 +347,8 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
     Some((heading, lines))
 }
 
+/// Distance of the message about a shader error from the edges of the picture, in points.
+const MARGIN: f32 = 10.0;
 /// Space around the message about a shader error, and of the sign at its left, in points.
 const PADDING: Vec2 = vec2(10.0, 7.0);
 const SIGN: f32 = 26.0;
@@ -353,9 +361,9 @@ fn size_of(galleys: &[Arc<Galley>]) -> Vec2 {
 }
 
 /// Heading and lines, as far as their plate leaves room for the picture: that has priority, then the heading; the panel
-/// lists all errors.
-fn that_fit(ui: &Ui, rect: Rect, heading: &str, lines: &[String]) -> Option<Vec<Arc<Galley>>> {
-    let room = (rect.width() - 20.0).min(560.0 * theme::scale_here(ui)) - SIGN - 2.0 * PADDING.x;
+/// lists all errors. The plate is not taller than `tallest`.
+fn that_fit(ui: &Ui, rect: Rect, heading: &str, lines: &[String], tallest: f32) -> Option<Vec<Arc<Galley>>> {
+    let room = (rect.width() - 2.0 * MARGIN).min(560.0 * theme::scale_here(ui)) - SIGN - 2.0 * PADDING.x;
     let room = room.max(64.0);
     let body = TextStyle::Body.resolve(ui.style()).size;
     let lay_out = |text: &str, font: FontId, rows: usize, room: f32| {
@@ -367,7 +375,10 @@ fn that_fit(ui: &Ui, rect: Rect, heading: &str, lines: &[String]) -> Option<Vec<
     let mut galleys = head(3, room);
     galleys.extend(lines.iter().map(|line| lay_out(line, FontId::proportional(body), 2, room)));
     let most = PLATE * rect.area();
-    let too_large = |galleys: &[_]| size_of(galleys).x * size_of(galleys).y > most;
+    let too_large = |galleys: &[_]| {
+        let size = size_of(galleys);
+        size.x * size.y > most || size.y > tallest
+    };
     while galleys.len() > 1 && too_large(&galleys) {
         galleys.pop();
     }

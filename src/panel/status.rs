@@ -116,11 +116,12 @@ fn latest(ui: &mut Ui, beside: f32, context: &mut PanelContext<'_>) {
     }
 }
 
-/// The number of shader errors, and whether they affect the picture; a click opens the shader panel.
+/// The number of shader errors, and whether they affect the picture; a click opens the shader panel. Not while the editor
+/// marks them: the picture says the rest.
 fn shader_errors(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let session = context.session();
     let count = session.shaders.troubles.len();
-    if count == 0 {
+    if count == 0 || session.edits_troubles() {
         return;
     }
     let stale = if session.shaders.stale().is_empty() {

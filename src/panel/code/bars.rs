@@ -1,7 +1,7 @@
 //! What stands above the text: the tabs, and the question about a conflict.
 
 use super::{
-    CodeCommand, CodeOf, OpenCode, Theirs,
+    CodeCommand, CodeOf, OpenCode, Theirs, check,
     difference::{self, Change},
 };
 use crate::panel::{keys, prelude::*};
@@ -76,43 +76,48 @@ pub(super) fn nothing(ui: &mut Ui, context: &mut PanelContext<'_>) {
     super::super::author::buttons(ui, context);
 }
 
-/// The question about a text that is being closed, or that another program has changed.
-pub(super) fn conflict(ui: &mut Ui, open: &OpenCode, context: &mut PanelContext<'_>) {
+/// What is said above a text, with the choices: it is being closed, another program has changed it, or its file cannot be
+/// used.
+fn question(open: &OpenCode, session: &Session) -> Option<(String, Vec<(&'static str, CodeCommand)>)> {
     let name = &open.name;
-    let (text, commands): (String, Vec<(&str, CodeCommand)>) = if open.closing {
+    if open.closing {
         let (text, discard) = if open.text == open.base {
             (format!("The text of {name} is in no file any more."), "Discard it")
         } else {
             (format!("{name} has changes that are not saved."), "Discard them")
         };
-        (text, vec![(discard, CodeCommand::Discard), ("Keep it open", CodeCommand::Stay)])
-    } else {
-        match &open.theirs {
-            None => return,
-            Some(Theirs::Changed(_)) => {
-                let text = match open.of {
-                    CodeOf::Scene => format!("The scene was changed elsewhere, and you have changed {name}."),
-                    CodeOf::File(_) => format!("Another program has changed {name}, and you have too."),
-                };
-                let see = match open.shows_difference {
-                    true => ("Back to the text", CodeCommand::Difference(false)),
-                    false => ("Show the difference", CodeCommand::Difference(true)),
-                };
-                let choices =
-                    vec![("Keep mine", CodeCommand::KeepMine), ("Take theirs", CodeCommand::TakeTheirs), see];
-                (text, choices)
-            }
-            Some(Theirs::Gone) => {
-                let text =
-                    format!("{name} was deleted. Its text is still here; saving it writes the file again.");
-                (text, Vec::new())
-            }
-            Some(Theirs::Unreadable(why)) => {
-                let text = format!("{name} can no longer be read: {why}. Its last text is still here.");
-                (text, vec![("Write mine over it", CodeCommand::KeepMine)])
-            }
+        return Some((text, vec![(discard, CodeCommand::Discard), ("Keep it open", CodeCommand::Stay)]));
+    }
+    Some(match &open.theirs {
+        None => (format!("{name} cannot be used: {}.", check::refused(open, session)?), Vec::new()),
+        Some(Theirs::Changed(_)) => {
+            let text = match open.of {
+                CodeOf::Scene => format!("The scene was changed elsewhere, and you have changed {name}."),
+                CodeOf::File(_) => format!("Another program has changed {name}, and you have too."),
+            };
+            let see = match open.shows_difference {
+                true => ("Back to the text", CodeCommand::Difference(false)),
+                false => ("Show the difference", CodeCommand::Difference(true)),
+            };
+            let choices =
+                vec![("Keep mine", CodeCommand::KeepMine), ("Take theirs", CodeCommand::TakeTheirs), see];
+            (text, choices)
         }
-    };
+        Some(Theirs::Gone) => {
+            let text =
+                format!("{name} was deleted. Its text is still here; saving it writes the file again.");
+            (text, Vec::new())
+        }
+        Some(Theirs::Unreadable(why)) => {
+            let text = format!("{name} can no longer be read: {why}. Its last text is still here.");
+            (text, vec![("Write mine over it", CodeCommand::KeepMine)])
+        }
+    })
+}
+
+/// Shows the question about a text, if there is one.
+pub(super) fn conflict(ui: &mut Ui, open: &OpenCode, context: &mut PanelContext<'_>) {
+    let Some((text, commands)) = question(open, context.session()) else { return };
     let palette = Palette::here(ui);
     let frame = egui::Frame::new().fill(palette.raised).inner_margin(4.0).corner_radius(4.0);
     frame.show(ui, |ui| {

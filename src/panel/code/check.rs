@@ -2,10 +2,14 @@
 
 use std::path::Path;
 
-use super::super::state::{CodeOf, OpenCode, read_scene};
+use super::{
+    super::state::{CodeOf, OpenCode, read_scene},
+    find::line,
+};
 use crate::{
     caught::{catch, message},
     custom,
+    library::status::Trouble,
     panel::prelude::*,
     parameter::{Outside, Parameter},
     registry::compose::compose,
@@ -95,6 +99,29 @@ fn marks(found: Vec<ShaderProblem>, source: &str) -> Vec<Mark> {
     all
 }
 
+/// The problems of the file of a text that drawing found.
+fn troubles<'a>(open: &'a OpenCode, session: &'a Session) -> impl Iterator<Item = &'a ShaderProblem> {
+    let own = move |trouble: &&Trouble| open.path().is_some_and(|path| trouble.path.as_deref() == Some(path));
+    session.shaders.troubles.iter().filter(own).map(|trouble| &trouble.problem)
+}
+
+/// The errors that drawing found, where they belong to this text: the line is that which was compiled.
+pub(super) fn drawn(open: &OpenCode, session: &Session) -> Vec<Mark> {
+    let is_here = |problem: &&ShaderProblem| {
+        let (here, compiled) = (open.text[line(&open.text, problem.line)].trim(), problem.source.trim());
+        here == compiled && !here.is_empty()
+    };
+    let mark = |p: &ShaderProblem| Mark { line: p.line, column: p.column, message: p.message.clone() };
+    troubles(open, session).filter(is_here).take(MOST_MARKS).map(mark).collect()
+}
+
+/// Why the file of a text cannot be used, where that has no line in it.
+pub(super) fn refused<'a>(open: &'a OpenCode, session: &'a Session) -> Option<&'a str> {
+    let first_line = &open.text[line(&open.text, 1)];
+    let is_of_file = |problem: &&ShaderProblem| problem.source.is_empty() && !first_line.trim().is_empty();
+    troubles(open, session).find(is_of_file).map(|problem| problem.message.as_str())
+}
+
 /// The problems of the text of a file, as far as they can be known without drawing. `shown` are the ids of the
 /// reflection model and the shading model of the picture, with which a file that belongs to no model is checked.
 #[must_use]
@@ -156,6 +183,36 @@ mod tests {
         let text = "/* lcm\n{\n  \"laws\": [\"no law\"],\n  \"nonsense\": 1\n}\n*/\nfn response() {}\n";
         let lines: Vec<_> = said(text).into_iter().map(|mark| mark.line).collect();
         assert_eq!(lines, [3, 4]);
+    }
+
+    #[test]
+    fn what_drawing_found_is_marked_only_in_the_text_that_was_compiled() {
+        let mut code = super::super::super::state::Code::default();
+        let path = || std::path::PathBuf::from("/lab/models/a.wgsl");
+        code.add(CodeOf::File(path()), "a.wgsl".to_owned(), "fn f() {}\n\tlet x = 1;\n", 1);
+        let open = code.open.remove(0);
+        let with = |line, source: &str| {
+            let mut session = Session::default();
+            let problem = ShaderProblem {
+                file: "models/a.wgsl".to_owned(),
+                line,
+                column: 1,
+                source: source.to_owned(),
+                message: "wrong".to_owned(),
+            };
+            session.shaders.troubles.push(Trouble { problem, path: Some(path()), stale: Vec::new() });
+            session
+        };
+        let lines = |session: &Session| drawn(&open, session).iter().map(|m| m.line).collect::<Vec<_>>();
+        let compiled = with(2, "\tlet x = 1;");
+        assert_eq!((lines(&compiled), refused(&open, &compiled)), (vec![2], None));
+        // Of bytes that are no text, and of another version.
+        for other in [with(1, "\u{fffd}\u{fffd}"), with(2, "let y = 1;"), with(9, "let z;")] {
+            assert_eq!((lines(&other), refused(&open, &other)), (Vec::new(), None));
+        }
+        // The file is missing.
+        let gone = with(1, "");
+        assert_eq!((lines(&gone), refused(&open, &gone)), (Vec::new(), Some("wrong")));
     }
 
     #[test]

@@ -56,10 +56,9 @@ impl Finder {
 impl CodePanel {
     /// Opens the bar.
     pub(super) fn begin_finding(&mut self, replace: bool) {
-        let [a, b] = self.cursor;
         // What is selected within a line is what is looked for.
         if let Some(selected) =
-            self.buffer.get(a.min(b)..a.max(b)).filter(|s| !s.is_empty() && !s.contains('\n'))
+            self.buffer.get(self.selection()).filter(|s| !s.is_empty() && !s.contains('\n'))
         {
             selected.clone_into(&mut self.finder.wanted);
         }
@@ -69,8 +68,8 @@ impl CodePanel {
 
     /// Selects the next place, or the one before.
     pub(super) fn find_next(&mut self, ctx: &Context, open: &OpenCode, backwards: bool) {
-        let [a, b] = self.cursor;
-        let from = if backwards { a.min(b) } else { a.max(b) };
+        let Range { start, end } = self.selection();
+        let from = if backwards { start } else { end };
         let places = self.finder.places(&self.buffer);
         if let Some(place) = find::next(places, from, backwards).map(|at| places[at].clone()) {
             self.select(ctx, open, place);
@@ -92,9 +91,9 @@ pub(super) fn show(ui: &mut Ui, panel: &mut CodePanel, open: &OpenCode, context:
     if !panel.finder.open {
         return;
     }
-    let [a, b] = panel.cursor;
+    let selection = panel.selection();
     let places = panel.finder.places(&panel.buffer);
-    let (count, selected) = (places.len(), places.iter().position(|place| *place == (a.min(b)..a.max(b))));
+    let (count, selected) = (places.len(), places.iter().position(|place| *place == selection));
     let bar = ui.horizontal_wrapped(|ui| panel.finder.bar(ui, count, selected));
     match bar.inner {
         Some(Asked::Next(backwards)) => panel.find_next(ui.ctx(), open, backwards),
@@ -145,7 +144,8 @@ impl Finder {
         let said = match (count, selected) {
             _ if self.wanted.is_empty() => String::new(),
             (0, _) => "not found".to_owned(),
-            (find::MOST_FOUND, _) => format!("more than {}", find::MOST_FOUND - 1),
+            (find::MOST_FOUND, None) => format!("more than {}", find::MOST_FOUND - 1),
+            (find::MOST_FOUND, Some(at)) => format!("{} of more than {}", at + 1, find::MOST_FOUND - 1),
             (_, Some(at)) => format!("{} of {count}", at + 1),
             (_, None) => plural(count, "place"),
         };

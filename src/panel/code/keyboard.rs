@@ -22,6 +22,10 @@ pub(super) enum Ask {
     Choose(isize),
     /// Insert the chosen word.
     Accept,
+    /// Undo a step of the text.
+    Undo,
+    /// Do it again.
+    Redo,
 }
 
 /// The text field as the keys need to know it.
@@ -128,6 +132,9 @@ fn meant(event: &Event, typing: &Typing, at: Focus) -> Meant {
         Key::Enter if at == Focus::Field && (plain || shift) => Ask::Next(shift),
         Key::Escape if plain && (typing.offers || typing.finds) => Ask::Escape,
         Key::Space if writes && ctrl => Ask::Complete,
+        Key::Z if writes && ctrl => Ask::Undo,
+        Key::Y if writes && ctrl => Ask::Redo,
+        Key::Z if writes && is(Modifiers::COMMAND | Modifiers::SHIFT) => Ask::Redo,
         Key::ArrowDown if offers => Ask::Choose(1),
         Key::ArrowUp if offers => Ask::Choose(-1),
         Key::Tab if offers => Ask::Accept,

@@ -8,7 +8,7 @@
 //! A text is written as an editor of one's own would write it, and the watcher then loads it. While it is
 //! typed, a thread checks it after a short rest.
 
-use std::{sync::Mutex, time::Duration};
+use std::{collections::HashMap, sync::Mutex, time::Duration};
 
 use super::{
     kept::Background,
@@ -18,6 +18,7 @@ use super::{
 use crate::{caught::lock, library::status::Reloaded, parameter::Parameter};
 use check::{Checked, Given, Mark};
 use layout::Layouts;
+use steps::Steps;
 use tokens::Language;
 use words::{Offer, Vocabulary};
 
@@ -30,6 +31,7 @@ mod finder;
 mod keyboard;
 mod layout;
 mod offering;
+mod steps;
 mod surface;
 pub mod tokens;
 pub mod words;
@@ -47,6 +49,8 @@ pub(super) struct CodePanel {
     buffer: String,
     same: Option<(u64, Arc<str>)>,
     layouts: Layouts,
+    /// The steps of undoing of each open text, by its number.
+    steps: HashMap<u64, Steps>,
     finder: finder::Finder,
     /// The document that the scene as JSON shows, and when it was first seen.
     followed: Option<(crate::document::Revision, f64)>,
@@ -75,6 +79,7 @@ impl Default for CodePanel {
             buffer: String::new(),
             same: None,
             layouts: Layouts::default(),
+            steps: HashMap::new(),
             finder: finder::Finder::default(),
             followed: None,
             cursor: [0; 2],
@@ -130,15 +135,7 @@ impl CodePanel {
             keyboard::forget(ui.ctx());
             return bars::nothing(ui, context);
         };
-        if self
-            .same
-            .as_ref()
-            .is_none_or(|(number, text)| *number != open.number || !Arc::ptr_eq(text, &open.text))
-        {
-            self.buffer = open.text.to_string();
-            self.offer = None;
-            self.same = Some((open.number, open.text.clone()));
-        }
+        self.take_in(ui.ctx(), open, session);
         bars::conflict(ui, open, context);
         if open.shows_difference
             && let Some(Theirs::Changed(theirs)) = &open.theirs
@@ -187,14 +184,7 @@ impl CodePanel {
         let found = self.checked.as_ref().filter(|(question, _)| question.number == open.number);
         let mut all = found.map(|(_, checked)| checked.marks.clone()).unwrap_or_default();
         if all.is_empty() && !open.is_unsaved() {
-            let own =
-                |path: &Option<std::path::PathBuf>| path.as_deref().is_some_and(|p| Some(p) == open.path());
-            let troubles = session.shaders.troubles.iter().filter(|trouble| own(&trouble.path));
-            all.extend(troubles.map(|trouble| Mark {
-                line: trouble.problem.line,
-                column: trouble.problem.column,
-                message: trouble.problem.message.clone(),
-            }));
+            all = check::drawn(open, session);
         }
         all
     }

@@ -3,13 +3,17 @@
 use std::ops::Range;
 
 use bevy_egui::egui::{
-    TextBuffer, TextEdit,
+    Event, TextBuffer, TextEdit,
     text::{CCursor, CCursorRange},
-    text_edit::TextEditState,
+    text_edit::{TextEditOutput, TextEditState},
 };
 
-use super::{CodePanel, Mark, find::line, finder, keyboard, keyboard::Typing, language, tokens, words::Word};
+use super::{
+    CodePanel, Mark, find::line, finder, keyboard, keyboard::Typing, language, steps::State, tokens,
+    words::Word,
+};
 use crate::panel::{
+    focus,
     prelude::*,
     state::{CodeCommand, OpenCode},
 };
@@ -37,17 +41,41 @@ pub(super) fn character(text: &str, byte: usize) -> usize {
     text[..text.floor_char_boundary(byte)].chars().count()
 }
 
-/// Lets undoing bring back the text that another has replaced.
-fn let_bring_back(ctx: &Context, open: &OpenCode) {
-    let Some(before) = &open.replaced else { return };
-    let mut state = TextEditState::load(ctx, id_of(open)).unwrap_or_default();
-    let mut undoer = state.undoer();
-    undoer.add_undo(&(state.cursor.char_range().unwrap_or_default(), before.to_string()));
-    state.set_undoer(undoer);
-    state.store(ctx, id_of(open));
+/// The fill and the rim of a place that was found, or of the one that is selected.
+fn found_look(selected: bool, palette: &Palette) -> (Color32, Stroke) {
+    match selected {
+        true => (palette.warning.gamma_multiply(0.35), Stroke::new(2.0, palette.warning)),
+        false => (Color32::TRANSPARENT, Stroke::new(1.0, palette.warning)),
+    }
 }
 
 impl CodePanel {
+    /// Takes in another text, or one that something else has changed, which undoing brings back.
+    pub(super) fn take_in(&mut self, ctx: &Context, open: &OpenCode, session: &Session) {
+        let same = self.same.replace((open.number, open.text.clone()));
+        match same.filter(|(number, _)| *number == open.number) {
+            Some((_, text)) if Arc::ptr_eq(&text, &open.text) => return,
+            Some((number, text)) => {
+                let before = State { text, cursor: self.cursor };
+                self.steps.entry(number).or_default().record(before, &open.text, None);
+            }
+            None => {
+                let state = TextEditState::load(ctx, id_of(open)).unwrap_or_default();
+                let range = state.cursor.char_range().unwrap_or_default();
+                self.cursor = [range.primary, range.secondary].map(|c| byte(&open.text, c.index.0));
+                self.steps.retain(|number, _| session.code.open.iter().any(|open| open.number == *number));
+            }
+        }
+        self.buffer = open.text.to_string();
+        self.offer = None;
+    }
+
+    /// The bytes that are selected.
+    pub(super) fn selection(&self) -> Range<usize> {
+        let [a, b] = self.cursor;
+        a.min(b)..a.max(b)
+    }
+
     /// Selects a place of the text, and brings it into sight.
     pub(super) fn select(&mut self, ctx: &Context, open: &OpenCode, place: Range<usize>) {
         let ends = [place.start, place.end].map(|at| CCursor::new(character(&self.buffer, at)));
@@ -55,21 +83,39 @@ impl CodePanel {
         state.cursor.set_char_range(Some(CCursorRange::two(ends[0], ends[1])));
         state.store(ctx, id_of(open));
         self.cursor = [place.end, place.start];
+        self.steps.entry(open.number).or_default().end();
         self.reveals = true;
     }
 
-    /// Replaces the text as typing would.
+    /// Replaces the text, as one step.
     pub(super) fn put(&mut self, text: String, context: &mut PanelContext<'_>) {
         self.buffer = text;
-        self.typed(context);
+        self.changed(self.cursor, None, context);
     }
 
-    fn typed(&mut self, context: &mut PanelContext<'_>) {
+    /// Passes on that the text was changed, with the cursor before. `typed` is the time if it was typed.
+    fn changed(&mut self, cursor: [usize; 2], typed: Option<f64>, context: &mut PanelContext<'_>) {
+        let Some((number, before)) = self.same.clone() else { return };
         let text: Arc<str> = self.buffer.as_str().into();
-        if let Some((number, same)) = &mut self.same {
-            *same = text.clone();
-            context.act(Action::Code(CodeCommand::Type(*number, text)));
-        }
+        self.steps.entry(number).or_default().record(State { text: before, cursor }, &text, typed);
+        self.becomes(number, text, context);
+    }
+
+    fn becomes(&mut self, number: u64, text: Arc<str>, context: &mut PanelContext<'_>) {
+        self.same = Some((number, text.clone()));
+        context.act(Action::Code(CodeCommand::Type(number, text)));
+    }
+
+    /// Undoes a step of the text, or does it again.
+    fn step(&mut self, ctx: &Context, open: &OpenCode, again: bool, context: &mut PanelContext<'_>) {
+        let now = State { text: self.buffer.as_str().into(), cursor: self.cursor };
+        let steps = self.steps.entry(open.number).or_default();
+        let other = if again { steps.redo(now) } else { steps.undo(now) };
+        let Some(State { text, cursor: [end, start] }) = other else { return };
+        self.buffer = text.to_string();
+        self.offer = None;
+        self.becomes(open.number, text, context);
+        self.select(ctx, open, start..end);
     }
 
     /// The text before the cursor.
@@ -82,9 +128,14 @@ impl CodePanel {
         if let Some((number, wanted)) = context.session().code.goto
             && number == open.number
         {
-            let_bring_back(&ctx, open);
-            let start = line(&self.buffer, wanted).start;
-            self.select(&ctx, open, start..start);
+            if let Some(before) = open.replaced.clone() {
+                let before = State { text: before, cursor: [0; 2] };
+                self.steps.entry(number).or_default().keep(before);
+            }
+            if wanted > 0 {
+                let start = line(&self.buffer, wanted).start;
+                self.select(&ctx, open, start..start);
+            }
             ctx.memory_mut(|memory| memory.request_focus(id));
             context.act(Action::Code(CodeCommand::Arrived));
         }
@@ -95,6 +146,7 @@ impl CodePanel {
         ui.painter().rect_filled(text, 2.0, Palette::here(ui).field);
         let before = self.buffer.len();
         let field = ui.scope_builder(UiBuilder::new().max_rect(text), |ui| self.text(ui, id, open, context));
+        focus::scrolls_itself(&ctx, id);
         if field.inner && self.buffer.len() > before {
             self.begin_offer(open, false, context);
         }
@@ -132,65 +184,72 @@ impl CodePanel {
                     }
                 }
                 keyboard::Ask::Accept => self.accept(ui.ctx(), open, context),
+                keyboard::Ask::Undo => self.step(ui.ctx(), open, false, context),
+                keyboard::Ask::Redo => self.step(ui.ctx(), open, true, context),
             }
         }
     }
 
     /// The gutter and the text. True if something was typed.
     fn text(&mut self, ui: &mut Ui, id: Id, open: &OpenCode, context: &mut PanelContext<'_>) -> bool {
-        let (palette, font) = (Palette::here(ui), TextStyle::Monospace.resolve(ui.style()));
+        let font = TextStyle::Monospace.resolve(ui.style());
         let digits = self.buffer.split('\n').count().to_string().len().max(3);
         let letter = ui.fonts_mut(|fonts| fonts.glyph_width(&font, '0'));
         let gutter = letter * digits as f32 + 2.0 * GAP;
         let whole = ui.available_rect_before_wrap();
         let (numbers, inside) = whole.split_left_right_at_x(whole.left() + gutter);
-        let before = self.buffer.len();
+        let (before, cursor) = (self.buffer.len(), self.cursor);
         let marks = self.marks(open, context.session());
         let mut shown = None;
         ui.scope_builder(UiBuilder::new().max_rect(inside), |ui| {
             ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
-                let Self { buffer, layouts, .. } = self;
-                let language = language(open);
-                let mut lay =
-                    |ui: &Ui, text: &dyn TextBuffer, _: f32| layouts.lay(ui, text.as_str(), language);
-                let output = TextEdit::multiline(buffer)
-                    .id(id)
-                    .font(TextStyle::Monospace)
-                    .lock_focus(true)
-                    .frame(egui::Frame::NONE)
-                    .desired_width(f32::INFINITY)
-                    .min_size(ui.available_size())
-                    .layouter(&mut lay)
-                    .show(ui);
-                if let Some(cursor) = output.cursor_range {
-                    let ends = [cursor.primary, cursor.secondary].map(|c| byte(buffer, c.index.0));
-                    if std::mem::replace(&mut self.cursor, ends) != ends && !output.response.changed() {
-                        self.offer = None;
-                    }
-                }
-                if std::mem::take(&mut self.reveals) {
-                    let at = CCursor::new(character(buffer, self.cursor[0]));
-                    let place = output.galley.pos_from_cursor(at).translate(output.galley_pos.to_vec2());
-                    ui.scroll_to_rect(place.expand2(vec2(8.0, 24.0)), None);
-                }
-                self.places(ui, &output.galley, output.galley_pos, &palette);
-                self.underline(ui, &marks, &output.galley, output.galley_pos, &palette);
-                let at = output.galley.pos_from_cursor(CCursor::new(character(&self.buffer, self.cursor[0])));
-                self.cursor_at = at.translate(output.galley_pos.to_vec2());
-                shown = Some((
-                    output.galley.clone(),
-                    output.galley_pos,
-                    output.response.changed(),
-                    ui.clip_rect(),
-                ));
+                shown = Some((self.edit(ui, id, open, &marks), ui.clip_rect()));
             });
         });
-        let Some((galley, at, changed, clip)) = shown else { return false };
+        let Some((output, clip)) = shown else { return false };
+        let changed = output.response.changed();
         if changed || before != self.buffer.len() {
-            self.typed(context);
+            let pasted = |event: &Event| matches!(event, Event::Paste(_) | Event::Cut);
+            let typed = ui.input(|i| (!i.events.iter().any(pasted)).then_some(i.time));
+            self.changed(cursor, typed, context);
         }
-        self.gutter(ui, numbers, &marks, &galley, at, clip);
+        self.gutter(ui, numbers, &marks, &output.galley, output.galley_pos, clip);
         changed
+    }
+
+    /// The text itself, with what is marked in it.
+    fn edit(&mut self, ui: &mut Ui, id: Id, open: &OpenCode, marks: &[Mark]) -> TextEditOutput {
+        let palette = Palette::here(ui);
+        let Self { buffer, layouts, .. } = self;
+        let language = language(open);
+        let mut lay = |ui: &Ui, text: &dyn TextBuffer, _: f32| layouts.lay(ui, text.as_str(), language);
+        let mut output = TextEdit::multiline(buffer)
+            .id(id)
+            .font(TextStyle::Monospace)
+            .lock_focus(true)
+            .frame(egui::Frame::NONE)
+            .desired_width(f32::INFINITY)
+            .min_size(ui.available_size())
+            .cursor_at_end(false)
+            .layouter(&mut lay)
+            .show(ui);
+        // It keeps steps of its own, each with the whole text.
+        output.state.clear_undoer();
+        if let Some(cursor) = output.cursor_range {
+            let ends = [cursor.primary, cursor.secondary].map(|c| byte(buffer, c.index.0));
+            if std::mem::replace(&mut self.cursor, ends) != ends && !output.response.changed() {
+                self.offer = None;
+                self.steps.entry(open.number).or_default().end();
+            }
+        }
+        let at = CCursor::new(character(&self.buffer, self.cursor[0]));
+        self.cursor_at = output.galley.pos_from_cursor(at).translate(output.galley_pos.to_vec2());
+        if std::mem::take(&mut self.reveals) {
+            ui.scroll_to_rect(self.cursor_at.expand2(vec2(8.0, 24.0)), None);
+        }
+        self.places(ui, &output.galley, output.galley_pos, &palette);
+        self.underline(ui, marks, &output.galley, output.galley_pos, &palette);
+        output
     }
 
     /// Numbers of the lines in sight.
@@ -233,12 +292,13 @@ impl CodePanel {
     /// The places that were found.
     fn places(&self, ui: &Ui, galley: &Galley, at: Pos2, palette: &Palette) {
         let rows = in_sight(galley, at, ui.clip_rect());
+        let selection = self.selection();
         for place in self.finder.places_in(&self.buffer, &rows) {
             let [from, to] = [place.start, place.end]
                 .map(|byte| galley.pos_from_cursor(CCursor::new(character(&self.buffer, byte))));
             let area = from.union(to).translate(at.to_vec2());
-            let stroke = Stroke::new(1.0, palette.warning);
-            ui.painter().rect_stroke(area.expand(1.0), 2.0, stroke, StrokeKind::Outside);
+            let (fill, stroke) = found_look(place == selection, palette);
+            ui.painter().rect(area.expand(1.0), 2.0, fill, stroke, StrokeKind::Outside);
         }
     }
 

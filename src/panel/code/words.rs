@@ -1,7 +1,10 @@
 //! The words that the editor offers and explains: WGSL, the program's vocabulary, declared parameters, names in the
 //! text; for JSON the keys and values of the schema.
 
-use std::{collections::BTreeSet, ops::Range};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    ops::Range,
+};
 
 use serde_json::Value as Json;
 
@@ -134,19 +137,18 @@ impl Vocabulary {
         if declares {
             return Offer { place: start..end, words: fitting(self.keys.iter().cloned(), begun) };
         }
-        let here = place_in(&text[..start]);
-        let nodes = self.nodes(&here.path);
+        let here = place_in(text, &(start..end));
+        let parts = self.parts(&here);
         let words: Vec<_> = match here.is_key {
             true => {
                 let follows = text[end..].trim_start().starts_with(':');
-                let keys = nodes.iter().filter_map(|node| node["properties"].as_object()).flatten();
-                let key = |(key, node): (&String, &Json)| Word {
+                let key = |(key, node): (&str, Json)| Word {
                     insert: if follows { format!("\"{key}\"") } else { format!("\"{key}\": ") },
-                    ..Word::json(key, &usage(node), text_of(node, "description"))
+                    ..Word::json(key, &usage(&node), text_of(&node, "description"))
                 };
-                keys.map(key).collect()
+                keys(&parts).into_iter().map(key).collect()
             }
-            false => nodes.iter().flat_map(|node| values(node)).collect(),
+            false => parts.iter().flat_map(|part| values(part.node)).collect(),
         };
         let mut words = fitting(words.into_iter(), begun);
         words.dedup_by(|a, b| a.name == b.name);
@@ -176,20 +178,23 @@ impl Vocabulary {
         }
     }
 
-    /// The parts of the schema that may stand at a path.
-    fn nodes(&self, path: &[Step]) -> Vec<&Json> {
-        let mut now = alternatives(&self.schema);
-        for step in path {
-            let next: Vec<&Json> = match step {
-                Step::Key(key) => now
-                    .iter()
-                    .filter_map(|node| {
-                        node["properties"].get(key).or_else(|| object_of(node.get("additionalProperties")))
-                    })
-                    .collect(),
-                Step::Item => now.iter().filter_map(|node| node.get("items")).collect(),
-            };
-            now = next.into_iter().flat_map(alternatives).collect();
+    /// The parts of the schema that apply to a place.
+    fn parts(&self, here: &Here<'_>) -> Vec<Part<'_>> {
+        let none = Members::new();
+        let members = |depth: usize| here.members.get(depth).unwrap_or(&none);
+        let mut now = applying(Part { node: &self.schema, is_sure: true }, members(0));
+        for (i, step) in here.path.iter().enumerate() {
+            let next = now.iter().filter_map(|part| {
+                let inner = match step {
+                    Step::Key(key) => {
+                        let other = || object_of(part.node.get("additionalProperties"));
+                        part.node["properties"].get(key).or_else(other)
+                    }
+                    Step::Item => part.node.get("items"),
+                };
+                Some(Part { node: inner?, ..*part })
+            });
+            now = next.flat_map(|part| applying(part, members(i + 1))).collect();
         }
         now
     }
@@ -206,16 +211,67 @@ fn object_of(node: Option<&Json>) -> Option<&Json> {
     node.filter(|node| node.is_object())
 }
 
-/// A part of a schema, and the alternatives and additions in it.
-fn alternatives(node: &Json) -> Vec<&Json> {
-    let mut all = vec![node];
-    for list in ["oneOf", "anyOf", "allOf"] {
-        all.extend(node[list].as_array().into_iter().flatten().flat_map(alternatives));
+/// Members of an object that are texts: `type` and the ids of models decide on the other ones.
+type Members<'a> = BTreeMap<&'a str, &'a str>;
+
+/// A part of a schema.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    node: &'a Json,
+    /// False for one of several alternatives, and where a condition cannot be decided.
+    is_sure: bool,
+}
+
+/// A part of a schema and what is in it that applies to a value, or may, the general first.
+fn applying<'a>(part: Part<'a>, members: &Members<'_>) -> Vec<Part<'a>> {
+    let Part { node, is_sure } = part;
+    let mut all = vec![part];
+    for (list, is_sure) in [("oneOf", false), ("anyOf", false), ("allOf", is_sure)] {
+        for node in node[list].as_array().into_iter().flatten() {
+            all.extend(applying(Part { node, is_sure }, members));
+        }
     }
-    for part in ["then", "else"] {
-        all.extend(node.get(part).map(alternatives).into_iter().flatten());
+    let holds = node.get("if").and_then(|condition| holds(condition, members));
+    for (branch, needs) in [("then", true), ("else", false)] {
+        if let Some(node) = node.get(branch).filter(|_| holds != Some(!needs)) {
+            all.extend(applying(Part { node, is_sure: is_sure && holds.is_some() }, members));
+        }
     }
     all
+}
+
+/// True if an object meets a condition on its members, if it says.
+fn holds(condition: &Json, members: &Members<'_>) -> Option<bool> {
+    let mut all = condition["properties"].as_object()?.iter();
+    all.try_fold(true, |all, (key, node)| {
+        let is = members.get(key.as_str())?;
+        Some(all && node["const"].as_str() == Some(*is))
+    })
+}
+
+/// The keys that may stand in an object, each with all that applies to it.
+fn keys<'a>(parts: &[Part<'a>]) -> BTreeMap<&'a str, Json> {
+    let mut all: BTreeMap<&str, Json> = BTreeMap::new();
+    for part in parts {
+        for (key, node) in part.node["properties"].as_object().into_iter().flatten() {
+            match all.get_mut(key.as_str()) {
+                Some(known) if part.is_sure => narrow(known, node),
+                None if node.is_object() => _ = all.insert(key, node.clone()),
+                _ => {}
+            }
+        }
+    }
+    all.retain(|_, node| node.is_object());
+    all
+}
+
+/// Adds what a more special part of a schema says; `false` is a key that may not stand there.
+fn narrow(known: &mut Json, node: &Json) {
+    match (known, node.as_object()) {
+        (Json::Object(known), Some(more)) => known.extend(more.clone()),
+        (known, None) => *known = node.clone(),
+        _ => {}
+    }
 }
 
 fn text_of<'a>(node: &'a Json, key: &str) -> &'a str {
@@ -224,21 +280,18 @@ fn text_of<'a>(node: &'a Json, key: &str) -> &'a str {
 
 /// The values that a part of a schema names.
 fn values(node: &Json) -> Vec<Word> {
-    let word = |value: &Json| {
+    let word = |value: &Json, help: &str| {
         let shown = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-        Word {
-            insert: value.to_string(),
-            ..Word::new(&shown, text_of(node, "title"), text_of(node, "description"))
-        }
+        Word { insert: value.to_string(), ..Word::new(&shown, text_of(node, "title"), help) }
     };
-    let mut all: Vec<_> = node
-        .get("const")
-        .into_iter()
-        .chain(node["enum"].as_array().into_iter().flatten())
-        .map(word)
-        .collect();
+    let general = text_of(node, "description");
+    let listed = node["enum"].as_array().into_iter().flatten().enumerate();
+    let listed =
+        listed.map(|(i, value)| word(value, node["enumDescriptions"][i].as_str().unwrap_or(general)));
+    let mut all: Vec<_> =
+        node.get("const").map(|value| word(value, general)).into_iter().chain(listed).collect();
     if node["type"] == "boolean" {
-        all.extend([Json::Bool(true), Json::Bool(false)].iter().map(word));
+        all.extend([Json::Bool(true), Json::Bool(false)].iter().map(|value| word(value, general)));
     }
     all
 }
@@ -327,53 +380,102 @@ enum Step {
 }
 
 /// A place in JSON.
-struct Here {
+struct Here<'a> {
     /// The way to it.
     path: Vec<Step>,
     /// True if a key is expected.
     is_key: bool,
+    /// The members of the objects around it, the outermost first, with those that follow; none for lists.
+    members: Vec<Members<'a>>,
 }
 
-/// The place at the end of the beginning of a JSON text.
-fn place_in(text: &str) -> Here {
-    // Open brackets: the key that is being given a value, or `None` in a list.
-    let mut open: Vec<Option<String>> = Vec::new();
-    let mut is_key = false;
-    let mut last = "";
-    let mut words = tokens(text, Language::Json).into_iter().peekable();
-    let mut at = 0;
-    while at < text.len() {
-        if let Some((range, sort)) = words.next_if(|(range, _)| range.start <= at) {
-            if sort == Sort::Key || sort == Sort::Text {
-                last = &text[range.clone()];
+/// An object or a list that is open: in an object the key that is being given a value, and the members so far.
+struct Open<'a> {
+    key: Option<&'a str>,
+    members: Members<'a>,
+}
+
+/// A walk through JSON.
+#[derive(Default)]
+struct Walk<'a> {
+    open: Vec<Open<'a>>,
+    is_key: bool,
+    last: &'a str,
+    /// Number of those open that are around the place, and the members of those that have been closed since.
+    around: usize,
+    closed: Vec<Members<'a>>,
+}
+
+impl<'a> Walk<'a> {
+    fn over(&mut self, text: &'a str) {
+        let mut words = tokens(text, Language::Json).into_iter().peekable();
+        let mut at = 0;
+        while at < text.len() {
+            if let Some((range, sort)) = words.next_if(|(range, _)| range.start <= at) {
+                if sort == Sort::Key || sort == Sort::Text {
+                    self.word(text[range.clone()].trim_matches('"'), sort);
+                }
+                at = range.end.max(at + 1);
+                continue;
             }
-            at = range.end.max(at + 1);
-            continue;
+            self.sign(text.as_bytes()[at]);
+            at += 1;
         }
-        let byte = text.as_bytes()[at];
-        match byte {
-            b'{' if open.len() < DEEPEST => (_, is_key) = (open.push(Some(String::new())), true),
-            b'[' if open.len() < DEEPEST => (_, is_key) = (open.push(None), false),
+    }
+
+    fn word(&mut self, word: &'a str, sort: Sort) {
+        self.last = word;
+        if let Some(Open { key: Some(key), members }) = self.open.last_mut()
+            && sort == Sort::Text
+            && !self.is_key
+        {
+            members.insert(*key, word);
+        }
+    }
+
+    fn sign(&mut self, sign: u8) {
+        let is_object = sign == b'{';
+        match sign {
+            b'{' | b'[' if self.open.len() < DEEPEST => {
+                self.open.push(Open { key: is_object.then_some(""), members: Members::new() });
+                self.is_key = is_object;
+            }
             b'}' | b']' => {
-                open.pop();
-                is_key = false;
+                let closed = self.open.pop();
+                self.is_key = false;
+                if self.open.len() < self.around {
+                    self.around = self.open.len();
+                    self.closed.extend(closed.map(|closed| closed.members));
+                }
             }
             b':' => {
-                if let Some(Some(key)) = open.last_mut() {
-                    last.trim_matches('"').clone_into(key);
+                if let Some(Open { key: Some(key), .. }) = self.open.last_mut() {
+                    *key = self.last;
                 }
-                is_key = false;
+                self.is_key = false;
             }
-            b',' => is_key = matches!(open.last(), Some(Some(_))),
+            b',' => self.is_key = self.open.last().is_some_and(|open| open.key.is_some()),
             _ => {}
         }
-        at += 1;
     }
-    let mut path: Vec<_> = open.into_iter().map(|key| key.map_or(Step::Item, Step::Key)).collect();
+}
+
+/// The place in a JSON text that a word takes up, which may be incomplete.
+fn place_in<'a>(text: &'a str, word: &Range<usize>) -> Here<'a> {
+    let mut walk = Walk::default();
+    walk.over(&text[..word.start]);
+    let is_key = walk.is_key;
+    let step = |open: &Open<'_>| open.key.map_or(Step::Item, |key| Step::Key(key.to_owned()));
+    let mut path: Vec<_> = walk.open.iter().map(step).collect();
     if is_key {
         path.pop();
     }
-    Here { path, is_key }
+    (walk.around, walk.last) = (walk.open.len(), "");
+    walk.over(&text[word.end..]);
+    let Walk { mut open, around, closed, .. } = walk;
+    open.truncate(around);
+    let members = open.into_iter().map(|open| open.members).chain(closed.into_iter().rev()).collect();
+    Here { path, is_key, members }
 }
 
 #[cfg(test)]
@@ -448,6 +550,63 @@ mod tests {
         let text = "{ \"ligh\" }";
         let offer = vocabulary.offer(text, 7, Language::Json, &[]);
         assert_eq!((&text[offer.place], offer.words[0].insert.as_str()), ("\"ligh\"", "\"lights\": "));
+    }
+
+    #[test]
+    fn keys_are_those_of_the_type_whether_it_stands_before_or_behind() {
+        let of = |before: &str, after: &str| offered(before, after, Language::Json, &[]);
+        for (list, kind, has, lacks) in [
+            ("lights", "point", "position", "cone_angle"),
+            ("lights", "spot", "cone_angle", "width"),
+            ("lights", "ambient", "intensity", "position"),
+            ("objects", "torus", "tube_radius", "vertical_exponent"),
+            ("objects", "sphere", "tessellation", "tube_radius"),
+        ] {
+            let kind = format!("\"type\": \"{kind}\"");
+            let other = "{ \"type\": \"mesh\", \"a\": [{}] }";
+            for (before, after) in [
+                (format!("{{ \"{list}\": [ {other}, {{ {kind}, \""), "\" } ] }".to_owned()),
+                (
+                    format!("{{ \"{list}\": [ {{ \"size\": 1, \""),
+                    format!("\", \"a\": {other}, {kind} }}, {other} ] }}"),
+                ),
+                (format!("{{ \"{list}\": [ {{ \""), format!("\n {kind} }} ] }}")),
+            ] {
+                let all = of(&before, &after);
+                let count = |key: &str| all.iter().filter(|name| *name == key).count();
+                assert_eq!((count(has), count(lacks), count("name")), (1, 0, 1), "{before}|{after}: {all:?}");
+            }
+        }
+        // Without a type, all may follow.
+        let all = of("{ \"lights\": [ { \"", "\" } ] }");
+        assert!(["cone_angle", "width", "position"].iter().all(|key| all.iter().any(|name| name == key)));
+    }
+
+    #[test]
+    fn the_help_for_a_key_is_that_of_the_type_with_the_range_of_all() {
+        let vocabulary = Vocabulary::of(&Registry::builtin());
+        let text = "{ \"objects\": [ { \"type\": \"cube\", \"tessellation\": 3 } ] }";
+        let at = text.find("lation").expect("there");
+        let word = vocabulary.help(text, at, Language::Json, &[]).expect("known");
+        assert_eq!(
+            (word.usage.as_str(), word.help.as_str()),
+            ("integer, 1 to 64", "Squares along each edge.")
+        );
+    }
+
+    #[test]
+    fn each_id_is_explained_by_its_own_summary() {
+        let registry = Registry::builtin();
+        let text = "{ \"objects\": [ { \"reflection_model\": \"\" } ] }";
+        let offer = Vocabulary::of(&registry).offer(text, text.len() - 7, Language::Json, &[]);
+        let mut count = 0;
+        for model in registry.models() {
+            let of = |word: &&Word| word.name == model.declaration.id;
+            let word = offer.words.iter().find(of).expect("offered");
+            assert!(word.help.ends_with(model.declaration.summary), "{word:?}");
+            count += 1;
+        }
+        assert_eq!(offer.words.len(), count);
     }
 
     #[test]

@@ -162,13 +162,14 @@ fn file(ui: &mut Ui, file: &File, names: f32, context: &mut PanelContext<'_>) {
         };
         theme::says(&label, WidgetType::Label, says);
         if let Some(file) = &on_disk {
-            let command = || CodeCommand::File(file.clone(), session.line_of_trouble(path));
+            let command = || CodeCommand::File(file.clone(), session.line_of_trouble(path).unwrap_or(0));
             context.on_click(&label, || Action::Code(command()));
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(file) = &on_disk {
                 let open = icon::button(ui, Icon::Pencil, &format!("Open {path} in an editor"));
-                context.on_click(&open, || open_in_editor(file, session.line_of_trouble(path)));
+                let line = session.line_of_trouble(path).unwrap_or(1);
+                context.on_click(&open, || open_in_editor(file, line));
             }
             if let Some(t) = trouble {
                 ui.label(RichText::new(format!("line {}", t.problem.line)).small().color(palette.error));

@@ -151,7 +151,7 @@ impl Session {
         let path = registry.model(id).map_or_else(|| source_path(id), |m| m.declaration.wgsl.path.to_owned());
         match self.shaders.folders.file_of(&path) {
             Some(file) => {
-                let line = self.line_of_trouble(&path);
+                let line = self.line_of_trouble(&path).unwrap_or(1);
                 self.request(Effect::OpenInEditor { path: file, line });
             }
             None => {
@@ -161,10 +161,10 @@ impl Session {
         }
     }
 
-    /// The line of the first problem in a file; 1 if there is none.
+    /// The line of the first problem in a file.
     #[must_use]
-    pub fn line_of_trouble(&self, path: &str) -> usize {
-        self.shaders.troubles.iter().find(|t| t.problem.file == path).map_or(1, |t| t.problem.line)
+    pub fn line_of_trouble(&self, path: &str) -> Option<usize> {
+        self.shaders.troubles.iter().find(|t| t.problem.file == path).map(|t| t.problem.line)
     }
 }
 

@@ -103,7 +103,7 @@ pub struct Code {
     pub open: Vec<OpenCode>,
     /// Index of the visible text.
     pub shown: usize,
-    /// The line to go to, from 1, with the number of the text; the panel takes it.
+    /// The line to go to, from 1, with the number of the text; 0 is where its cursor is. The panel takes it.
     pub goto: Option<(u64, usize)>,
     /// Texts of earlier windows that wait for the user.
     pub kept: Vec<KeptCode>,
@@ -134,7 +134,7 @@ impl Code {
         self.open.get_mut(self.shown)
     }
 
-    /// Makes a text visible that is open already, at a line. True if there is one.
+    /// Makes a text visible that is open already, at a line, or with 0 as it was left. True if there is one.
     pub(super) fn show(&mut self, of: &CodeOf, line: usize) -> bool {
         let Some(at) = self.open.iter().position(|open| open.of == *of) else { return false };
         self.shown = at;
@@ -161,7 +161,7 @@ impl Code {
         };
         self.open.push(open);
         self.shown = self.open.len() - 1;
-        self.goto = Some((self.opened, line));
+        self.goto = Some((self.opened, line.max(1)));
     }
 }
 
@@ -236,7 +236,7 @@ impl Session {
         let path = registry.model(id).map_or_else(|| source_path(id), |m| m.declaration.wgsl.path.to_owned());
         match self.shaders.folders.file_of(&path) {
             Some(file) => {
-                let line = self.line_of_trouble(&path);
+                let line = self.line_of_trouble(&path).unwrap_or(0);
                 self.edit_file_here(file, line);
             }
             None => self.note(Note::new(Severity::Info, super::BUILT_IN).offering(
@@ -337,6 +337,14 @@ impl Session {
         self.messages.retain(|note| note.offer.as_ref().is_none_or(|(_, action)| **action != offer));
     }
 
+    /// True if the editor is in sight with the file that all errors of shaders are in: it marks them at their lines.
+    #[must_use]
+    pub fn edits_troubles(&self) -> bool {
+        let in_sight = self.sees(CODE_TAB) && !self.view.presenting;
+        let file = self.code.visible().filter(|_| in_sight).and_then(OpenCode::path);
+        file.is_some_and(|file| self.shaders.troubles.iter().all(|t| t.path.as_deref() == Some(file)))
+    }
+
     /// True if the editor has changes that are nowhere else.
     #[must_use]
     pub fn has_unsaved_code(&self) -> bool {
@@ -429,6 +437,20 @@ mod tests {
 
     fn of(session: &Session) -> &OpenCode {
         session.code.visible().expect("one is open")
+    }
+
+    #[test]
+    fn a_text_that_is_open_is_shown_as_it_was_left_unless_a_line_is_asked_for() {
+        let mut session = open();
+        let number = of(&session).number;
+        assert_eq!(session.code.goto, Some((number, 1)), "a new one is shown from its start");
+        for line in [0, 2] {
+            command(&mut session, CodeCommand::Arrived);
+            assert_eq!(command(&mut session, CodeCommand::File("models/a.wgsl".into(), line)), []);
+            assert_eq!(session.code.goto, Some((number, line)));
+        }
+        session.code.add(CodeOf::File("b".into()), "b".to_owned(), "", 0);
+        assert_eq!(session.code.goto, Some((number + 1, 1)));
     }
 
     #[test]

@@ -12,7 +12,7 @@ pub enum CodeCommand {
     Model,
     /// Open the file of the model with this id; where it has none, offer to copy it as a file.
     ModelOf(String),
-    /// Open a file at a line.
+    /// Open a file at a line, from 1. 0: at the place where it was left, a new one at its start.
     File(PathBuf, usize),
     /// Open the scene as JSON.
     Scene,

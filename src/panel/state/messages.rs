@@ -198,7 +198,7 @@ impl Session {
     }
 
     /// True if a panel is in sight at the bottom.
-    fn sees(&self, tab: &str) -> bool {
+    pub(super) fn sees(&self, tab: &str) -> bool {
         self.view.bottom_open && self.view.bottom_tab == tab
     }
 

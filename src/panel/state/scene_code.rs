@@ -19,7 +19,7 @@ impl Session {
     pub(super) fn edit_scene_here(&mut self, registry: &Registry) {
         self.view.unfold(CODE_TAB);
         self.follow_scene(registry);
-        if self.code.show(&CodeOf::Scene, 1) {
+        if self.code.show(&CodeOf::Scene, 0) {
             return;
         }
         let text = self.scene_json(registry);

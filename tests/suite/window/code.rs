@@ -1,8 +1,11 @@
 //! The editor in the window, by keyboard alone.
 
-use bevy_egui::egui::{Event, Key, Modifiers};
+use bevy_egui::egui::{Color32, Event, Key, Modifiers, Shape, accesskit::Role};
 use lights_camera_models::{
-    panel::state::{Action, CodeCommand, CodeOf, KeptCode, ModelCommand, OpenCode, Session},
+    panel::{
+        state::{Action, CodeCommand, CodeOf, KeptCode, ModelCommand, OpenCode, Session, ViewChange},
+        theme::Palette,
+    },
     recovery::texts::OF_SCENE,
 };
 
@@ -164,6 +167,96 @@ fn places_are_found_and_replaced_from_the_keyboard() {
     bench.key(Key::Escape, Modifiers::NONE);
     assert!(bench.find("Replace all").is_none());
     assert!(bench.session.has_unsaved_code());
+}
+
+/// Height of the first line on the screen: above the panel where the text is scrolled.
+fn top(bench: &mut Bench) -> f32 {
+    (0..4).for_each(|_| bench.settle());
+    let text = bench.tree.iter().find(|seen| seen.role == Role::MultilineTextInput);
+    text.expect("the text is shown").rect.top()
+}
+
+#[test]
+fn a_text_opens_at_its_start_and_is_found_as_it_was_left() {
+    let mut bench = Bench::new(Session::default());
+    bench.apply(Action::Code(CodeCommand::Scene));
+    let opened = top(&mut bench);
+    bench.key(Key::End, CTRL);
+    let end = top(&mut bench);
+    assert!(end < opened - 100.0, "it is longer than the panel: {opened} {end}");
+    bench.key(Key::Home, CTRL);
+    let start = top(&mut bench);
+    assert!((start - opened).abs() < 8.0, "it had opened at its start: {opened} {start}");
+    // Another panel, and back.
+    bench.key(Key::End, CTRL);
+    bench.apply(Action::View(ViewChange::BottomTab("history".to_owned())));
+    bench.apply(Action::Code(CodeCommand::Scene));
+    let again = top(&mut bench);
+    assert!((again - end).abs() < 1.0, "{again} {end}");
+    types(&mut bench, "7");
+    assert!(open(&bench).text.ends_with('7'), "the cursor, too, is where it was");
+}
+
+#[test]
+fn undoing_goes_by_lines_moves_of_the_cursor_pastes_and_rests() {
+    let mut bench = with_scene();
+    let before = open(&bench).text.clone();
+    let is = |bench: &Bench, typed: &str| assert_eq!(*open(bench).text, *format!("{typed}{before}"));
+    types(&mut bench, "1");
+    types(&mut bench, "2");
+    bench.key(Key::Enter, Modifiers::NONE);
+    types(&mut bench, "3");
+    bench.key(Key::Enter, Modifiers::NONE);
+    bench.frame(vec![Event::Paste("45".to_owned())]);
+    bench.settle();
+    types(&mut bench, "6");
+    bench.key(Key::ArrowLeft, Modifiers::NONE);
+    bench.key(Key::ArrowRight, Modifiers::NONE);
+    types(&mut bench, "7");
+    (0..6).for_each(|_| bench.settle());
+    types(&mut bench, "8");
+    let steps = ["12\n3\n45678", "12\n3\n4567", "12\n3\n456", "12\n3\n45", "12\n3\n", "12\n3", "12", ""];
+    is(&bench, steps[0]);
+    for &step in &steps[1..] {
+        bench.key(Key::Z, CTRL);
+        is(&bench, step);
+    }
+    bench.key(Key::Z, CTRL);
+    is(&bench, "");
+    for &step in steps[..7].iter().rev() {
+        bench.key(Key::Y, CTRL);
+        is(&bench, step);
+    }
+    // Where the cursor was.
+    types(&mut bench, "9");
+    is(&bench, "12\n3\n456789");
+}
+
+#[test]
+fn the_place_found_that_is_selected_stands_out() {
+    /// The places in sight, and those that are filled.
+    fn places(bench: &mut Bench) -> [usize; 2] {
+        let warning = Palette::of(&bench.session.settings).warning;
+        let all = bench.shapes();
+        let places = all.iter().filter_map(|shape| match shape {
+            Shape::Rect(rect) if rect.stroke.color == warning => Some(rect.fill != Color32::TRANSPARENT),
+            _ => None,
+        });
+        let places: Vec<_> = places.collect();
+        [places.len(), places.iter().filter(|filled| **filled).count()]
+    }
+    let mut bench = with_scene();
+    bench.key(Key::F, CTRL);
+    types(&mut bench, "\"");
+    let count = open(&bench).text.matches('"').count();
+    let [all, filled] = places(&mut bench);
+    assert!(all > 2 && filled == 0, "{all} {filled}");
+    for number in 1..3 {
+        bench.key(Key::Enter, Modifiers::NONE);
+        assert!(bench.says(&format!("{number} of {count}")), "{:?}", bench.tree);
+        let [all, filled] = places(&mut bench);
+        assert!(all > 2 && filled == 1, "{all} {filled}");
+    }
 }
 
 #[test]

@@ -17,8 +17,8 @@ use lights_camera_models::{
         picture,
         shader::consequence,
         state::{
-            Action, CompareCommand, Effect, ModelCommand, ModelDraft, Session, Severity, ThemeChoice,
-            ViewChange,
+            Action, CodeOf, CompareCommand, Effect, ModelCommand, ModelDraft, OpenCode, Session, Severity,
+            ThemeChoice, ViewChange,
         },
         theme::Palette,
     },
@@ -121,6 +121,47 @@ fn the_picture_says_that_it_is_not_what_the_shader_says() {
     bench.settle();
     assert_eq!(badge(&bench), None, "the picture is right");
     assert!(bench.says("nothing in the picture depends on it"), "but the status line tells");
+}
+
+#[test]
+fn while_the_editor_marks_an_error_the_picture_shows_one_line_at_its_edge_and_the_status_line_nothing() {
+    let mut bench = bench_with(vec![broken_lambert()]);
+    let says = |bench: &mut Bench| bench.words().iter().any(|text| text.contains("invalid field accessor"));
+    assert!(says(&mut bench) && bench.says("1 shader error"));
+    let path = broken_lambert().path.expect("on disk");
+    bench.session.code.open.push(OpenCode {
+        of: CodeOf::File(path),
+        name: "lambert.wgsl".to_owned(),
+        text: "fn f() {}".into(),
+        base: "fn f() {}".into(),
+        crlf: false,
+        theirs: None,
+        shows_difference: false,
+        replaced: None,
+        closing: false,
+        number: 1,
+    });
+    for height in [720.0, 480.0] {
+        bench.size.y = height;
+        bench.apply(Action::View(ViewChange::BottomTab("code".to_owned())));
+        let picture = bench.area.rect;
+        if let Some((_, plate)) = badge(&bench) {
+            let share = (plate.bottom() - picture.top()) / picture.height();
+            assert!(share <= 0.25, "{height}: {share}");
+        } else {
+            assert!(height < 700.0, "there is room for it");
+        }
+        assert!(!says(&mut bench) && !bench.says("shader error"), "{height}");
+    }
+    // One in another file is not in sight.
+    let other = trouble("optics/fresnel.wgsl", 1, 1, "x", "invalid field accessor", &["Lambert"]);
+    bench.session.shaders.troubles.push(other);
+    bench.size.y = 720.0;
+    bench.settle();
+    assert!(bench.says("2 shader errors"));
+    bench.session.shaders.troubles.pop();
+    bench.apply(Action::View(ViewChange::BottomTab("plots".to_owned())));
+    assert!(says(&mut bench) && bench.says("1 shader error"));
 }
 
 #[test]
