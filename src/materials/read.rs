@@ -70,7 +70,8 @@ impl Reader<'_> {
         let name = self.required(&fields, "name", "a material must have a name, a text that is not empty");
         let [description, source] = ["description", "source"].map(|key| {
             let value = fields.get(key)?;
-            self.string(value, &format!("the {key} must be text")).map(str::to_owned)
+            let text = self.string(value, &format!("the {key} must be text"))?;
+            (!text.trim().is_empty()).then(|| text.to_owned())
         });
         let id = self.required(&fields, "reflection_model", "a material must name its reflection model")?;
         let model = registry.model(&id);

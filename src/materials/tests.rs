@@ -114,6 +114,18 @@ fn each_mistake_is_told_with_its_place_and_key() {
 }
 
 #[test]
+fn texts_without_words_are_left_out() {
+    let text =
+        r#"{"name": "A", "description": "", "source": " ", "reflection_model": "phong", "material": {}}"#;
+    let material = from_bytes(text.as_bytes(), &registry()).expect("no mistake");
+    assert_eq!((material.description, material.source), (None, None));
+    assert_eq!(
+        from_bytes(text.replace(r#"" ""#, "\"me\"").as_bytes(), &registry()).expect("none").source.as_deref(),
+        Some("me")
+    );
+}
+
+#[test]
 fn broken_files_hide_no_others_and_files_outside_are_not_read() {
     let (registry, root) = (registry(), tempfile::tempdir().expect("a folder"));
     let folder = root.path().join("materials");

@@ -11,6 +11,7 @@ use crate::{
     optics::distribution::GGX,
     parameter::Parameter,
     reflection::{Family, ModelEntry},
+    text::facts,
 };
 
 /// True if every word of a search begins a word of a text, in any order.
@@ -346,7 +347,7 @@ pub fn models<'a>(
             heading: d.family.name(),
             name: d.name,
             note: match model.and_then(|m| why(m, &search.borrow())) {
-                Some(reason) => format!("{reason} · {}", d.author),
+                Some(reason) => facts([&reason, d.author]),
                 None => d.author.to_owned(),
             },
             number: session.model_slots.iter().position(|m| m == d.id).map(|slot| slot + 1),

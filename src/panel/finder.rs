@@ -17,7 +17,7 @@ use super::{
 use crate::{
     parameter::{Parameter, Values},
     reflection::usage,
-    text::capitalised,
+    text::{capitalised, facts},
 };
 
 /// The width, points, and the room at its sides in a narrower window.
@@ -232,7 +232,7 @@ fn commands(root: &Menu, session: &Session, registry: &Registry) -> Vec<Found> {
             heading: path.first().copied().unwrap_or(command.heading().name()),
             note: match (&why, model) {
                 (Some(why), _) => why.clone(),
-                (None, Some(model)) => format!("{place} · {}", model.declaration.author),
+                (None, Some(model)) => facts([&place, model.declaration.author]),
                 (None, None) => place,
             },
             said,

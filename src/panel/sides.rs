@@ -174,7 +174,7 @@ const PLOT_STRIP: f32 = 312.0;
 const CODE_STRIP: f32 = 240.0;
 
 /// Minimum height of the strip with the materials, in points: a row of them.
-const MATERIAL_STRIP: f32 = 196.0;
+const MATERIAL_STRIP: f32 = 212.0;
 
 /// The strip at the bottom. Tabs appear if there is more than one panel.
 pub(super) fn bottom(

@@ -213,9 +213,20 @@ pub fn elided(ui: &Ui, text: &str, font: impl Into<FontSelection>, ink: Color32,
 
 /// A title in the bold font, truncated with … if two lines of this width are not enough.
 pub(super) fn title(ui: &Ui, text: &str, width: f32) -> Arc<Galley> {
-    let ink = Palette::here(ui).text;
-    let mut job = egui::text::LayoutJob::simple(text.to_owned(), bold(ui), ink, width.max(0.0));
-    job.wrap.max_rows = 2;
+    lines(ui, text, bold(ui), Palette::here(ui).text, (width, 2))
+}
+
+/// Text truncated with … if it needs more than this width and this number of lines.
+pub(super) fn lines(
+    ui: &Ui,
+    text: &str,
+    font: impl Into<FontSelection>,
+    ink: Color32,
+    (width, most): (f32, usize),
+) -> Arc<Galley> {
+    let font = font.into().resolve(ui.style());
+    let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, ink, width.max(0.0));
+    job.wrap.max_rows = most;
     ui.painter().layout_job(job)
 }
 

@@ -12,6 +12,7 @@ use super::{
     state::Facts,
     welcome,
 };
+use crate::text::facts;
 
 /// See the module.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -171,11 +172,11 @@ fn shading(ui: &mut Ui, names: &[&str], apart: bool, context: &mut PanelContext<
         ui.set_max_width(300.0);
         ui.label(theme::strong(ui, format!("{} shading", d.name)));
         ui.label(d.summary);
-        let mut facts = format!("{} · computed {}", d.author, d.stage.phrase());
+        let mut said = facts([d.author, &format!("computed {}", d.stage.phrase())]);
         if let Some(key) = keys::of(ui.ctx(), &format!("shading.{}", d.id)) {
-            facts.push_str(&format!(" · key {key}"));
+            said.push_str(&format!(" · key {key}"));
         }
-        ui.label(theme::small(ui, facts));
+        ui.label(theme::small(ui, said));
     };
     let picked = if apart {
         segmented(ui, "Shading", names, chosen, tip)

@@ -1,5 +1,6 @@
 //! Exchanges models, shading models, parameters and shapes at run time: the frame after the choice shows the
-//! new one, and no frame lacks the object.
+//! new one, and no frame lacks the object. In a window, a frame that says that a shader is compiled comes before the
+//! one that waits for it.
 
 use std::iter;
 
@@ -11,7 +12,7 @@ use super::{
     entities::{CurrentScene, SceneEntities},
     file_buffers::FileBuffers,
     illumination::{IlluminationBuffer, Lit, word_count},
-    live::LiveShaders,
+    live::{LiveShaders, Parts},
     material::{MaterialInputs, Vertices, attach, forget},
     meshes::{ShapeMeshes, forget_unused_meshes, take_off},
     nearest,
@@ -31,7 +32,7 @@ use crate::{
     shading,
 };
 
-/// An object whose new shader is still being tried: until then it stays unchanged.
+/// An object whose new shader is still being tried, or about to be made: until then it stays unchanged.
 #[derive(Clone, Component, Copy, Debug, Default)]
 pub struct AwaitsShader;
 
@@ -289,9 +290,12 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         world.resource_mut::<ShapeMeshes>().leave_out(object);
         return;
     };
-    let shader = world.resource_scope(|world, mut shaders: Mut<LiveShaders>| {
-        shaders.get(world, (model, now.passage, shading, now.lights), registry)
-    });
+    let parts = (model, now.passage, shading, now.lights);
+    let shader = if is_first_asked(world, drawable, parts) {
+        None
+    } else {
+        world.resource_scope(|world, mut shaders: Mut<LiveShaders>| shaders.get(world, parts, registry))
+    };
     let Some(shader) = shader else {
         world.entity_mut(drawable).insert(AwaitsShader);
         return;
@@ -330,6 +334,15 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
         entity.remove::<ByChance>();
     }
     entity.insert((now, MeshTag(row.0))).remove::<AwaitsShader>();
+}
+
+/// True if an object asks for the first time for a shader that is announced before it is made. One that was never drawn
+/// does not wait for the announcement, nor do those whose lights change, too.
+fn is_first_asked(world: &World, drawable: Entity, parts: Parts) -> bool {
+    let Ok(entity) = world.get_entity(drawable) else { return false };
+    !entity.contains::<AwaitsShader>()
+        && entity.get::<Drawn>().is_some_and(|drawn| drawn.lights == parts.3)
+        && world.resource::<LiveShaders>().is_announced(parts)
 }
 
 /// The row of an object, assigned if it has none.

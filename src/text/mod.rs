@@ -13,8 +13,8 @@ pub mod xml;
 
 pub use list::{items, numbers};
 pub use words::{
-    behind, capitalised, detailed, did_you_mean, listed, nearest, number, one_of, per_cent, plural, quoted,
-    sentence, shortened, superscript, trimmed, with_article, wrapped,
+    behind, capitalised, detailed, did_you_mean, facts, listed, nearest, number, one_of, per_cent, plural,
+    quoted, sentence, shortened, superscript, trimmed, with_article, wrapped,
 };
 
 /// The bytes of a UTF-8 text without the byte order mark that some programs write first.

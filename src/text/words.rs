@@ -143,6 +143,13 @@ pub fn behind<'r>(name: &str, rule: &'r str) -> Cow<'r, str> {
     }
 }
 
+/// Facts in one line, without those that are empty: "GGX · B. Walter 2007".
+#[must_use]
+pub fn facts<const N: usize>(all: [&str; N]) -> String {
+    let given: Vec<_> = all.into_iter().filter(|fact| !fact.is_empty()).collect();
+    given.join(" · ")
+}
+
 /// "a sphere", "an icosahedron".
 #[must_use]
 pub fn with_article(id: &str) -> String {
@@ -173,6 +180,13 @@ mod tests {
     fn parts_are_told_in_per_cent_with_two_digits() {
         let told = [0.0, 0.00001, 0.005, 0.00996, 0.0123, 0.0996, 0.123].map(per_cent);
         assert_eq!(told, ["0.00 %", "< 0.01 %", "0.50 %", "1.0 %", "1.2 %", "10 %", "12 %"]);
+    }
+
+    #[test]
+    fn facts_that_are_not_given_leave_no_gap() {
+        assert_eq!(facts(["GGX", "B. Walter 2007"]), "GGX · B. Walter 2007");
+        assert_eq!(facts(["GGX", ""]), "GGX");
+        assert_eq!(facts(["", "computed per pixel"]), "computed per pixel");
     }
 
     #[test]

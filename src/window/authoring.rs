@@ -54,8 +54,8 @@ pub(super) fn save_material(session: &mut Session, registry: &Registry, material
     };
     match save(&material, &materials::beside(&models), registry) {
         Ok(path) => {
-            session.materials.saved += 1;
             session.say(Severity::Info, format!("{} was saved: {}.", material.name, path.shown()));
+            session.materials.was_saved(path);
         }
         Err(NotSaved::Taken(path)) => {
             session.questions.ask(Question::ReplaceMaterial { material: Box::new(material), path });

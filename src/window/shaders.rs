@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use bevy::prelude::*;
+use bevy::{prelude::*, window::PrimaryWindow};
 
 use super::{
     order::Loading,
@@ -71,7 +71,12 @@ impl Plugin for ShaderFilesPlugin {
             world.resource_mut::<Bench>().try_in(process);
         }
         let wake = waker(world);
-        world.resource_mut::<LiveShaders>().read_apart(wake);
+        let has_window = world.query_filtered::<(), With<PrimaryWindow>>().iter(world).next().is_some();
+        let mut live = world.resource_mut::<LiveShaders>();
+        live.read_apart(wake);
+        if has_window {
+            live.announce();
+        }
         open(world);
     }
 }

@@ -16,7 +16,7 @@ use crate::{
     explain::{Explanation, Lamp, Seen, Sight, sentence},
     optics::TermSelection,
     scene::limits::Limits,
-    text::listed,
+    text::{facts, listed},
 };
 
 mod beside;
@@ -396,8 +396,7 @@ fn places(shares: &[f32], width: f32) -> Vec<[f32; 2]> {
 fn surface(ui: &mut Ui, seen: &Seen, sight: Option<Sight>, session: &Session, registry: &Registry) -> bool {
     rows::heading(ui, &session.name_of(Selection::Object(seen.object.index), registry));
     let d = seen.model.declaration;
-    let author = if d.author.is_empty() { String::new() } else { format!(" · {}", d.author) };
-    theme::note(ui, format!("{}{author}", d.name));
+    theme::note(ui, facts([d.name, d.author]));
     if seen.model.interpreted {
         theme::note(ui, "The CPU interprets the WGSL of this model.");
     }

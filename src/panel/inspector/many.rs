@@ -1,15 +1,20 @@
 //! The properties that several lights and objects have in common. A dash stands where their values differ; what is set
 //! here is set in all.
 
-use super::part::{section, type_knob};
+use super::{
+    material::group_of_knobs,
+    part::{section, type_knob},
+};
 use crate::{
     panel::{
         chooser, keys,
         knob::{self, Amount, Caption},
+        lesson::point,
         prelude::*,
         state::Effect,
     },
     parameter::{Parameter, Value},
+    reflection::{ModelEntry, ungrouped},
     scene::{Field, Key, Light, Object, limits, part::Fields as _, rows::Variable},
     text::capitalised,
 };
@@ -86,11 +91,36 @@ enum What {
     Type,
 }
 
+/// Values under the heading of their group; without a name, those in no group.
+struct Group {
+    name: &'static str,
+    values: Vec<Shared>,
+}
+
+impl Group {
+    /// Values in no group.
+    fn none(values: Vec<Shared>) -> Vec<Self> {
+        vec![Self { name: "", values }]
+    }
+
+    /// Number of its parameters that some part does not leave at the default.
+    fn changed(&self) -> usize {
+        let is_default = |one: &&Shared| match one.what {
+            What::Parameter(p) => one.common.is_one() && one.common.value == p.default_value(),
+            _ => true,
+        };
+        self.values.len() - self.values.iter().filter(is_default).count()
+    }
+}
+
+/// Sections with their titles, which are those of a single part.
+type Sections = Vec<(&'static str, Vec<Group>)>;
+
 /// What several parts are, and the sections of the values that all of them have.
 struct All {
     parts: Vec<Part>,
     name: String,
-    sections: Vec<(&'static str, Vec<Shared>)>,
+    sections: Sections,
 }
 
 pub(super) fn many(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -101,13 +131,8 @@ pub(super) fn many(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let id = Id::new("what several have in common");
     let all = kept::of_key(ui.ctx(), id, key, || Arc::new(All::of(session, registry)));
     all.header(ui, session, context);
-    for (title, shared) in &all.sections {
-        section(ui, title, true, |ui| {
-            for one in shared {
-                let edit = all.knob(ui, one, session, registry);
-                context.edits(edit);
-            }
-        });
+    for (title, groups) in &all.sections {
+        section(ui, title, true, |ui| groups.iter().for_each(|group| all.group(ui, group, context)));
     }
 }
 
@@ -127,7 +152,7 @@ impl All {
                     let common = Common::of(all.into_iter().map(Value::from))?;
                     Some(Shared { key: Object::position.into(), what: What::Field(Object::position), common })
                 });
-                vec![("Position", field.into_iter().collect())]
+                vec![("Position", Group::none(field.into_iter().collect()))]
             }
         };
         Self { parts, name: session.name_of_group(), sections }
@@ -155,8 +180,24 @@ impl All {
         });
         let text = "What is changed here changes all of them; – stands where they differ.";
         ui.add(Label::new(theme::small(ui, text)).wrap());
-        if self.sections.iter().all(|(_, shared)| shared.is_empty()) {
+        if self.sections.iter().flat_map(|(_, groups)| groups).all(|group| group.values.is_empty()) {
             ui.add(Label::new(theme::small(ui, "They have nothing in common that can be set.")).wrap());
+        }
+    }
+
+    /// The knobs of a group, under its heading if it has one.
+    fn group(&self, ui: &mut Ui, group: &Group, context: &mut PanelContext<'_>) {
+        let (session, registry) = (context.session(), context.registry());
+        let sought = group.values.iter().any(|one| point::at_knob(ui, one.key.name()));
+        let mut knobs = |ui: &mut Ui| {
+            for one in &group.values {
+                let edit = self.knob(ui, one, session, registry);
+                context.edits(edit);
+            }
+        };
+        match group.name {
+            "" => knobs(ui),
+            name => group_of_knobs(ui, name, group.changed(), sought, knobs),
         }
     }
 
@@ -261,7 +302,7 @@ fn parameters<T: Copy>(
     all.filter_map(shared).collect()
 }
 
-fn of_objects(objects: &[&Object], scene: &Scene, registry: &Registry) -> Vec<(&'static str, Vec<Shared>)> {
+fn of_objects(objects: &[&Object], scene: &Scene, registry: &Registry) -> Sections {
     let mut models: Vec<&str> = objects.iter().map(|object| scene.model_of(object)).collect();
     let common = Common::of(models.iter().map(|id| Value::from((*id).to_owned())));
     let model =
@@ -269,12 +310,7 @@ fn of_objects(objects: &[&Object], scene: &Scene, registry: &Registry) -> Vec<(&
     models.sort_unstable();
     models.dedup();
     let models: Option<Vec<_>> = models.into_iter().map(|id| registry.model(id)).collect();
-    let material = models.and_then(|models| {
-        let (first, rest) = models.split_first()?;
-        let in_all = |p: &&'static Parameter| rest.iter().all(|model| model.parameter(p.name).is_some());
-        let all = first.parameters.iter().filter(in_all);
-        Some(parameters(all, objects, Key::Material, |object, p| object.material.get(p)))
-    });
+    let material = models.map(|models| of_material(&models, objects));
     let object_type = Common::of(objects.iter().map(|o| Value::from(o.object_type.clone())));
     let shape = object_type.as_ref().and_then(|common| registry.shape(common.word()?));
     let shape = shape
@@ -287,13 +323,28 @@ fn of_objects(objects: &[&Object], scene: &Scene, registry: &Registry) -> Vec<(&
         .chain(shape.into_iter().flatten())
         .chain(fields);
     vec![
-        ("Reflection", model.into_iter().collect()),
+        ("Reflection", Group::none(model.into_iter().collect())),
         ("Material", material.unwrap_or_default()),
-        ("Shape and position", place.collect()),
+        ("Shape and position", Group::none(place.collect())),
     ]
 }
 
-fn of_lights(lights: &[&Light], registry: &Registry) -> Vec<(&'static str, Vec<Shared>)> {
+/// The parameters that all of these models have, in the groups of the first.
+fn of_material(models: &[&ModelEntry], objects: &[&Object]) -> Vec<Group> {
+    let Some((first, rest)) = models.split_first() else { return Vec::new() };
+    let in_all = |p: &&'static Parameter| rest.iter().all(|model| model.parameter(p.name).is_some());
+    let values = |all: &mut dyn Iterator<Item = &'static Parameter>| {
+        parameters(all.filter(in_all), objects, Key::Material, |object, p| object.material.get(p))
+    };
+    let all = first.parameters;
+    let mut groups = Group::none(values(&mut ungrouped(first.groups, all)));
+    let named =
+        first.groups.iter().map(|group| Group { name: group.name, values: values(&mut group.of(all)) });
+    groups.extend(named.filter(|group| !group.values.is_empty()));
+    groups
+}
+
+fn of_lights(lights: &[&Light], registry: &Registry) -> Sections {
     let light_type = Common::of(lights.iter().map(|light| Value::from(light.light_type.clone())));
     let entry = light_type.as_ref().and_then(|common| registry.light(common.word()?));
     let of = |of: Field| field(of, lights.iter().map(|light| light.value(of.into())));
@@ -320,7 +371,7 @@ fn of_lights(lights: &[&Light], registry: &Registry) -> Vec<(&'static str, Vec<S
         .chain(fields)
         .chain(own.into_iter().flatten());
     let place = [of(Light::position), of(Light::direction)].into_iter().flatten();
-    vec![("Light", first.collect()), ("Position", place.collect())]
+    vec![("Light", Group::none(first.collect())), ("Position", Group::none(place.collect()))]
 }
 
 /// The choice of a reflection model for all, or of the scene's. Returns its id, or `None` for that of the scene.

@@ -56,11 +56,8 @@ impl Shown<'_> {
                 continue;
             }
             let changed = all.iter().filter(|p| self.differs(p)).count();
-            CollapsingHeader::new(heading(ui, group.name, changed))
-                .id_salt(("group", group.name))
-                .default_open(true)
-                .open(all.iter().any(|p| point::at_knob(ui, p.name)).then_some(true))
-                .show_unindented(ui, |ui| shown.into_iter().for_each(|p| knob(ui, p)));
+            let sought = all.iter().any(|p| point::at_knob(ui, p.name));
+            group_of_knobs(ui, group.name, changed, sought, |ui| shown.into_iter().for_each(|p| knob(ui, p)));
         }
         if model.parameters.is_empty() {
             ui.label(theme::small(ui, "This model has no knobs."));
@@ -133,6 +130,21 @@ impl Shown<'_> {
             });
         });
     }
+}
+
+/// A group of knobs below its heading, which folds it; unfolded if one of them is `sought`.
+pub(super) fn group_of_knobs(
+    ui: &mut Ui,
+    name: &'static str,
+    changed: usize,
+    sought: bool,
+    add: impl FnOnce(&mut Ui),
+) {
+    CollapsingHeader::new(heading(ui, name, changed))
+        .id_salt(("group", name))
+        .default_open(true)
+        .open(sought.then_some(true))
+        .show_unindented(ui, add);
 }
 
 /// The heading of a group: its name, and how many of its parameters differ from their defaults.

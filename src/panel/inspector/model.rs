@@ -14,6 +14,7 @@ use crate::{
     reflection::ModelEntry,
     scene::shines_from_everywhere,
     shading::ShadingEntry,
+    text::facts,
 };
 
 /// The name of a model; the whole story is the tooltip.
@@ -149,8 +150,7 @@ pub(in crate::panel) fn stage(ui: &mut Ui, shading: &ShadingEntry) {
             ui.spacing_mut().item_spacing.y = 1.0;
             ui.label(theme::strong(ui, format!("computed {}", d.stage.phrase())));
             // Those of other crates need not name one.
-            let author = if d.author.is_empty() { String::new() } else { format!(" · {}", d.author) };
-            ui.label(theme::small(ui, format!("{} shading{author}", d.name)));
+            ui.label(theme::small(ui, facts([&format!("{} shading", d.name), d.author])));
         });
     })
     .response

@@ -4,26 +4,25 @@
 //! They are painted as panels are, after the picture: tone mapping and exposure do not touch them, and each line has
 //! a dark outline around a light core, one of which stands out on any picture.
 
-use std::sync::Arc;
-
-use bevy_egui::egui::{Color32, Context, Id, Rect, Ui, Vec2, pos2, vec2};
+use bevy_egui::egui::{Color32, Context, Rect, Ui, Vec2};
 use glam::{Quat, Vec3};
 
 use super::{
     kept,
     state::{Action, Session},
-    together::together,
 };
 use crate::{
     document::Selection,
     light::LightEntry,
     registry::Registry,
-    scene::{Light, Object, Observer, Part, Scene, observer::rotation as look_along, rotation::rotation},
+    scene::{Light, Object, Observer, Scene, observer::rotation as look_along},
 };
 use edge::Outside;
+use frames::{frame, frames};
 use place::{CROWD, SHORT};
 
 mod edge;
+mod frames;
 mod ink;
 mod lens;
 mod outline;
@@ -56,11 +55,6 @@ const OBSERVER_MARK: f32 = 0.4;
 const ALONG: f32 = 0.9;
 /// A mark of the observer with a smaller radius covers nothing, points.
 const SMALL: f32 = 12.0;
-/// Distance of the frame around the selected object from what it frames, points.
-const FRAME: f32 = 7.0;
-
-/// Maximum number of objects that have frames of their own beside the first one.
-const MOST_FRAMES: usize = 64;
 
 /// A picture on the screen.
 #[derive(Clone, Copy)]
@@ -285,68 +279,4 @@ fn observer(ink: &mut Ink, observer: &Observer, selected: bool) {
     ink.path(&[corners[0], corners[1], corners[2], corners[3], corners[0]], colour);
     let top = (corners[2] + corners[3]) * 0.5 + turn * Vec3::Y * half * 0.5;
     ink.path(&[corners[3], top, corners[2]], colour);
-}
-
-/// A frame around the selected object as the camera sees it: its corners, so that nothing of the object is covered.
-fn frame(ui: &Ui, ink: &mut Ink, object: &Object, registry: &Registry) {
-    let Some(shape) = registry.shape(&object.object_type) else { return };
-    // Finer ones have the same outline.
-    let count = shape.tessellation(object.tessellation).min(shape.declaration.default_tessellation);
-    // Only the last one is kept: a drag of a knob makes hundreds.
-    let (id, key) = (Id::new("mesh of what is selected"), shape.key(&object.shape, Some(count)));
-    let make = || shape.mesh(&object.shape, count).positions.into();
-    let mesh: Arc<[Vec3]> = kept::of_key(ui.ctx(), id, key, make);
-    let (lens, turn) = (ink.lens, rotation(object.rotation));
-    let view = lens.rect.shrink(FRAME);
-    let seen = mesh.iter().map(|p| lens.project(object.position + turn * (object.size * *p)));
-    // A part that reaches behind the camera is all around it.
-    let around = match seen.collect::<Option<Vec<_>>>() {
-        Some(points) => Rect::from_points(&points).expand(FRAME),
-        None => view,
-    };
-    corners(ink, around);
-}
-
-/// Frames around the objects that are selected besides the first: one around each, or, if they are many, one around all.
-fn frames(ui: &Ui, ink: &mut Ink, session: &Session, registry: &Registry) {
-    let Some(all) = together(ui.ctx(), session, registry) else { return };
-    let lens = ink.lens;
-    let others = || {
-        let first = Part::from(session.selection);
-        let is_other = move |part: Part| matches!(part, Part::Object(_)) && part != first;
-        all.places().filter(move |(part, ..)| is_other(*part)).map(|(_, at, half)| (at, half))
-    };
-    if others().nth(MOST_FRAMES).is_none() {
-        for (at, half) in others() {
-            let ends = (0..8).map(|k| Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32));
-            let seen = ends.map(|end| lens.project(at + half * (2.0 * end - Vec3::ONE)));
-            if let Some(points) = seen.collect::<Option<Vec<_>>>() {
-                corners(ink, Rect::from_points(&points).expand(FRAME));
-            }
-        }
-        return;
-    }
-    let seen = others().filter_map(|(at, half)| {
-        let points = half.max_element() / lens.metres(at, 1.0);
-        Some(Rect::from_center_size(lens.project(at)?, Vec2::splat(2.0 * points)))
-    });
-    if let Some(around) = seen.reduce(Rect::union) {
-        corners(ink, around.expand(FRAME));
-    }
-}
-
-/// The corners of a frame, as far as it is seen.
-fn corners(ink: &mut Ink, around: Rect) {
-    let view = ink.lens.rect.shrink(FRAME);
-    if !around.intersects(view) {
-        return;
-    }
-    let around = around.intersect(view);
-    let arm = (0.25 * around.size().min_elem()).clamp(6.0, 18.0);
-    for (x, y) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
-        let corner = around.lerp_inside(vec2(x, y));
-        let inward = vec2(1.0 - 2.0 * x, 1.0 - 2.0 * y) * arm;
-        let ends = [pos2(corner.x + inward.x, corner.y), pos2(corner.x, corner.y + inward.y)];
-        ink.line(vec![ends[0], corner, ends[1]], SELECTED);
-    }
 }

@@ -1,7 +1,7 @@
 //! The panel *Materials*: the library of materials as small pictures, found by a search, given to objects by a click or by
 //! dragging.
 
-use std::{path::Path, sync::Mutex, time::Duration};
+use std::{path::PathBuf, sync::Mutex, time::Duration};
 
 use bevy_egui::egui::{LayerId, Order, TextEdit};
 
@@ -17,24 +17,24 @@ use super::{
 use crate::{
     caught::lock,
     library::status::Reloaded,
-    materials::{Broken, Library, Material, Origin, beside},
+    materials::{Library, Material, Origin, beside},
     reference::{meshes::MeshStore, probe::towards},
 };
+use broken::is_named;
 use shelf::Picture;
 
+mod broken;
 mod draft_window;
 mod shelf;
 
 pub(super) use draft_window::{DRAFT, TITLE, show as ask};
 
-/// Size of a picture, and the height of the two lines below it, in points.
+/// Size of a picture, in points.
 const PICTURE: f32 = 76.0;
-const WORDS: f32 = 32.0;
+/// Most lines of a name below its picture.
+const NAME_LINES: usize = 2;
 /// Width of the search field, in points.
 const SEARCH: f32 = 200.0;
-/// Most broken files that are shown, and most mistakes of each.
-const MOST_BROKEN: usize = 40;
-const MOST_MISTAKES: usize = 3;
 
 /// What the list depends on.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +59,11 @@ pub(super) struct MaterialPanel {
     opened: u64,
     focused: bool,
     search: String,
+    /// True if the files that cannot be read are listed.
+    broken_unfolded: bool,
+    /// Number of materials saved so far, and the file of the latest until it is in sight.
+    saved: u64,
+    wanted: Option<PathBuf>,
     /// What was found last, by what was typed and in which list.
     found: Option<(String, Arc<Library>, Arc<Found>)>,
     /// The material that is being dragged.
@@ -71,6 +76,7 @@ impl MaterialPanel {
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let back = !std::mem::replace(&mut self.focused, ui.input(|i| i.focused)) && self.focused;
         self.opened += u64::from(is_new(ui, "materials") || back);
+        self.notice_saved(context.session());
         let library = self.library(ui.ctx(), context);
         self.head(ui, context);
         let Some(library) = library else {
@@ -82,7 +88,7 @@ impl MaterialPanel {
         let broken: Vec<_> = all.broken.iter().filter_map(|i| library.broken.get(*i)).collect();
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_max_width(ui.available_width() - 8.0);
-            self::broken(ui, &broken);
+            broken::broken(ui, &broken, &mut self.broken_unfolded);
             if found.is_empty() {
                 ui.weak("No material has that in its name, description, source or model.");
             }
@@ -98,6 +104,15 @@ impl MaterialPanel {
             }
         });
         self.drag(ui, context);
+    }
+
+    /// Makes sure that a material that was just saved is seen: empties the search, and scrolls to it once it is read.
+    fn notice_saved(&mut self, session: &Session) {
+        let saved = session.materials.saved;
+        if std::mem::replace(&mut self.saved, saved) != saved {
+            self.search.clear();
+            self.wanted.clone_from(&session.materials.latest);
+        }
     }
 
     /// The materials, once they are read.
@@ -153,14 +168,19 @@ impl MaterialPanel {
         });
     }
 
-    /// A material: its picture, its name and its model.
+    /// A material: its picture, its name and its model, and while its shader is being compiled, a word about that.
     fn card(&mut self, ui: &mut Ui, material: &Material, context: &mut PanelContext<'_>) {
         let palette = Palette::here(ui);
-        let size = vec2(PICTURE, PICTURE + WORDS);
+        let words = 4.0 + (NAME_LINES + 1) as f32 * ui.text_style_height(&TextStyle::Small);
+        let size = vec2(PICTURE, PICTURE + words);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         theme::says(&response, WidgetType::Button, format!("Material: {}", material.name));
-        if response.gained_focus() {
+        let is_wanted = matches!(&material.origin, Origin::File(path) if self.wanted.as_ref() == Some(path));
+        if is_wanted || response.gained_focus() {
             response.scroll_to_me(None);
+        }
+        if is_wanted {
+            self.wanted = None;
         }
         if response.drag_started() {
             self.dragged = Some(material.clone());
@@ -178,13 +198,10 @@ impl MaterialPanel {
         let edge = Stroke::new(if hot { 2.0 } else { 1.0 }, if hot { palette.accent } else { palette.line });
         ui.painter().rect_stroke(place, 2.0, edge, StrokeKind::Inside);
         let model = model_name(material, registry);
-        let mut at = place.left_bottom() + vec2(0.0, 2.0);
-        for (text, ink) in [(material.name.as_str(), palette.text), (model, palette.weak)] {
-            let line = theme::elided(ui, text, TextStyle::Small, ink, PICTURE);
-            let height = line.size().y;
-            ui.painter().galley(at, line, ink);
-            at.y += height;
+        if session.is_compiling(material) {
+            shelf::compiling(ui, place);
         }
+        caption(ui, place.left_bottom() + vec2(0.0, 2.0), &material.name, model);
         theme::tip(response, 320.0, |ui| {
             ui.label(theme::strong(ui, &material.name));
             ui.label(model);
@@ -239,6 +256,16 @@ impl MaterialPanel {
     }
 }
 
+/// The name of a material, whole if it fits into its lines, and its model below.
+fn caption(ui: &Ui, at: Pos2, name: &str, model: &str) {
+    let palette = Palette::here(ui);
+    let name = theme::lines(ui, name, TextStyle::Small, palette.text, (PICTURE, NAME_LINES));
+    let model = theme::elided(ui, model, TextStyle::Small, palette.weak, PICTURE);
+    let below = at + vec2(0.0, name.size().y);
+    ui.painter().galley(at, name, palette.text);
+    ui.painter().galley(below, model, palette.weak);
+}
+
 /// A material and what gets it when it is dropped here.
 fn words(material: &Material, at: Pos2, object: Option<usize>, context: &PanelContext<'_>) -> String {
     let (session, registry) = (context.session(), context.registry());
@@ -285,30 +312,4 @@ fn found(all: &[Material], search: &str, registry: &Registry) -> Vec<usize> {
     leave_out_chance(&mut found);
     found.sort_by_key(|(rank, _)| -rank);
     found.into_iter().map(|(_, i)| i).collect()
-}
-
-/// True if a search may mean a file.
-fn is_named(broken: &Broken, search: &str) -> bool {
-    rank(&file_name(&broken.path), &broken.problems.join(" "), search).is_some()
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-/// The files that are no materials, each with its mistakes.
-fn broken(ui: &mut Ui, all: &[&Broken]) {
-    for broken in all.iter().take(MOST_BROKEN) {
-        let mut text = format!("{} was not read: ", file_name(&broken.path));
-        text += &broken.problems.iter().take(MOST_MISTAKES).cloned().collect::<Vec<_>>().join("; ");
-        let more = broken.problems.len().saturating_sub(MOST_MISTAKES);
-        if more > 0 {
-            text += &format!("; and {}", plural(more, "more mistake"));
-        }
-        let text = RichText::new(text).small().color(Palette::here(ui).error);
-        icon::remark(ui, [14.0, 16.0], Severity::Error, Label::new(text).wrap());
-    }
-    if all.len() > MOST_BROKEN {
-        theme::note(ui, format!("And {} more files were not read.", all.len() - MOST_BROKEN));
-    }
 }

@@ -57,6 +57,16 @@ fn draw(material: &Material, registry: &Registry) -> Result<ColorImage, String> 
     Ok(ColorImage::from_rgb([SIDE as usize; 2], &pixels))
 }
 
+/// Says on a picture that objects have the material, and get its look as soon as the shader is compiled.
+pub(super) fn compiling(ui: &Ui, rect: Rect) {
+    let palette = Palette::here(ui);
+    let words = theme::elided(ui, "compiling…", TextStyle::Small, palette.text, rect.width() - 4.0);
+    let strip = rect.with_min_y(rect.bottom() - words.size().y - 6.0);
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(strip, 2.0, palette.panel.gamma_multiply(0.9));
+    painter.galley(strip.center() - 0.5 * words.size(), words, palette.text);
+}
+
 /// Paints a picture, or says why there is none yet.
 pub(super) fn paint(ui: &Ui, rect: Rect, picture: &Picture) {
     let palette = Palette::here(ui);

@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::{
     Session, Severity, Together,
+    arrange::tidy,
     follow::follow_model,
     parts::{LIGHTS, OBJECTS},
 };
@@ -168,20 +169,20 @@ impl Session {
         if !self.has_room_for(count, LIGHTS) || !self.has_room_for(all.len() - count, OBJECTS) {
             return;
         }
-        let by = self.beside(registry);
+        let by = self.beside(&all, registry);
         let mut names = names::FreeNames::of(&self.document);
         let (mut lights, mut objects, mut originals) = (Vec::new(), Vec::new(), Vec::new());
         for part in &all {
             match *part {
                 Selection::Light(i) => {
                     let mut copy = self.document.lights[i].clone();
-                    copy.position = copy.position.map(|p| p + by);
+                    copy.position = copy.position.map(|p| tidy(p + by));
                     copy.name = copy.name.map(|name| names.next(&name));
                     lights.push(copy);
                 }
                 Selection::Object(i) => {
                     let mut copy = self.document.objects[i].clone();
-                    copy.position += by;
+                    copy.position = tidy(copy.position + by);
                     copy.name = copy.name.map(|name| names.next(&name));
                     copy.repeat = Repetition::None;
                     originals.extend(self.document.object_id(i));
@@ -209,9 +210,13 @@ impl Session {
         }
     }
 
-    /// The step from what is selected to its copies: that of the first alone, as far as all stay in the room.
-    fn beside(&self, registry: &Registry) -> Vec3 {
+    /// The step from what is selected to its copies; if there is no place for all, that of the first alone, as far as
+    /// all stay in the room.
+    fn beside(&self, all: &[Selection], registry: &Registry) -> Vec3 {
         let stand = self.stand(registry);
+        if let Some(by) = stand.step_of(all) {
+            return by;
+        }
         let (from, to) = match self.selection {
             Selection::Light(i) => {
                 let position = self.document.lights.get(i).and_then(|light| light.position);

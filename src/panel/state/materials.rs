@@ -1,8 +1,10 @@
 //! The library of materials in the window: materials for objects, and the material of an object for the library.
 
+use std::path::PathBuf;
+
 use super::{Effect, Session, Severity, follow::follow_model};
 use crate::{
-    document::{Edit, Selection},
+    document::{Edit, Revision, Selection},
     materials::{Material, Origin},
     parameter::{Parameter, Value, Values},
     registry::Registry,
@@ -37,6 +39,18 @@ pub struct Materials {
     pub draft: Option<Box<Material>>,
     /// Number of materials saved: the list is read again after each.
     pub saved: u64,
+    /// The file of the one that was saved last.
+    pub latest: Option<PathBuf>,
+    /// The material that objects got last, and the revision of the document in which they have it.
+    pub given: Option<(Box<Material>, Revision)>,
+}
+
+impl Materials {
+    /// Notes that a material was saved to a file.
+    pub fn was_saved(&mut self, path: PathBuf) {
+        self.saved += 1;
+        self.latest = Some(path);
+    }
 }
 
 impl Session {
@@ -56,6 +70,14 @@ impl Session {
             }
             MaterialCommand::Cancel => self.materials.draft = None,
         }
+    }
+
+    /// True if objects just got this material, and the picture does not show it yet: its shader is being compiled.
+    #[must_use]
+    pub fn is_compiling(&self, material: &Material) -> bool {
+        let is_it =
+            |(given, at): &(Box<Material>, Revision)| *at == self.document.revision() && **given == *material;
+        self.facts.compiling && self.materials.given.as_ref().is_some_and(is_it)
     }
 
     fn ask_material(&mut self, registry: &Registry) {
@@ -140,6 +162,7 @@ impl Session {
             self.model_slots.take(id);
             follow_model(self, registry);
         }
+        self.materials.given = Some((Box::new(material.clone()), self.document.revision()));
         self.messages.offer_undo(format!("{name} for {who}{news}"), self.last_step());
     }
 

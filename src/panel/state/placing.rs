@@ -20,6 +20,7 @@ use block::Block;
 
 mod block;
 mod lamp;
+mod several;
 
 /// Free space around a light, and between an object and the camera, in metres.
 const AIR: f32 = 0.3;

@@ -112,6 +112,8 @@ pub struct LiveShaders {
     rounds: u64,
     /// True if an object waits for a shader that is tried for the first time.
     awaited: bool,
+    /// True if a frame says that a shader is awaited before the next one makes it.
+    announces: bool,
     /// Composed texts that were tried successfully in this frame.
     approved: HashSet<String>,
     /// Changed files that no shader uses: they are tried separately.
@@ -179,6 +181,18 @@ impl LiveShaders {
             && self.shaders.values().all(|live| live.refused.is_none())
             && self.library.unusable().next().is_none()
             && self.unused_problems.is_empty()
+    }
+
+    /// Makes no shader for an object that shows another one before the frame after it was asked for: a window stands
+    /// still while the driver compiles it, and says so first.
+    pub fn announce(&mut self) {
+        self.announces = true;
+    }
+
+    /// True if a shader is not made yet, and is announced before it is.
+    pub(super) fn is_announced(&self, parts: Parts) -> bool {
+        let is_made = |live: &Live| live.declared == parts.0.declared();
+        self.announces && !self.shaders.get(&key(parts)).is_some_and(is_made)
     }
 
     /// Moves the reading of custom models to a separate thread, which calls `wake`.

@@ -209,6 +209,78 @@ fn copies_of_neighbours_leave_each_other_room() {
     touches_nothing("copy", &session, 1, &registry);
 }
 
+/// Twelve objects in columns and rows at these distances, and others, with a camera.
+fn twelve(start: Vec3, apart: Vec3, others: Vec<Object>, eye: Vec3, ahead: Vec3) -> Session {
+    let object = |i: usize| Object {
+        position: start + apart * Vec3::new((i % 6) as f32, (i / 6) as f32, 0.0),
+        size: 0.5,
+        ..Object::default()
+    };
+    let objects = (0..12).map(object).chain(others).collect();
+    let mut session = Session::new(Scene { objects, ..Scene::default() });
+    session.facts.eye = eye;
+    session.facts.camera = Quat::from_mat3(&Mat3::look_to_rh(ahead, Vec3::Y).transpose());
+    session
+}
+
+/// Duplicates the twelve objects, whose copies must keep their formation and stand in nothing. Returns the step to the
+/// copies, and the extents of the originals, as the camera sees them.
+fn step_of_twelve(what: &str, mut session: Session, registry: &Registry) -> [Vec3; 2] {
+    let first = session.document.objects.len();
+    let all = (0..12).map(Selection::Object).collect();
+    session.apply(Action::SelectEach(all, false), registry);
+    session.apply(Action::Duplicate(Selection::Object(0)), registry);
+    let objects = &session.document.objects;
+    assert_eq!(objects.len(), first + 12, "{what}");
+    let by = objects[first].position - objects[0].position;
+    for (i, (copy, original)) in objects[first..].iter().zip(objects).enumerate() {
+        assert!(copy.position.distance(original.position + by) < 1e-3, "{what}: {i} leaves the formation");
+        assert!(session.document.scene_size.contains(copy.position), "{what}: {i} is outside");
+        for (k, other) in objects[..first].iter().enumerate() {
+            let apart =
+                copy.position.distance(other.position) - radius(copy, registry) - radius(other, registry);
+            assert!(apart > -1e-3, "{what}: the copy of {i} is in {k} by {} m", -apart);
+        }
+    }
+    let to_camera = session.facts.camera.inverse();
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for object in &objects[..12] {
+        let seen = to_camera * object.position;
+        (low, high) = (low.min(seen), high.max(seen));
+    }
+    [to_camera * by, high - low + objects[0].size]
+}
+
+#[test]
+fn copies_of_several_stand_beside_all_of_them_at_the_same_depth() {
+    let registry = Registry::builtin();
+    let (start, apart) = (Vec3::new(3.5, 4.7, 5.0), Vec3::splat(0.6));
+    let front = (Vec3::new(5.0, 5.0, 9.9), Vec3::NEG_Z);
+    let above = (Vec3::new(9.5, 9.0, 9.0), Vec3::new(-1.0, -0.9, -0.9).normalize());
+    let block = Object { position: Vec3::new(5.0, 6.7, 5.0), size: 0.8, ..Object::default() };
+    for (what, others, (eye, ahead)) in [
+        ("from the front", vec![], front),
+        ("from above", vec![], above),
+        ("with an object in the way", vec![block], front),
+    ] {
+        let [by, extent] = step_of_twelve(what, twelve(start, apart, others, eye, ahead), &registry);
+        assert!(by.z.abs() < 0.02, "{what}: {by} leads to another depth");
+        // As a whole: not between them.
+        assert!(
+            by.x.abs() > extent.x || by.y.abs() > extent.y,
+            "{what}: {by}, and they extend over {extent}"
+        );
+    }
+}
+
+#[test]
+fn copies_of_several_that_fill_the_room_stand_where_nothing_is() {
+    let registry = Registry::builtin();
+    let (start, apart) = (Vec3::new(0.9, 1.0, 5.0), Vec3::new(1.6, 8.0, 1.0));
+    let session = twelve(start, apart, Vec::new(), Vec3::new(5.0, 5.0, 9.9), Vec3::NEG_Z);
+    step_of_twelve("a wall of them", session, &registry);
+}
+
 #[test]
 fn new_lights_stand_free_and_in_view() {
     let registry = Registry::builtin();

@@ -1,5 +1,6 @@
 //! Models and shading models are swapped between two frames, and no frame lacks the object.
 
+use bevy::ecs::query::With;
 use glam::Vec3;
 use lights_camera_models::{
     optics::colour::BACKGROUND,
@@ -8,7 +9,9 @@ use lights_camera_models::{
     render::{
         capture::gpu::{GpuRenderer, Output},
         entities::SceneEntities,
+        live::LiveShaders,
         parts::{LightColour, SceneLight, SceneObject, Surface},
+        swap::AwaitsShader,
     },
     scene::{Light, Object, Scene},
     shape::{Cube, Sphere, Torus},
@@ -77,6 +80,35 @@ fn a_scene_that_outgrows_its_tables_is_right_in_the_next_frame() {
     assert!(frame(&mut renderer) == expected_many, "the frame after the growth is another");
     renderer.set_scene(few);
     assert!(frame(&mut renderer) == expected_few, "the frame after the return is another");
+}
+
+#[test]
+fn a_frame_that_says_that_a_shader_is_awaited_comes_before_the_one_that_makes_it() {
+    let scene = close_up("sphere", "point");
+    let other = choose(&scene, ("ward", "phong"), false);
+    let mut renderer = renderer();
+    renderer.set_scene(scene.clone());
+    renderer.settle().expect("the GPU draws");
+    let before = renderer.read_rgb8().expect("the picture can be read");
+    let waiting = |renderer: &mut GpuRenderer| {
+        let world = renderer.app().world_mut();
+        let mut waiting = world.query_filtered::<(), With<AwaitsShader>>();
+        waiting.iter(world).count()
+    };
+    renderer.app().world_mut().resource_mut::<LiveShaders>().announce();
+    renderer.set_scene(other.clone());
+    assert!(frame(&mut renderer) == before, "the picture keeps what it showed");
+    assert_eq!(waiting(&mut renderer), 1);
+    renderer.step();
+    assert_eq!(waiting(&mut renderer), 0);
+    renderer.settle().expect("the GPU draws");
+    let after = renderer.read_rgb8().expect("the picture can be read");
+    assert!(after != before);
+    // Shaders that are made need no announcement.
+    renderer.set_scene(scene);
+    assert!(frame(&mut renderer) == before);
+    renderer.set_scene(other);
+    assert!(frame(&mut renderer) == after);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::{fs, thread::sleep, time::Duration};
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
 use glam::Vec3;
 use lights_camera_models::{
     document::Selection,
@@ -211,7 +211,7 @@ fn the_material_of_an_object_is_saved_listed_at_once_and_replaces_none_unasked()
     let Effect::SaveMaterial { material, overwrite: false } = effect else { panic!("{effect:?}") };
     let own = folder.path().join("materials");
     let path = materials::save(&material, &own, &bench.registry).expect("written");
-    bench.session.materials.saved += 1;
+    bench.session.materials.was_saved(path.clone());
     wait_for(&mut bench, "Material: Shiny red");
     let library = materials::Library::read(Some(&own), &bench.registry);
     assert_eq!(library.materials[0].material, values);
@@ -244,4 +244,126 @@ fn files_that_are_no_materials_are_listed_with_what_is_wrong() {
     bench.click("Read again");
     wait_for(&mut bench, "bad.json was not read: 1:38: reflection_model is \"fong\"");
     assert!(bench.find("Material: Gold").is_some(), "it hides no other");
+}
+
+/// Files of the user with these names, each of Phong, read by the panel.
+fn own(bench: &mut Bench, folder: &tempfile::TempDir, names: &[&str]) {
+    let own = folder.path().join("materials");
+    fs::create_dir_all(&own).expect("made");
+    for (i, name) in names.iter().enumerate() {
+        let material = Material {
+            name: (*name).to_owned(),
+            description: None,
+            source: None,
+            reflection_model: "phong".to_owned(),
+            material: Values::default(),
+            origin: Origin::Preset,
+        };
+        let text = materials::to_json(&material, &bench.registry);
+        fs::write(own.join(format!("own_{i}.json")), text).expect("written");
+    }
+    bench.click("Read again");
+    wait_for(bench, &format!("Material: {}", names[0]));
+}
+
+#[test]
+fn many_broken_files_take_one_line_which_unfolds_and_leave_the_materials_their_place() {
+    let (mut bench, folder) = bench();
+    own(&mut bench, &folder, &["Apple"]);
+    let top = |bench: &Bench| bench.find("Material: Apple").expect("it is listed").rect.top();
+    let before = top(&bench);
+    let text = r#"{ "name": "Bad", "reflection_model": "fong", "material": {} }"#;
+    for i in 0..5 {
+        fs::write(folder.path().join(format!("materials/bad{i}.json")), text).expect("written");
+    }
+    bench.click("Read again");
+    wait_for(&mut bench, "5 files cannot be read");
+    assert!(!bench.says("bad3.json"));
+    assert!(top(&bench) - before < 32.0, "the materials moved from {before} to {}", top(&bench));
+    let line = bench.find("5 files cannot be read").expect("a line").rect;
+    bench.hover(line.center());
+    assert!(bench.says("bad3.json was not read: 1:38"), "the tooltip lists them");
+    bench.click("5 files cannot be read");
+    assert!(bench.says("bad3.json was not read: 1:38"));
+    assert!(top(&bench) - before < 160.0, "the list is scrolled");
+    bench.click("5 files cannot be read");
+    bench.hover(Pos2::ZERO);
+    assert!(!bench.says("bad3.json"));
+}
+
+#[test]
+fn names_have_two_lines_and_longer_ones_are_whole_in_the_tooltip() {
+    let long = "A very long name of a material that nobody can read on so small a tile";
+    let two = "Gold of old clocks";
+    for scale in [100, 150] {
+        let (mut bench, folder) = bench();
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        own(&mut bench, &folder, &[two, long]);
+        for (name, is_whole) in [(two, true), (long, false)] {
+            let tile = bench.find(&format!("Material: {name}")).expect("listed").rect;
+            let galleys: Vec<_> = bench
+                .shapes()
+                .into_iter()
+                .filter_map(|shape| match shape {
+                    Shape::Text(text) if text.galley.text() == name && tile.contains(text.pos) => Some(text),
+                    _ => None,
+                })
+                .collect();
+            let [text] = &galleys[..] else { panic!("{name} at {scale} %: {}", galleys.len()) };
+            assert_eq!((text.galley.rows.len(), text.galley.elided), (2, !is_whole), "{name} at {scale} %");
+            assert!(tile.expand(0.5).contains_rect(text.visual_bounding_rect()), "{name} at {scale} %");
+        }
+        let tile = bench.find(&format!("Material: {long}")).expect("listed").rect;
+        bench.hover(tile.center());
+        let whole = bench.shapes().into_iter().any(
+            |shape| matches!(shape, Shape::Text(text) if text.galley.text() == long && !text.galley.elided),
+        );
+        assert!(whole, "the tooltip at {scale} %");
+    }
+}
+
+#[test]
+fn the_tile_says_that_the_shader_is_compiled_until_the_picture_shows_the_material() {
+    let (mut bench, _folder) = bench();
+    bench.type_into("Search materials", "gold");
+    let says = |bench: &mut Bench| {
+        let tile = bench.find("Material: Gold").expect("listed").rect;
+        bench.texts_in_sight().iter().any(|(text, at)| text == "compiling…" && tile.contains_rect(*at))
+    };
+    bench.session.facts.compiling = true;
+    bench.settle();
+    assert!(!says(&mut bench), "another shader");
+    bench.click("Material: Gold");
+    assert!(says(&mut bench));
+    bench.session.facts.compiling = false;
+    bench.settle();
+    assert!(!says(&mut bench));
+    // A later change is not that of the material.
+    bench.apply(Action::ChooseModel("ward".to_owned()));
+    bench.session.facts.compiling = true;
+    bench.settle();
+    assert!(!says(&mut bench));
+}
+
+#[test]
+fn a_material_that_was_just_saved_is_in_sight_whatever_was_searched() {
+    let (mut bench, folder) = bench();
+    let many: Vec<_> = (10..90).map(|i| format!("Mine {i}")).collect();
+    own(&mut bench, &folder, &many.iter().map(String::as_str).collect::<Vec<_>>());
+    bench.type_into("Search materials", "gold");
+    let mut material = named("Gold");
+    material.name = "Zebra".to_owned();
+    let path =
+        materials::save(&material, &folder.path().join("materials"), &bench.registry).expect("written");
+    bench.session.materials.was_saved(path);
+    wait_for(&mut bench, "Material: Zebra");
+    // The list is scrolled within a moment.
+    (0..20).for_each(|_| bench.settle());
+    assert!(bench.find("Material: Silver").is_some(), "the search is empty");
+    let seen = bench.texts_in_sight().into_iter().find(|(text, _)| text == "Zebra").expect("painted").1;
+    let panel = bench.find("Search materials").expect("the panel").rect;
+    assert!(seen.top() > panel.bottom() && seen.bottom() < bench.size.y, "{seen:?} below {panel:?}");
+    // A search of the user's stays.
+    bench.type_into("Search materials", "silver");
+    assert!(bench.find("Material: Zebra").is_none());
 }

@@ -1,14 +1,17 @@
 //! Several parts at once, as a user selects and changes them: in the list, in the picture and in the properties.
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2, vec2};
+use bevy_egui::egui::{
+    Color32, Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, Vec2, epaint::ColorMode, pos2, vec2,
+};
 use glam::{Quat, Vec3};
 use lights_camera_models::{
-    document::Selection,
+    document::{Edit, Selection},
     panel::{
         marks::Lens,
         state::{Action, Alike, CompareCommand, HandleChange, HandleMode, Session, ViewChange},
     },
-    scene::{Light, Object, Scene, comparison::Layout},
+    parameter::{METALLIC, Value},
+    scene::{Light, Object, Part, Scene, comparison::Layout},
 };
 
 use crate::window::panels::Bench;
@@ -158,6 +161,67 @@ fn the_properties_of_several_show_a_dash_and_set_all() {
         bench.apply(Action::Undo);
         bench.apply(Action::Undo);
         assert_eq!(positions(&bench), before);
+    }
+}
+
+#[test]
+fn the_material_of_several_has_the_groups_of_its_model() {
+    let mut bench = bench();
+    bench.size = vec2(1800.0, 3000.0);
+    bench.apply(Action::ChooseModel("openpbr".to_owned()));
+    bench.apply(Action::SelectAlike(Alike::Kind));
+    let groups = bench.registry.model("openpbr").expect("built in").groups;
+    assert!(groups.len() > 3, "{groups:?}");
+    let texts = bench.texts_in_sight();
+    let right = bench.area.rect.right();
+    let is_heading = |(text, at): &&(String, Rect), name: &str| text == name && at.left() > right;
+    let height = |name: &str| texts.iter().find(|one| is_heading(one, name)).map(|(_, at)| at.top());
+    let heights: Vec<_> = groups.iter().map(|group| height(group.name)).collect();
+    assert!(heights.iter().all(Option::is_some) && heights.is_sorted(), "{heights:?}");
+    // A heading folds its knobs, and counts those that differ from their defaults.
+    let metal = groups.iter().find(|group| group.parameters.contains(&METALLIC.name)).expect("a group");
+    bench.field(METALLIC.label);
+    let set = Edit::material(Part::Object(1), METALLIC.name, Value::Number(0.5));
+    bench.apply(Action::Edit(set));
+    let heading = format!("{}1 changed", metal.name);
+    assert!(bench.says(&heading), "{:?}", bench.texts());
+    bench.click(&heading);
+    assert!(bench.find(METALLIC.label).is_none());
+}
+
+/// The points of the marks of selection in the picture.
+fn brackets(bench: &mut Bench) -> Vec<Pos2> {
+    let blue = ColorMode::Solid(Color32::from_rgb(0x7c, 0xc8, 0xff));
+    let is_bracket = |shape: Shape| match shape {
+        Shape::Path(path) if path.points.len() == 3 && path.stroke.color == blue => Some(path.points),
+        _ => None,
+    };
+    bench.shapes().into_iter().filter_map(is_bracket).flatten().collect()
+}
+
+#[test]
+fn the_frame_of_one_of_several_is_as_tight_as_that_of_one_alone() {
+    let mut bench = bench();
+    let turned = Edit::Set {
+        part: Part::Object(3),
+        values: vec![
+            (Object::object_type.into(), Some(Value::from("torus".to_owned()))),
+            (Object::rotation.into(), Some(Vec3::new(30.0, 50.0, 10.0).into())),
+        ],
+        what: None,
+    };
+    bench.apply(Action::Edit(turned));
+    for i in [1, 3] {
+        bench.apply(Action::Select(O(i)));
+        let alone = brackets(&mut bench);
+        assert_eq!(alone.len(), 12, "four corners of three points: {alone:?}");
+        bench.apply(Action::SelectEach(vec![O(0), O(i)], false));
+        let both = brackets(&mut bench);
+        assert_eq!(both.len(), 24, "{both:?}");
+        for at in alone {
+            let nearest = both.iter().map(|p| p.distance(at)).fold(f32::INFINITY, f32::min);
+            assert!(nearest < 1.5, "object {i}: {at:?} is {nearest} points from the frames of both");
+        }
     }
 }
 

@@ -32,6 +32,29 @@ impl Block {
         }
     }
 
+    /// A ball.
+    pub(super) fn ball(centre: Vec3, radius: f32) -> Self {
+        Self { centre, axes: Vec3::AXES, half: [radius; 3], radius }
+    }
+
+    /// The box with edges along these directions around blocks.
+    pub(super) fn around(all: &[Self], axes: [Vec3; 3]) -> Self {
+        let ends = axes.map(|axis| [Self::end(all, axis), Self::end(all, -axis)]);
+        let centre = axes.into_iter().zip(ends).map(|(axis, [high, low])| 0.5 * (high - low) * axis).sum();
+        let half = ends.map(|[high, low]| 0.5 * (high + low));
+        Self { centre, axes, half, radius: Vec3::from(half).length() }
+    }
+
+    /// The coordinate along a unit direction at which the last of these blocks ends.
+    pub(super) fn end(all: &[Self], way: Vec3) -> f32 {
+        all.iter().map(|block| block.centre.dot(way) + block.reach(way)).fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    /// The block in another size.
+    pub(super) fn scaled(self, factor: f32) -> Self {
+        Self { half: self.half.map(|half| factor * half), radius: factor * self.radius, ..self }
+    }
+
     /// The block moved to another centre.
     pub(super) fn at(self, centre: Vec3) -> Self {
         Self { centre, ..self }
@@ -61,6 +84,17 @@ impl Block {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_box_around_blocks_ends_where_they_do() {
+        let balls = [Block::ball(Vec3::new(1.0, 2.0, 3.0), 0.5), Block::ball(Vec3::new(4.0, 2.5, 3.0), 1.0)];
+        let around = Block::around(&balls, Vec3::AXES);
+        assert!(around.centre.distance(Vec3::new(2.75, 2.5, 3.0)) < 1e-6, "{around:?}");
+        let reaches = Vec3::AXES.map(|axis| around.reach(axis));
+        assert!(Vec3::from(reaches).distance(Vec3::new(2.25, 1.0, 1.0)) < 1e-6, "{around:?}");
+        assert!((Block::end(&balls, Vec3::NEG_X) + 0.5).abs() < 1e-6);
+        assert!((around.scaled(0.5).reach(Vec3::X) - 1.125).abs() < 1e-6);
+    }
 
     #[test]
     fn blocks_touch_where_the_shapes_do() {
