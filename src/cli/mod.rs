@@ -362,9 +362,20 @@ fn above_zero(text: &str) -> Result<u32, String> {
 
 /// Parser of sizes: width and height.
 fn sides(text: &str) -> Result<[u32; 2], String> {
-    let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=MAX_SIDE).contains(n));
+    sides_up_to(MAX_SIDE, text)
+}
+
+/// The size of a window.
+fn window_sides(text: &str) -> Result<[u32; 2], String> {
+    /// A window of 16384×16384 takes 5 GB, and software Vulkan does not draw it within the time that a driver gets.
+    const MAX_WINDOW: u32 = 8192;
+    sides_up_to(MAX_WINDOW, text)
+}
+
+fn sides_up_to(most: u32, text: &str) -> Result<[u32; 2], String> {
+    let side = |s: &str| s.trim().parse().ok().filter(|n| (1..=most).contains(n));
     let both = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
-    both.ok_or_else(|| format!("it must be WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE}, e.g. 800x600"))
+    both.ok_or_else(|| format!("it must be WIDTHxHEIGHT in pixels, each from 1 to {most}, e.g. 800x600"))
 }
 
 /// The result of a command.
@@ -801,5 +812,7 @@ mod tests {
         for wrong in ["800", "0x5", "5x-1", "x", "axb", "99999x1", ""] {
             assert!(sides(wrong).is_err(), "{wrong}");
         }
+        assert!(sides("16384x1").is_ok() && window_sides("8192x8192").is_ok());
+        assert!(window_sides("8193x1").is_err_and(|why| why.contains("each from 1 to 8192")));
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory as _};
 
-use super::{Outcome, above_zero, outputs, sides};
+use super::{Outcome, above_zero, outputs, window_sides};
 use crate::{failure::Failure, files::Shown as _, text::nearest};
 
 #[derive(Args, Debug)]
@@ -27,7 +27,7 @@ pub(super) struct Arguments {
     #[arg(long, requires = "capture")]
     pub(super) no_scene: bool,
     /// Size of the window in pixels
-    #[arg(long, value_name = "WxH", value_parser = sides)]
+    #[arg(long, value_name = "WxH", value_parser = window_sides)]
     pub(super) size: Option<[u32; 2]>,
 }
 

@@ -7,6 +7,7 @@ use std::{
 
 use bevy::{
     asset::RenderAssetUsages,
+    ecs::{lifecycle::HookContext, world::DeferredWorld},
     mesh::{Indices, MeshVertexAttribute, PrimitiveTopology},
     prelude::*,
 };
@@ -35,6 +36,9 @@ pub const WINDOW_BUDGET: u64 = 384 << 20;
 /// Maximum size of meshes on the GPU at once when nobody waits for the next frame, in bytes. If exceeded,
 /// shapes are drawn in batches: the same picture, later.
 pub const BATCH: u64 = 32 << 20;
+/// Maximum number of triangles that a window draws in one frame: on software Vulkan, where two cores draw 20 million in a
+/// second, a window with more would not answer.
+pub const WINDOW_TRIANGLES: u64 = 1 << 27;
 /// Maximum number and size of unused meshes kept in case they are needed again.
 const SPARE: usize = 16;
 const SPARE_BYTES: u64 = 64 << 20;
@@ -51,6 +55,11 @@ with_defaults! {
         bytes: u64 = 0,
         together: u64 = WINDOW_BUDGET,
         alone: u64 = MESH_BUDGET,
+        /// The triangles of all objects in all views, and their maximum.
+        triangles: u64 = 0,
+        most_triangles: u64 = WINDOW_TRIANGLES,
+        /// True if objects were omitted because of that maximum.
+        crowded: bool = false,
         /// Meshes that did not fit, and the objects that are not drawn without them.
         refused: HashSet<(MeshKey, Vertices)> = HashSet::new(),
         /// The total size that the last rejected mesh would have reached, in bytes.
@@ -82,13 +91,35 @@ impl Need {
 struct Known {
     mesh: Handle<Mesh>,
     bytes: u64,
+    triangles: u64,
+}
+
+/// The number of triangles of an object in a view, counted in [`ShapeMeshes`] as long as it is drawn.
+#[derive(Component)]
+#[component(immutable, on_insert = count, on_discard = discount)]
+struct Triangles(u64);
+
+fn count(world: DeferredWorld, context: HookContext) {
+    let add = |sum: u64, own: u64| sum + own;
+    update(world, context, add);
+}
+
+fn discount(world: DeferredWorld, context: HookContext) {
+    update(world, context, u64::saturating_sub);
+}
+
+fn update(mut world: DeferredWorld, context: HookContext, with: fn(u64, u64) -> u64) {
+    let Some(own) = world.get::<Triangles>(context.entity).map(|triangles| triangles.0) else { return };
+    if let Some(mut meshes) = world.get_resource_mut::<ShapeMeshes>() {
+        meshes.triangles = with(meshes.triangles, own);
+    }
 }
 
 impl ShapeMeshes {
     /// Limits the meshes to this many bytes together and for a single one, instead of [`WINDOW_BUDGET`] and
-    /// [`MESH_BUDGET`].
+    /// [`MESH_BUDGET`], and no longer limits the triangles: whoever asks for one picture waits for it.
     pub fn limit(&mut self, together: u64, alone: u64) {
-        (self.together, self.alone) = (together, alone);
+        (self.together, self.alone, self.most_triangles) = (together, alone, u64::MAX);
     }
 
     /// The size of all meshes, in bytes.
@@ -126,6 +157,7 @@ impl ShapeMeshes {
         let mut meshes = world.resource_mut::<Self>();
         meshes.refused.clear();
         meshes.omitted.clear();
+        meshes.crowded = false;
     }
 
     /// Builds missing meshes of objects, as long as there is room: those with the highest priority first,
@@ -189,15 +221,32 @@ impl ShapeMeshes {
                     self.refused.insert(key);
                 } else {
                     self.bytes += bytes;
-                    self.known.insert(key, Known { mesh: assets.add(mesh), bytes });
+                    let triangles = mesh.indices().map_or(0, |indices| indices.len() as u64 / 3);
+                    self.known.insert(key, Known { mesh: assets.add(mesh), bytes, triangles });
                 }
             }
         }
     }
 
-    /// The mesh of an object, if it was built.
-    pub(super) fn get(&self, key: MeshKey, vertices: Vertices) -> Option<Handle<Mesh>> {
-        self.known.get(&(key, vertices)).map(|known| known.mesh.clone())
+    /// The mesh of an object, if it was built, and if there is room for its triangles; they count from now on.
+    pub(super) fn put_on(
+        world: &mut World,
+        drawable: Entity,
+        key: MeshKey,
+        vertices: Vertices,
+    ) -> Option<Handle<Mesh>> {
+        let before = world.get::<Triangles>(drawable).map_or(0, |triangles| triangles.0);
+        let mut meshes = world.resource_mut::<Self>();
+        let known = meshes.known.get(&(key, vertices))?;
+        let (mesh, triangles) = (known.mesh.clone(), known.triangles);
+        if meshes.triangles - before + triangles > meshes.most_triangles {
+            meshes.crowded = true;
+            return None;
+        }
+        if triangles != before {
+            world.get_entity_mut(drawable).ok()?.insert(Triangles(triangles));
+        }
+        Some(mesh)
     }
 
     /// Omits an object without a mesh.
@@ -210,7 +259,7 @@ impl ShapeMeshes {
         if !scene_changed && !self.room {
             return Vec::new();
         }
-        self.room = false;
+        (self.room, self.crowded) = (false, false);
         self.refused.clear();
         std::mem::take(&mut self.omitted)
     }
@@ -219,6 +268,14 @@ impl ShapeMeshes {
     #[must_use]
     pub fn problem(&self) -> Option<String> {
         let count = self.refused.len();
+        if count == 0 && self.crowded {
+            return Some(format!(
+                "the objects of this scene have more than the {} million triangles that a window draws: {} {} not drawn; give                  objects a lower tessellation",
+                self.most_triangles / 1_000_000,
+                plural(self.omitted.len(), "object"),
+                if self.omitted.len() == 1 { "is" } else { "are" },
+            ));
+        }
         (count > 0).then(|| {
             format!(
                 "the shapes of this scene need more than the {} MiB of GPU memory that meshes may take: {} {} not drawn; \
@@ -235,7 +292,7 @@ impl ShapeMeshes {
 /// object with a new mesh and the previous material as new, and would not draw it again.
 pub(super) fn take_off(world: &mut World, drawable: Entity) {
     let Ok(mut entity) = world.get_entity_mut(drawable) else { return };
-    entity.remove::<Mesh3d>();
+    entity.remove::<(Mesh3d, Triangles)>();
     detach(&mut entity);
 }
 
@@ -333,7 +390,8 @@ mod tests {
         let made: Vec<_> = (0..9)
             .filter(|i| {
                 let shape = registry.shape("superellipsoid").expect("there is one");
-                meshes.get(shape.key(&shapes[*i].shape, shapes[*i].tessellation), Vertices::Shared).is_some()
+                let key = shape.key(&shapes[*i].shape, shapes[*i].tessellation);
+                meshes.known.contains_key(&(key, Vertices::Shared))
             })
             .collect();
         assert_eq!(made, [0, 6, 7, 8], "the first was there already");
@@ -379,5 +437,41 @@ mod tests {
         assert_eq!(meshes.try_again(false), [object]);
         meshes.make(all(), equal, &registry, &mut assets);
         assert_eq!((meshes.problem(), meshes.known.len()), (None, shapes.len()));
+    }
+
+    #[test]
+    fn objects_with_more_triangles_than_a_window_draws_wait_for_room() {
+        let registry = Registry::builtin();
+        let (mut meshes, mut assets) = (ShapeMeshes::default(), Assets::default());
+        let shape = shapes(1, 8).remove(0);
+        meshes.make(std::iter::once((&shape, Vertices::Shared)), equal, &registry, &mut assets);
+        let entry = registry.shape("superellipsoid").expect("there is one");
+        let key = || entry.key(&shape.shape, shape.tessellation);
+        let one = meshes.known.values().next().expect("it was made").triangles;
+        assert!(one > 0);
+        meshes.most_triangles = 2 * one;
+        let mut world = World::new();
+        world.insert_resource(meshes);
+        let objects = [(); 3].map(|()| world.spawn_empty().id());
+        let put_on = |world: &mut World, i: usize| {
+            let is_there = ShapeMeshes::put_on(world, objects[i], key(), Vertices::Shared).is_some();
+            if !is_there {
+                world.resource_mut::<ShapeMeshes>().leave_out(objects[i]);
+            }
+            is_there
+        };
+        assert!(put_on(&mut world, 0) && put_on(&mut world, 1) && !put_on(&mut world, 2));
+        assert!(put_on(&mut world, 1), "its triangles count once");
+        let problem = world.resource::<ShapeMeshes>().problem().expect("it is full");
+        assert!(
+            problem.contains("million triangles") && problem.contains("1 object is not drawn"),
+            "{problem}"
+        );
+
+        take_off(&mut world, objects[0]);
+        world.despawn(objects[1]);
+        assert_eq!(world.resource::<ShapeMeshes>().triangles, 0);
+        assert_eq!(world.resource_mut::<ShapeMeshes>().try_again(true), [objects[2]]);
+        assert!(put_on(&mut world, 2) && world.resource::<ShapeMeshes>().problem().is_none());
     }
 }

@@ -284,7 +284,7 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) 
     };
     let key = shape.key(&shown.shape, shown.tessellation);
     let vertices = vertices(&now.shading, registry);
-    let Some(mesh) = world.resource::<ShapeMeshes>().get(key, vertices) else {
+    let Some(mesh) = ShapeMeshes::put_on(world, drawable, key, vertices) else {
         take_off(world, drawable);
         world.entity_mut(drawable).insert_if_new(now);
         world.resource_mut::<ShapeMeshes>().leave_out(object);

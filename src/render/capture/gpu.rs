@@ -28,6 +28,7 @@ use thiserror::Error;
 use wgpu::PollError;
 
 use crate::{
+    caught::catch,
     channel::{DebugChannel, Setting},
     optics::TermSelection,
     reference::{Settings, draw_wires},
@@ -55,10 +56,15 @@ use crate::{
 pub enum GpuError {
     /// No Vulkan adapter, not even a software one.
     #[error(
-        "no Vulkan driver found; on Debian and Ubuntu `apt-get install libvulkan1 mesa-vulkan-drivers` installs \
+        "no Vulkan driver found, or no memory to load it; on Debian and Ubuntu `apt-get install libvulkan1 mesa-vulkan-drivers` installs \
          one that needs no GPU, or use `--renderer cpu`, which needs no driver"
     )]
     NoAdapter,
+    /// The driver does not start.
+    #[error(
+        "the graphics driver did not start; it may lack memory; use `--renderer cpu`, which needs no driver"
+    )]
+    NoDevice,
     /// No picture was ready in time.
     #[error(
         "the GPU renderer gave no picture within {limit:?}: it was waiting for {waiting}; use `--renderer cpu`"
@@ -150,13 +156,19 @@ pub fn wgpu_settings() -> WgpuSettings {
 /// drawing a picture.
 pub(super) fn device() -> Result<RenderResources, GpuError> {
     static DEVICE: OnceLock<Option<RenderResources>> = OnceLock::new();
-    DEVICE
-        .get_or_init(|| {
-            find_adapter().ok()?;
-            Some(block_on(initialize_renderer(backends(), None, &wgpu_settings())))
-        })
-        .clone()
-        .ok_or(GpuError::NoAdapter)
+    if DEVICE.get().is_none() {
+        find_adapter()?;
+    }
+    DEVICE.get_or_init(start_device).clone().ok_or(GpuError::NoDevice)
+}
+
+/// The device, unless the driver fails, as with too little memory: Bevy then panics, which is neither shown nor passed on.
+fn start_device() -> Option<RenderResources> {
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| {}));
+    let device = catch(|| block_on(initialize_renderer(backends(), None, &wgpu_settings())));
+    std::panic::set_hook(hook);
+    device.ok()
 }
 
 /// The contents of the target.
