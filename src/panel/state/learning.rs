@@ -148,6 +148,9 @@ impl Session {
                 view.bottom_open = false;
             }
         };
+        if let Some(on) = change.markers {
+            self.view.show_markers = on;
+        }
         if let Some(open) = change.explain {
             tab(open, EXPLAIN_TAB, &mut self.view);
         }
