@@ -190,10 +190,10 @@ mod tests {
             let points = points.map(|(value, angle)| Point { angle, rgb: Vec3::splat(*value) });
             Curve { points: points.collect(), ..curve(false) }
         };
-        sheet.curves = vec![of(&[1.0, 2.0]), of(&[0.5, 1.5e-7, 3.0]), of(&[10.0])];
+        sheet.curves = vec![of(&[1.0, 2.0]), of(&[0.5, 1.5e-7, 3.0]), of(&[12.3456])];
         assert_eq!(longest(&sheet), "1.500 × 10⁻⁷");
         sheet.curves[2].sigma = vec![0.0025];
-        assert_eq!(longest(&sheet), "10.0000 ± 0.0025");
+        assert_eq!(longest(&sheet), "12.3456 ± 0.0025");
     }
 
     #[test]

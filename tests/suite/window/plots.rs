@@ -297,7 +297,7 @@ fn lay_files(bench: &mut Bench, folder: &Path, names: &[String]) {
 #[test]
 fn the_list_stays_where_it_is_while_values_are_read() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut bench = plots("phong", Kind::Brdf);
+    let mut bench = plots("lambert", Kind::Brdf);
     // So many letters that the room for a value decides on the lines of some.
     let names = [16, 18, 20, 22, 24, 26, 28, 30].map(|letters| format!("{}.csv", "a".repeat(letters)));
     lay_files(&mut bench, folder.path(), &names);
