@@ -74,6 +74,11 @@ impl Aside {
             examples_open: false,
         }
     }
+
+    /// The view settings with which a lesson begins, where these are the user's own.
+    pub(super) fn beginning(&self) -> Shown {
+        Shown { show_markers: self.shown.show_markers, ..Shown::of(&View::default()) }
+    }
 }
 
 impl Session {

@@ -1065,6 +1065,8 @@ fn no_marker_of_a_light_covers_the_straw_and_the_own_markers_come_back() {
     bench.apply(Action::View(ViewChange::Markers(false)));
     go(&mut bench, LessonCommand::Open(LessonSource::Shipped(0)));
     assert!(!bench.session.view.show_markers);
+    go(&mut bench, LessonCommand::GoTo(2));
+    assert!(!bench.session.view.show_markers);
 }
 
 // ── the way in ──
