@@ -192,7 +192,7 @@ pub(crate) fn display(display: Display) -> Vec<Part> {
 }
 
 /// "+1 EV".
-pub(super) fn exposure(ev: f32) -> String {
+pub(crate) fn exposure(ev: f32) -> String {
     let sign = if ev > 0.0 { "+" } else { "" };
     format!("{sign}{} EV", number(f64::from(ev)))
 }

@@ -491,7 +491,7 @@ impl Painter {
             )));
         }
         let count = job.plan.parts.len();
-        let mut all = Vec::with_capacity(count);
+        let mut all: Vec<Shown> = Vec::with_capacity(count);
         let (mut remarks, mut rests_on) = (Vec::new(), Vec::new());
         for (i, part) in job.plan.parts.iter().enumerate() {
             let name = |step: &str| {
@@ -505,7 +505,16 @@ impl Painter {
                 false => progress.part((i, count), name, |progress| on_cpu(job, part, registry, progress))?,
             };
             let shown = match job.arguments.numbers {
-                true => shown.covering_objects(&part.scene, registry, job.arguments.samples),
+                true => {
+                    let alike =
+                        |(_, other): &(&Shown, &Part)| reference::covers_alike(&other.scene, &part.scene);
+                    let known = all.iter().zip(&job.plan.parts).find(alike);
+                    let shown = match known {
+                        Some((known, _)) => shown.covering_like(known),
+                        None => shown,
+                    };
+                    shown.covering_objects(&part.scene, registry, job.arguments.samples)
+                }
                 false => shown,
             };
             let outlined = all.is_empty() && job.plan.is_map();

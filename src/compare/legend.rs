@@ -158,30 +158,57 @@ pub fn legend_alone(
     canvas.rgb8
 }
 
-/// Draws the legend in a lower corner where it does not cover the largest difference, if there is room; in letters of
-/// `px` pixels, if there is room for them.
+/// Factors by which letters of a given size become smaller where the legend would hide objects.
+const SMALLER: [f32; 5] = [1.0, 0.85, 0.7, 0.6, 0.5];
+
+/// Draws the legend in a lower corner where it does not cover the largest difference, if there is room. In letters of
+/// `px` pixels, if there is room for them; they become smaller where the legend would hide objects with these outlines.
 pub(super) fn draw(
     canvas: &mut Canvas,
     comparison: &Comparison,
     factor: f32,
     largest: Option<&Largest>,
-    px: Option<f32>,
+    (px, outlines): (Option<f32>, Option<&[bool]>),
 ) {
     let legend = legend_of(comparison, factor);
-    let scaled = |scale: f32| Plate::new(scale, canvas.size, &legend, 1);
-    let wanted = px.and_then(|px| scaled(px / LETTERS_PX));
-    let Some(plate) = wanted.or_else(|| scaled(canvas.scale())) else { return };
-    let [across, down] = canvas.size;
-    let place = |at_right| in_corner([0, 0, across, down], [at_right, true], plate.size, plate.margin);
-    let hides = |[left, top, width, height]: Rect, mark: &Largest| {
-        let margin = 2 * mark_radius(canvas.scale()) as u32;
-        mark.x + margin >= left
-            && mark.x <= left + width + margin
-            && mark.y + margin >= top
-            && mark.y <= top + height + margin
+    let (size, usual) = (canvas.size, canvas.scale());
+    let scaled = |scale: f32| Plate::new(scale, size, &legend, 1);
+    let wanted = px.into_iter().flat_map(|px| SMALLER.map(|part| part * px / LETTERS_PX));
+    let mut plates: Vec<_> = wanted.filter_map(scaled).collect();
+    if plates.is_empty() {
+        plates.extend(scaled(usual));
+    }
+    let place = |plate: &Plate<'_>, at_right: bool| {
+        in_corner([0, 0, size[0], size[1]], [at_right, true], plate.size, plate.margin)
     };
-    let at_right = largest.is_some_and(|mark| hides(place(false), mark));
-    plate.draw(canvas, place(at_right), |at| Colours::of(comparison.sign).at(at));
+    let hides_mark = |place: Rect| largest.is_some_and(|mark| hides(place, mark, usual));
+    let outlines = outlines.filter(|_| px.is_some());
+    let cuts = |place: Rect| outlines.is_some_and(|outlines| any_within(outlines, size[0], place));
+    let mut all =
+        plates.iter().flat_map(|plate| [false, true].map(|at_right| (plate, place(plate, at_right))));
+    let free = all.find(|(_, place)| !hides_mark(*place) && !cuts(*place));
+    // Where all places hide something, the smallest letters hide least.
+    let otherwise = || {
+        let plate = plates.last()?;
+        Some((plate, place(plate, hides_mark(place(plate, false)))))
+    };
+    let Some((plate, place)) = free.or_else(otherwise) else { return };
+    plate.draw(canvas, place, |at| Colours::of(comparison.sign).at(at));
+}
+
+/// True if a plate hides the mark at the largest difference.
+fn hides([left, top, width, height]: Rect, mark: &Largest, scale: f32) -> bool {
+    let margin = 2 * mark_radius(scale) as u32;
+    mark.x + margin >= left
+        && mark.x <= left + width + margin
+        && mark.y + margin >= top
+        && mark.y <= top + height + margin
+}
+
+/// True if any flag of a picture so many pixels wide is set within a rectangle.
+fn any_within(flags: &[bool], across: u32, [left, top, width, height]: Rect) -> bool {
+    let row = |y: u32| flags.iter().skip((y * across + left) as usize).take(width as usize);
+    (top..top + height).any(|y| row(y).any(|on| *on))
 }
 
 fn mark_radius(scale: f32) -> f32 {
@@ -218,6 +245,27 @@ mod tests {
         assert_eq!(amplified.scale, Some(["−0.125", "0", "+0.125"].map(str::to_owned)));
         let codes = legend_of(&Comparison::default(), 10.0);
         assert_eq!(codes.scale, Some(["0", "12.8", "25.5"].map(str::to_owned)));
+    }
+
+    #[test]
+    fn a_large_legend_keeps_clear_of_objects_and_of_the_largest_difference() {
+        let size = [640, 360];
+        // A box from here to the right, down to the lower edge.
+        let drawn = |left: u32, mark: Option<u32>| {
+            let at = |i: u32| i / 640 > 20 && (i % 640 == left || i % 640 == 639);
+            let outlines: Vec<bool> = (0..640 * 360).map(at).collect();
+            let mut canvas = Canvas { size, rgb8: vec![255; 3 * 640 * 360] };
+            let largest = mark.map(|x| Largest { x, y: 340, difference: 1.0, a: [0; 3], b: [1; 3] });
+            let letters = (Some(32.0), Some(outlines.as_slice()));
+            draw(&mut canvas, &Comparison::default(), 1.0, largest.as_ref(), letters);
+            let dark = |x: u32| (0..360).any(|y| canvas.rgb8[(3 * (y * 640 + x)) as usize] < 100);
+            (0..640).filter(|x| dark(*x)).collect::<Vec<_>>()
+        };
+        let whole = drawn(639, None);
+        let beside = drawn(380, None);
+        assert!(whole.last().is_some_and(|x| *x > 380), "it would hide the box: {whole:?}");
+        assert!(beside.len() > 100 && beside.iter().all(|x| *x < 380), "{beside:?}");
+        assert!(drawn(639, Some(30)).iter().all(|x| *x > 40), "it hides the mark");
     }
 
     #[test]

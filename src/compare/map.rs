@@ -51,14 +51,16 @@ impl Pair<'_> {
         self.map_in_letters(comparison, None)
     }
 
-    /// Like [`map`](Self::map), with a legend in letters of `px` pixels, if there is room for them.
+    /// Like [`map`](Self::map), with a legend in letters of `px` pixels, if there is room for them, and smaller
+    /// ones where it would hide objects.
     ///
     /// # Errors
     /// Returns the errors of [`map`](Self::map).
     pub fn map_in_letters(&self, comparison: &Comparison, px: Option<f32>) -> Result<Vec<u8>, Unequal> {
         let (mut canvas, differences) = self.marked(comparison)?;
         let factor = differences.amplification(comparison);
-        legend::draw(&mut canvas, comparison, factor, differences.largest.as_ref(), px);
+        let outlines = self.a.outlines().or(self.b.outlines());
+        legend::draw(&mut canvas, comparison, factor, differences.largest.as_ref(), (px, outlines));
         Ok(canvas.rgb8)
     }
 

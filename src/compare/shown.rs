@@ -75,6 +75,16 @@ impl Shown {
         self
     }
 
+    /// Adds the pixels that objects cover in a picture of the same size, which shows the same bodies from the same
+    /// place, unless they are known.
+    #[must_use]
+    pub fn covering_like(mut self, other: &Self) -> Self {
+        if self.covered.is_none() && self.size() == other.size() {
+            self.covered.clone_from(&other.covered);
+        }
+        self
+    }
+
     /// Adds the light, which also determines the covered pixels.
     ///
     /// # Errors

@@ -47,6 +47,9 @@ mod tests {
             lit.clone().map(|shown| Shown::of_codes(64, 36, shown.into_rgb8()).expect("the right size"));
         let covered = codes.clone().map(|shown| shown.covering_objects(&scene, &registry, 4));
         assert_eq!(numbers(&[0, 1], &covered), numbers(&[0, 1], &lit));
+        assert_eq!(codes[1].clone().covering_like(&covered[0]), covered[1], "calculated once");
+        let small = Shown::of_codes(1, 1, vec![0; 3]).expect("the right size");
+        assert_eq!(small.clone().covering_like(&covered[0]), small);
         assert_ne!(numbers(&[0, 1], &codes), numbers(&[0, 1], &lit), "the wrong twin");
     }
 

@@ -23,6 +23,8 @@ pub enum Control {
     Tab(String),
     /// A part in the list at the left.
     Part(PartName),
+    /// A line of *Explain*, by the value that it gives: one of [`VALUES`].
+    Line(String),
 }
 
 /// The menus of the window.
@@ -31,6 +33,8 @@ pub const MENUS: &[&str] = &["File", "Edit", "View", "Help"];
 pub const BUTTONS: &[&str] = &["reflection", "shading", "terms"];
 /// The tabs below the picture, by id.
 pub const TABS: &[&str] = &["explain", "plots", "messages", "code"];
+/// The values that lines of *Explain* give under *Through the surface*.
+pub const VALUES: &[&str] = &["θ_r", "θ_t", "θ_c", "F", "w_1"];
 /// Controls that do not belong to a declared parameter.
 pub const KNOBS: &[&str] = &[
     "exposure",
@@ -193,6 +197,7 @@ pub(super) fn control(
         "menu" => one_of("menu", MENUS).map(Control::Menu),
         "button" => one_of("button", BUTTONS).map(Control::Button),
         "tab" => one_of("tab", TABS).map(Control::Tab),
+        "line" => one_of("line", VALUES).map(Control::Line),
         "part" => match PartName::parse(value) {
             Ok(part) => Some(Control::Part(part)),
             Err(what) => {
@@ -201,7 +206,7 @@ pub(super) fn control(
             }
         },
         other => {
-            let known = ["knob", "menu", "button", "tab", "part"];
+            let known = ["knob", "menu", "button", "tab", "part", "line"];
             let near = did_you_mean(other, known.iter().map(|k| (*k, *k)));
             let (other, known) = (quoted(other), listed(&known, "or"));
             problems.at(key.at, format!("a lesson cannot point at a {other}; it can point at {known}{near}"));

@@ -35,7 +35,7 @@ mod window;
 mod words;
 
 pub use condition::{Condition, QUANTITIES, Quantity};
-pub use controls::{BUTTONS, Control, KNOBS, MENUS, PartName, TABS, Which};
+pub use controls::{BUTTONS, Control, KNOBS, MENUS, PartName, TABS, VALUES, Which};
 pub use problem::Problem;
 pub use situation::{Situation, WindowFacts};
 pub use state::SceneChange;
@@ -166,6 +166,8 @@ pub struct WindowChange {
     pub terms: Option<TermSelection>,
     /// True to show the *Explain* panel, false to hide it.
     pub explain: Option<bool>,
+    /// True to show the markers of lights, false to hide them.
+    pub markers: Option<bool>,
     /// The displayed plot; `Some(None)` hides plots.
     pub plots: Option<Option<Kind>>,
     /// The active view: 0 is the scene, 1 view B.

@@ -78,6 +78,7 @@ shading_model = "phong"
 channel: n_dot_h
 terms: specular
 explain: on
+markers: off
 plots: albedo
 active: A
 select: object 1
@@ -87,6 +88,7 @@ pin: 0.25, 0.5
 ```point
 knob: alpha
 part: light "key light"
+line: θ_t
 ```
 
 ```do
@@ -133,11 +135,12 @@ fn a_lesson_is_read_with_all_its_parts() {
     assert_eq!(narrow.window.channel, Some(Some(DebugChannel::NDotH)));
     assert_eq!(narrow.window.terms, Some(TermSelection::Specular));
     assert_eq!((narrow.window.explain, narrow.window.active), (Some(true), Some(0)));
-    assert_eq!(narrow.window.plots, Some(Some(Kind::Albedo)));
+    assert_eq!((narrow.window.markers, narrow.window.plots), (Some(false), Some(Some(Kind::Albedo))));
     assert_eq!(narrow.window.pin, Some(Some([0.25, 0.5])));
     assert_eq!(narrow.window.select, Some(PartName::Object(Which::Number(1))));
     let light = PartName::Light(Which::Name("key light".to_owned()));
-    assert_eq!(narrow.points, [Control::Knob("alpha".to_owned()), Control::Part(light.clone())]);
+    let line = Control::Line("θ_t".to_owned());
+    assert_eq!(narrow.points, [Control::Knob("alpha".to_owned()), Control::Part(light.clone()), line]);
     assert_eq!(light.find(&lesson.start), Some(Selection::Light(0)));
     let goal = narrow.task.as_ref().and_then(Task::goal).expect("a task");
     assert_eq!(plain(&goal.text), "Raise α until the highlight is narrower than 5°.");
@@ -211,6 +214,8 @@ const MISTAKES: &[(&str, &str)] = &[
         "9:7: there is no menu \"Windows\"; it must be File, Edit, View or Help",
     ),
     ("## S\n\n```point\ntab: plot\n```\n", "9:6: there is no tab \"plot\""),
+    ("## S\n\n```point\nline: n\n```\n", "9:7: there is no line \"n\"; it must be θ_r, θ_t, θ_c, F or w_1"),
+    ("## S\n\n```view\nmarkers: no\n```\n", "9:10: markers is \"no\", but it must be on or off"),
     ("## S\n\n```point\nlamp: x\n```\n", "9:1: a lesson cannot point at a \"lamp\""),
     ("## S\n\n```point\npart: light \"sun\"\n```\n", "9:7: there is no such part: the scene has 1 light"),
     // Near misses.

@@ -20,6 +20,7 @@ pub const SETTINGS: &[(&str, &str, &str)] = &[
     ("terms", "`all`, `ambient`, `diffuse` or `specular`", "the terms of the equation that are shown"),
     ("explain", "`on` or `off`", "the panel *Explain*"),
     ("plots", "id of a plot, or `off`", "the panel *Plots*"),
+    ("markers", "`on` or `off`", "the markers of lights, which may cover what a step is about"),
     ("active", "`A` to `D`", "the view that the panels show and change"),
     ("select", "`room`, `observer`, `object 1`, `light \"key light\"`, …", "the selected part"),
     (
@@ -28,6 +29,9 @@ pub const SETTINGS: &[(&str, &str, &str)] = &[
         "the pinned pixel: fractions of the picture from the left and the top",
     ),
 ];
+
+/// The words of settings that are on or off.
+const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
 /// A word from a list; reports an unknown one.
 fn one_of<T: Clone>(key: &str, value: Piece, known: &[(&str, T)], problems: &mut Problems) -> Option<T> {
@@ -64,7 +68,8 @@ pub(super) fn setting(
             window.channel = one_of(known, value, &all, problems);
         }
         "terms" => window.terms = one_of(known, value, &TermSelection::ALL.map(|t| (t.id(), t)), problems),
-        "explain" => window.explain = one_of(known, value, &[("on", true), ("off", false)], problems),
+        "explain" => window.explain = one_of(known, value, &SWITCH, problems),
+        "markers" => window.markers = one_of(known, value, &SWITCH, problems),
         "plots" => {
             let kinds = Kind::ALL.map(|kind| (kind.id(), Some(kind)));
             let all: Vec<_> = kinds.into_iter().chain([("off", None)]).collect();

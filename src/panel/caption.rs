@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Maximum number of values in a caption; more would be a list.
-const VALUES: usize = 4;
+pub(super) const MOST_VALUES: usize = 4;
 /// Maximum number of lines; more would hide the picture.
 const LINES: usize = 2;
 
@@ -38,28 +38,38 @@ pub fn parts(session: &Session, registry: &Registry) -> Vec<Part> {
     compiling.into_iter().chain(parts).collect()
 }
 
-/// Parts of the caption of a scene that shows the given terms of its equations.
-pub(super) fn parts_of(scene: &Scene, terms: TermSelection, registry: &Registry) -> Vec<Part> {
+/// The reflection model of a scene.
+pub(super) fn model_part(scene: &Scene, registry: &Registry) -> Part {
     let models: BTreeSet<_> = scene.shown().map(|o| scene.model_of(o)).collect();
+    let text = match single(&models) {
+        Some(id) => registry.model(id).map_or(id, |m| m.declaration.name).to_owned(),
+        None if models.is_empty() => "nothing visible".to_owned(),
+        None => format!("{} models", models.len()),
+    };
+    Part::new(0, text)
+}
+
+/// The shading model of a scene, and its stage.
+pub(super) fn shading_parts(scene: &Scene, registry: &Registry) -> Vec<Part> {
     let shadings: BTreeSet<_> = scene.shown().map(|o| scene.shading_model_of(o)).collect();
-    let mut parts = Vec::new();
-    match single(&models) {
-        Some(id) => parts.push(Part::new(0, registry.model(id).map_or(id, |m| m.declaration.name))),
-        None if models.is_empty() => parts.push(Part::new(0, "nothing visible")),
-        None => parts.push(Part::new(0, format!("{} models", models.len()))),
-    }
     match single(&shadings) {
         Some(id) => match registry.shading_model(id) {
             Some(shading) => {
                 let d = shading.declaration;
-                parts.push(Part::new(0, format!("{} shading", d.name)));
-                parts.push(Part::new(u8::MAX, format!("computed {}", d.stage.phrase())));
+                let stage = Part::new(u8::MAX, format!("computed {}", d.stage.phrase()));
+                vec![Part::new(0, format!("{} shading", d.name)), stage]
             }
-            None => parts.push(Part::new(0, format!("{id} shading"))),
+            None => vec![Part::new(0, format!("{id} shading"))],
         },
-        None if shadings.is_empty() => {}
-        None => parts.push(Part::new(0, format!("{} shading models", shadings.len()))),
+        None if shadings.is_empty() => Vec::new(),
+        None => vec![Part::new(0, format!("{} shading models", shadings.len()))],
     }
+}
+
+/// Parts of the caption of a scene that shows the given terms of its equations.
+fn parts_of(scene: &Scene, terms: TermSelection, registry: &Registry) -> Vec<Part> {
+    let mut parts = vec![model_part(scene, registry)];
+    parts.extend(shading_parts(scene, registry));
     let mut objects = scene.shown();
     if let (Some(object), None) = (objects.next(), objects.next()) {
         parts.extend(key_values(object, scene.model_of(object), registry));
@@ -84,22 +94,31 @@ pub(super) fn values(object: &Object, model: &str, registry: &Registry, most: us
 /// defaults, then the first ones. When room runs out, defaults go first, then earlier values before later ones:
 /// coefficients are declared before exponents and roughness, which say more.
 fn key_values(object: &Object, model: &str, registry: &Registry) -> Vec<Part> {
+    let mut all: Vec<_> = values_of(object, model, registry).into_iter().enumerate().collect();
+    all.sort_by_key(|(_, (p, _))| object.material.get(p) == p.default_value());
+    all.truncate(MOST_VALUES);
+    all.sort_by_key(|(i, _)| *i);
+    let ranked = all.into_iter().enumerate().map(|(place, (_, (p, part)))| {
+        let default = object.material.get(p) == p.default_value();
+        let rank = 2 + 2 * MOST_VALUES - place - if default { 0 } else { MOST_VALUES };
+        Part { rank: rank as u8, ..part }
+    });
+    ranked.collect()
+}
+
+/// All values of the material that its model uses and that have one component, in declaration order.
+pub(super) fn values_of(
+    object: &Object,
+    model: &str,
+    registry: &Registry,
+) -> Vec<(&'static Parameter, Part)> {
     let Some(model) = registry.model(model) else { return Vec::new() };
     let part = |p: &'static Parameter| {
         let (symbol, text) = value(p, &object.material.get(p)).filter(|_| p.kind.components() == 1)?;
         Some((p, Part { symbol, ..Part::new(2, text) }))
     };
     let used = |p: &&'static Parameter| usage::unused(model.parameters, p, &object.material).is_none();
-    let mut all: Vec<_> = model.parameters.iter().filter(used).filter_map(part).enumerate().collect();
-    all.sort_by_key(|(_, (p, _))| object.material.get(p) == p.default_value());
-    all.truncate(VALUES);
-    all.sort_by_key(|(i, _)| *i);
-    let ranked = all.into_iter().enumerate().map(|(place, (_, (p, part)))| {
-        let default = object.material.get(p) == p.default_value();
-        let rank = 2 + 2 * VALUES - place - if default { 0 } else { VALUES };
-        Part { rank: rank as u8, ..part }
-    });
-    ranked.collect()
+    model.parameters.iter().filter(used).filter_map(part).collect()
 }
 
 /// A caption laid out in lines.
@@ -171,6 +190,12 @@ impl Lines {
             most = most.max(end);
         }
         (Self { runs, size: vec2(most, at.y + height), cut: false }, rows)
+    }
+
+    /// The lines without the dots at their ends: on a slide, a dot that nothing follows looks like a mistake.
+    pub(super) fn closed(mut self) -> Self {
+        self.runs.retain(|(_, galley)| galley.text() != " ·");
+        self
     }
 
     pub(super) fn paint(self, ui: &Ui, at: Pos2, colour: Color32) {

@@ -2,7 +2,12 @@
 
 use bevy_egui::egui::{CornerRadius, Mesh};
 
-use super::{keys, prelude::*, wires};
+use super::{
+    keys,
+    placer::{EDGE, Placer},
+    prelude::*,
+    wires,
+};
 use crate::{
     channel::{DebugChannel, Legend, Setting},
     optics::viridis::{VIRIDIS, viridis},
@@ -23,12 +28,15 @@ pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(Deb
     Some((channel, setting.legend(scene, registry)))
 }
 
-/// Paints the legend of a view's channel from a corner on, if the view shows one; a click on it shows the picture
-/// again. Returns the legend's rectangle.
+/// Maximum height of a legend with all its colours, as a fraction of the picture: in a smaller picture there is the title
+/// alone.
+const TALLEST: f32 = 0.4;
+
+/// Paints the legend of a view's channel, if the view shows one; a click on it shows the picture again. Returns the
+/// legend's rectangle.
 pub(super) fn legend(
     ui: &mut Ui,
-    rect: Rect,
-    (side, top): (Align2, f32),
+    placer: &mut Placer,
     view: usize,
     context: &mut PanelContext<'_>,
 ) -> Option<Rect> {
@@ -40,7 +48,13 @@ pub(super) fn legend(
     if let Some(remark) = wires::remark(ui.ctx(), view).filter(|_| channel.has_wires()) {
         legend.title = format!("{} ({remark})", legend.title);
     }
-    let place = plate(ui, rect, side, top, &legend);
+    let rect = placer.room;
+    let whole = Plate::new(ui, rect, &legend, usize::MAX);
+    let is_cut = whole.size.x > rect.width() - 2.0 * EDGE || whole.size.y > TALLEST * rect.height();
+    let short = || Legend { title: legend.title.clone(), scale: None, colours: Vec::new() };
+    let laid_out = if is_cut { Plate::new(ui, rect, &short(), 1) } else { whole };
+    let place = placer.place(laid_out.size);
+    laid_out.paint(ui, rect, place);
     let response = ui.interact(place, Id::new(("channel legend", view)), Sense::click());
     theme::says(&response, WidgetType::Button, format!("Channel: {}. Show the picture", legend.title));
     let palette = Palette::here(ui);
@@ -53,8 +67,9 @@ pub(super) fn legend(
         }
         context.act(Action::View(ViewChange::Channel(None)));
     }
+    let more = if is_cut { format!("{}\n\n", in_words(&legend)) } else { String::new() };
     let help = format!(
-        "{}\n\nClick, or {}: the picture again. {}: the next channel.",
+        "{more}{}\n\nClick, or {}: the picture again. {}: the next channel.",
         channel.explanation(),
         keys::word(ui.ctx(), "channel.none"),
         keys::word(ui.ctx(), "next_channel"),
@@ -67,58 +82,89 @@ pub(super) fn legend(
     Some(place)
 }
 
-/// Paints a legend at a side of the picture, and returns its rectangle.
-pub(super) fn plate(ui: &Ui, rect: Rect, side: Align2, top: f32, legend: &Legend) -> Rect {
-    let palette = Palette::here(ui);
-    let scale = theme::scale_here(ui);
-    let padding = vec2(10.0, 6.0) * scale;
-    let room = (rect.width() - 16.0 - 2.0 * padding.x).max(64.0);
-    let body = TextStyle::Body.resolve(ui.style());
-    let small = FontId::proportional(TextStyle::Small.resolve(ui.style()).size);
-    let painter = ui.painter_at(rect);
-    let title =
-        painter.layout(legend.title.clone(), FontId::new(body.size, theme::semibold()), palette.text, room);
-    let lay_out = |text: &String| painter.layout_no_wrap(text.clone(), small.clone(), palette.text);
-    let numbers = legend.scale.as_ref().map(|numbers| numbers.each_ref().map(lay_out));
-    let colours: Vec<_> = legend.colours.iter().map(|(c, text)| (*c, lay_out(text))).collect();
-    let swatch = 12.0 * scale;
-    let gap = 4.0 * scale;
-    let rows = colours.iter().map(|(_, text)| swatch + 2.0 * gap + text.size().x);
-    let bar = if numbers.is_some() { 180.0 * scale } else { 0.0 };
-    let width = rows.fold(title.size().x.max(bar.min(room)), f32::max);
-    let line = |text: &Galley| text.size().y.max(swatch) + 0.5 * gap;
-    let of_scale = numbers.as_ref().map_or(0.0, |n| 2.0 * gap + swatch + n[0].size().y);
-    let height = title.size().y + of_scale + colours.iter().map(|(_, text)| line(text)).sum::<f32>();
-    let corner = pos2(side.pos_in_rect(&rect.shrink(8.0)).x, top);
-    let place = side.anchor_size(corner, vec2(width, height) + 2.0 * padding);
-    painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.92));
-    let mut at = place.min + padding;
-    let below = title.size().y;
-    painter.galley(at, title, palette.text);
-    at.y += below;
-    if let Some(numbers) = numbers {
-        at.y += gap;
-        let bar = Rect::from_min_size(at, vec2(width, swatch));
-        painter.add(gradient(bar));
-        painter.rect_stroke(bar, CornerRadius::ZERO, Stroke::new(1.0, palette.line), StrokeKind::Outside);
-        at.y = bar.bottom() + 0.5 * gap;
-        let below = numbers[0].size().y + 0.5 * gap;
-        for (number, part) in numbers.into_iter().zip([0.0, 0.5, 1.0]) {
-            let x = at.x + part * (width - number.size().x);
-            painter.galley(pos2(x, at.y), number, palette.text);
-        }
+/// A legend that is only a text.
+fn in_words(legend: &Legend) -> String {
+    let scale = legend.scale.iter().map(|[from, _, to]| format!("{from} to {to}"));
+    let colours = legend.colours.iter().map(|(_, text)| text.clone());
+    [legend.title.clone()].into_iter().chain(scale).chain(colours).collect::<Vec<_>>().join("\n")
+}
+
+/// A legend, laid out.
+pub(super) struct Plate {
+    title: Arc<Galley>,
+    numbers: Option<[Arc<Galley>; 3]>,
+    colours: Vec<([u8; 3], Arc<Galley>)>,
+    scale: f32,
+    /// Its size, with the space around the text.
+    pub(super) size: Vec2,
+}
+
+impl Plate {
+    /// Side of the square that shows a colour, at scale 1.
+    const SWATCH: f32 = 12.0;
+    const GAP: f32 = 4.0;
+    const PADDING: Vec2 = vec2(10.0, 6.0);
+
+    /// Lays out a legend for a picture, with at most so many rows of the title.
+    pub(super) fn new(ui: &Ui, rect: Rect, legend: &Legend, rows: usize) -> Self {
+        let ink = Palette::here(ui).text;
+        let scale = theme::scale_here(ui);
+        let [swatch, gap] = [Self::SWATCH, Self::GAP].map(|v| v * scale);
+        let room = (rect.width() - 2.0 * EDGE - 2.0 * Self::PADDING.x * scale).max(64.0);
+        let small = FontId::proportional(TextStyle::Small.resolve(ui.style()).size);
+        let title = theme::lines(ui, &legend.title, theme::bold(ui), ink, (room, rows));
+        let lay_out = |text: &String| ui.painter().layout_no_wrap(text.clone(), small.clone(), ink);
+        let numbers = legend.scale.as_ref().map(|numbers| numbers.each_ref().map(lay_out));
+        let colours: Vec<_> = legend.colours.iter().map(|(c, text)| (*c, lay_out(text))).collect();
+        let rows = colours.iter().map(|(_, text)| swatch + 2.0 * gap + text.size().x);
+        let bar = if numbers.is_some() { 180.0 * scale } else { 0.0 };
+        let width = rows.fold(title.size().x.max(bar.min(room)), f32::max);
+        let of_scale = numbers.as_ref().map_or(0.0, |n| 2.0 * gap + swatch + n[0].size().y);
+        let lines: f32 = colours.iter().map(|(_, text)| Self::line(text, scale)).sum();
+        let size = vec2(width, title.size().y + of_scale + lines) + 2.0 * Self::PADDING * scale;
+        Self { title, numbers, colours, scale, size }
+    }
+
+    /// Height of the line of a colour.
+    fn line(text: &Galley, scale: f32) -> f32 {
+        text.size().y.max(Self::SWATCH * scale) + 0.5 * Self::GAP * scale
+    }
+
+    /// Paints the legend into a picture.
+    pub(super) fn paint(self, ui: &Ui, rect: Rect, place: Rect) {
+        let palette = Palette::here(ui);
+        let painter = ui.painter_at(rect);
+        let [swatch, gap] = [Self::SWATCH, Self::GAP].map(|v| v * self.scale);
+        painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.92));
+        let inner = place.shrink2(Self::PADDING * self.scale);
+        let mut at = inner.min;
+        let below = self.title.size().y;
+        painter.galley(at, self.title, palette.text);
         at.y += below;
+        if let Some(numbers) = self.numbers {
+            at.y += gap;
+            let bar = Rect::from_min_size(at, vec2(inner.width(), swatch));
+            painter.add(gradient(bar));
+            painter.rect_stroke(bar, CornerRadius::ZERO, Stroke::new(1.0, palette.line), StrokeKind::Outside);
+            at.y = bar.bottom() + 0.5 * gap;
+            let below = numbers[0].size().y + 0.5 * gap;
+            for (number, part) in numbers.into_iter().zip([0.0, 0.5, 1.0]) {
+                let x = at.x + part * (inner.width() - number.size().x);
+                painter.galley(pos2(x, at.y), number, palette.text);
+            }
+            at.y += below;
+        }
+        for ([r, g, b], text) in self.colours {
+            let height = Self::line(&text, self.scale);
+            let middle = pos2(at.x, at.y + 0.5 * height);
+            let square = Align2::LEFT_CENTER.anchor_size(middle, vec2(swatch, swatch));
+            let (colour, stroke) = (Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
+            painter.rect(square, 2.0, colour, stroke, StrokeKind::Outside);
+            let y = at.y + 0.5 * (height - text.size().y);
+            painter.galley(pos2(square.right() + 2.0 * gap, y), text, palette.text);
+            at.y += height;
+        }
     }
-    for ([r, g, b], text) in colours {
-        let height = line(&text);
-        let square = Align2::LEFT_CENTER.anchor_size(pos2(at.x, at.y + 0.5 * height), vec2(swatch, swatch));
-        let (colour, stroke) = (Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
-        painter.rect(square, 2.0, colour, stroke, StrokeKind::Outside);
-        let y = at.y + 0.5 * (height - text.size().y);
-        painter.galley(pos2(square.right() + 2.0 * gap, y), text, palette.text);
-        at.y += height;
-    }
-    place
 }
 
 /// The colours of viridis, from left to right.

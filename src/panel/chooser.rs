@@ -43,18 +43,28 @@ pub(super) fn further(model: &ModelEntry) -> impl Iterator<Item = (String, Strin
     synonyms.chain(model.parameters.iter().flat_map(of))
 }
 
-/// The words by which the list introduces a model.
-pub(super) fn words(model: &ModelEntry) -> String {
+/// The reason that a search finds a text which only the tooltip shows.
+pub(super) const DESCRIPTION: &str = "in the description";
+
+/// The words by which a model is found first, each with what people call it; besides its name.
+pub(super) fn words(model: &ModelEntry) -> [(String, String); 4] {
     let d = model.declaration;
-    [d.name, d.id, d.author, d.family.name(), d.summary].join(" ")
+    let all =
+        [(d.author, d.author), (d.family.name(), d.family.name()), (d.summary, DESCRIPTION), (d.id, d.id)];
+    all.map(|(text, name)| (text.to_owned(), name.to_owned()))
 }
 
-/// The name of what matches a search though nobody sees it, such as a synonym, a parameter or a choice; `None` if what is
-/// said already shows why the search matches.
-pub(super) fn reason(said: &str, unsaid: &[(String, String)], search: &str) -> Option<String> {
-    let mut words = search.split_whitespace().filter(|word| !matches(said, word));
-    let name = |word| unsaid.iter().find(|(text, _)| matches(text, word)).map(|(_, name)| name.clone());
-    words.find_map(name)
+/// The name of what matches a search though nobody sees it, such as a synonym, a parameter or a choice; `None` if the
+/// row already shows why the search matches.
+pub(super) fn reason<'a>(
+    shown: &str,
+    unseen: impl Iterator<Item = &'a (String, String)> + Clone,
+    search: &str,
+) -> Option<String> {
+    let lower = shown.to_lowercase();
+    let is_seen = |word: &str| matches(shown, word) || lower.contains(&word.to_lowercase());
+    let name = |word| unseen.clone().find(|(text, _)| matches(text, word)).map(|(_, name)| name.clone());
+    search.split_whitespace().filter(|word| !is_seen(word)).find_map(name)
 }
 
 /// Models that match a search, in the order of the chooser: the model of that very name first, then matching names, then
@@ -69,8 +79,8 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
         }
     }
     let hit = |m: &&ModelEntry| {
-        let further: Vec<_> = further(m).map(|(text, _)| text).collect();
-        matches(&format!("{} {}", words(m), further.join(" ")), search)
+        let all: Vec<_> = words(m).into_iter().chain(further(m)).map(|(text, _)| text).collect();
+        matches(&format!("{} {}", m.declaration.name, all.join(" ")), search)
     };
     let mut found: Vec<_> = families
         .iter()
@@ -315,9 +325,11 @@ const MODELS: Words = Words {
     roomy: false,
 };
 
-/// The reason why a search finds a model, if its words do not show it.
+/// The reason why a search finds a model, if its row and the heading above do not show it.
 fn why(model: &ModelEntry, search: &str) -> Option<String> {
-    reason(&words(model), &further(model).collect::<Vec<_>>(), search)
+    let d = model.declaration;
+    let unseen: Vec<_> = further(model).chain(words(model)).collect();
+    reason(&[d.name, d.author, d.family.name()].join(" "), unseen.iter(), search)
 }
 
 /// The list of models. `current` is the id of the selected model. `first` labels an entry before all models that stands
@@ -515,7 +527,17 @@ mod tests {
         let microfacet = registry.model("microfacet").expect("built in");
         let why_of = |model: &ModelEntry, search: &str| why(model, search).unwrap_or_default();
         assert_eq!(why_of(microfacet, "microfacet ggx"), "GGX");
-        assert_eq!(why(microfacet, "masking"), None, "the summary has it");
+        assert_eq!(
+            why_of(microfacet, "masking"),
+            "masking",
+            "a parameter: the row does not show the summary"
+        );
+        let disney = registry.model("disney").expect("built in");
+        assert_eq!(
+            (why_of(disney, "sheen").as_str(), why_of(disney, "cloth").as_str()),
+            ("sheen", DESCRIPTION)
+        );
+        assert_eq!((why(disney, "disney"), why(disney, "isney")), (None, None), "the name shows it");
         assert!(why_of(microfacet, "kelemen").ends_with(": Kelemen"), "a choice, after its parameter");
         assert_eq!(why_of(registry.model("disney").expect("built in"), "sheen_tint"), "sheen tint");
         assert_eq!(why_of(registry.model("openpbr").expect("built in"), "sheen"), "sheen");

@@ -40,10 +40,10 @@ fn arranging(layout: Layout) -> &'static Arranging {
     }
 }
 
-/// Arranges the views of a session in the space between the panels. A presentation has no bar, but a footer of the
-/// given height.
+/// Arranges the views of a session in the space between the panels. A presentation has no bar, but a footer and a band
+/// above each view of the given heights.
 #[must_use]
-pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
+pub fn arrange(session: &Session, whole: Rect, footer: f32, band: f32) -> Arrangement {
     let variants = session.document.variants.len();
     if variants == 0 {
         let cells = vec![Cell { view: 0, rect: whole, part: whole }];
@@ -64,7 +64,7 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32) -> Arrangement {
     // Readable from the back row.
     let high = if session.view.presenting { (0.055 * whole.height()).max(HEADER) } else { HEADER };
     let mut all = Arrangement { bar: (rows > 0.0).then_some(bar), ..Arrangement::new(picture) };
-    (arranging.arrange)(&mut all, &Frame { session, picture, views: comparison.views(variants), high });
+    (arranging.arrange)(&mut all, &Frame { session, picture, views: comparison.views(variants), high, band });
     let first = all.cells.iter().map(|cell| cell.rect);
     all.picture = first.reduce(Rect::union).unwrap_or(picture);
     all
@@ -147,7 +147,10 @@ fn header(
     });
     theme::tip(click, 320.0, |ui| {
         ui.label(theme::strong(ui, format!("View {letter}")));
-        ui.label(if view == 0 { "The scene itself.".to_owned() } else { text });
+        if view == 0 {
+            ui.label("The scene itself.");
+        }
+        ui.label(text);
         ui.label(theme::small(ui, "Click: the panels show and change this view."));
     });
 }
@@ -194,17 +197,19 @@ fn title(
     let room = (ui.max_rect().width() - 30.0 * scale).max(0.0);
     let left = badge.right_center() + vec2(8.0, 0.0) * scale;
     // With symbols as in the equation, if there is room. A presentation says the rest below.
-    let rank = rank_that_fits(said, |parts| {
+    let dots = theme::elided(ui, ", …", FontId::proportional(size), ink, room);
+    let ends = |parts: &[Part], all: &[Part]| parts.len() < all.len() && !session.view.presenting;
+    let lines = |parts: Vec<Part>, all: &[Part]| {
+        let room = room - if ends(&parts, all) { dots.size().x } else { 0.0 };
         let lines = Lines::within(ui, parts, size, ink, room, 1);
-        lines.size.y < 1.9 * size && lines.size.x <= room
-    });
+        (lines.size.y < 1.9 * size && lines.size.x <= room).then_some(lines)
+    };
+    let rank = rank_that_fits(said, |parts, all| lines(parts, all).is_some());
     let parts = up_to(&said[at], rank);
-    let cut = parts.len() < said[at].len() && !session.view.presenting;
-    let lines = Lines::within(ui, parts, size, ink, room, 1);
-    if lines.size.y < 1.9 * size && lines.size.x <= room {
+    let cut = ends(&parts, &said[at]);
+    if let Some(lines) = lines(parts, &said[at]) {
         let place = Align2::LEFT_CENTER.anchor_size(left, lines.size);
-        let dots = theme::elided(ui, ", …", FontId::proportional(size), ink, room);
-        if cut && lines.size.x + dots.size().x <= room {
+        if cut {
             ui.painter().galley(place.right_top(), dots, ink);
         }
         lines.paint(ui, place.min, ink);
@@ -216,10 +221,10 @@ fn title(
 }
 
 /// The rank up to which the parts of every header fit, so that all headers say the same things; each keeps its first part.
-fn rank_that_fits(said: &[Vec<Part>], fits: impl Fn(Vec<Part>) -> bool) -> u8 {
+fn rank_that_fits(said: &[Vec<Part>], fits: impl Fn(Vec<Part>, &[Part]) -> bool) -> u8 {
     let least = said.iter().filter_map(|parts| Some(parts.first()?.rank)).max().unwrap_or_default();
     let ranks: BTreeSet<_> = said.iter().flatten().map(|part| part.rank).filter(|r| *r > least).collect();
-    let whole = |rank: &u8| said.iter().all(|parts| fits(up_to(parts, *rank)));
+    let whole = |rank: &u8| said.iter().all(|parts| fits(up_to(parts, *rank), parts));
     ranks.into_iter().rev().find(whole).unwrap_or(least)
 }
 
@@ -289,7 +294,7 @@ mod tests {
                 [(400.0, 40.0), (400.0, 90.0), (400.0, 400.0), (900.0, 60.0), (900.0, 500.0)]
             {
                 let whole = Rect::from_min_size(pos2(100.0, 50.0), vec2(width, height));
-                let all = arrange(&session, whole, 0.0);
+                let all = arrange(&session, whole, 0.0, 0.0);
                 assert!(!all.is_single(), "{layout:?}");
                 let bar = all.bar.map_or(0.0, |bar| bar.height());
                 assert!(bar <= 0.5 * height, "{layout:?} in {width} × {height}: {bar}");

@@ -53,8 +53,8 @@ struct Found {
     order: u8,
     heading: &'static str,
     note: String,
-    /// Further words by which it is found.
-    said: String,
+    /// Further words by which it is found, each with its name.
+    said: Vec<(String, String)>,
     /// What finds it though its row does not show it, each with its name: synonyms first, which are alike.
     unsaid: Vec<(String, String)>,
     key: String,
@@ -68,7 +68,8 @@ impl Found {
     fn entry<'f>(&'f self, heading: &'f str, search: &str) -> Entry<'f> {
         // Its menu stands above.
         let note = Some(&self.note).filter(|note| !note.is_empty() && *note != heading).cloned();
-        let why = chooser::reason(&format!("{} {}", self.title, self.said), &self.unsaid, search);
+        let unseen = self.unsaid.iter().chain(&self.said);
+        let why = chooser::reason(&format!("{} {}", self.title, self.note), unseen, search);
         Entry {
             heading,
             name: &self.title,
@@ -178,9 +179,8 @@ fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> 
             true => FIRST,
             false => 0,
         };
-        let unsaid = found.unsaid.iter().map(|(text, _)| text);
-        let more = unsaid.fold(found.said.clone(), |all, text| all + " " + text);
-        Some((rank(&found.title, &more, search)? + first, found))
+        let more: Vec<_> = found.said.iter().chain(&found.unsaid).map(|(text, _)| text.as_str()).collect();
+        Some((rank(&found.title, &more.join(" "), search)? + first, found))
     };
     let mut found: Vec<_> = all.iter().filter_map(fits).collect();
     leave_out_chance(&mut found);
@@ -218,8 +218,8 @@ fn commands(root: &Menu, session: &Session, registry: &Registry) -> Vec<Found> {
         let place = if path.is_empty() { command.heading().name().to_owned() } else { path.join(" › ") };
         let model = command.id.strip_prefix("model.").and_then(|id| registry.model(id));
         let said = match model {
-            Some(model) => chooser::words(model),
-            None => format!("{place} {} {} {}", command.id, command.name, command.tip),
+            Some(model) => Vec::from(chooser::words(model)),
+            None => said(command, &place),
         };
         Found {
             id: command.id.to_string(),
@@ -245,6 +245,13 @@ fn commands(root: &Menu, session: &Session, registry: &Registry) -> Vec<Found> {
         }
     });
     found.collect()
+}
+
+/// The words by which a command is found, besides its title, each with what the row says of it.
+fn said(command: &Command, place: &str) -> Vec<(String, String)> {
+    let [name, tip, id] = [&*command.name, &*command.tip, &*command.id];
+    let all = [(place, place), (name, name), (tip, chooser::DESCRIPTION), (id, id)];
+    Vec::from(all.map(|(text, name)| (text.to_owned(), name.to_owned())))
 }
 
 /// The parameters of the selected object or light that have knobs.
@@ -282,7 +289,7 @@ fn parameter(p: &Parameter, of: &str, beginning: &str, unused: Option<String>) -
         heading: "Parameters",
         off: unused.is_some(),
         note: unused.unwrap_or_else(|| format!("Parameter of {of}")),
-        said: format!("parameter {of}"),
+        said: vec![(format!("parameter {of}"), format!("Parameter of {of}"))],
         unsaid: vec![(format!("{} {}", p.name, p.symbol), name.to_owned())],
         key: String::new(),
         on: false,

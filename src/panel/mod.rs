@@ -85,6 +85,7 @@ pub mod messages;
 pub mod model_override;
 mod notice;
 pub mod picture;
+mod placer;
 pub mod plots;
 mod prelude;
 pub mod presentation;

@@ -6,9 +6,9 @@ use super::{prelude::*, state::Messages};
 
 /// Time for which a message is shown, in seconds; twice as long for problems.
 const MOMENT: f64 = 5.0;
-/// Time for which the presentation says how to leave it, in seconds: it may cover an object.
+/// Time for which the presentation says how to leave it, in seconds: it may cover other text.
 const HINT: f64 = 3.0;
-/// Maximum width, as a fraction of the picture.
+/// Maximum width, as a fraction of the screen.
 const WIDTH: f32 = 0.55;
 
 /// State of the messages of a presentation.
@@ -22,9 +22,15 @@ struct Told {
     since: Option<f64>,
 }
 
-/// Shows the current message in the corner of `rect`, in letters of this size; the presentation started at `since`, in
-/// seconds.
-pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, messages: &Messages) {
+/// Shows the current message on a screen in letters of this size, where `place` puts a plate of its size; the
+/// presentation started at `since`, in seconds.
+pub(super) fn show(
+    ui: &Ui,
+    screen: (Rect, f32),
+    since: f64,
+    messages: &Messages,
+    place: impl Fn(Vec2) -> Rect,
+) {
     let (now, pass) = (ui.input(|i| i.time), ui.ctx().cumulative_pass_nr());
     let mut told: Told = kept::get(ui.ctx());
     let added = messages.added();
@@ -38,9 +44,11 @@ pub(super) fn show(ui: &Ui, rect: Rect, size: f32, since: f64, messages: &Messag
     let message = messages.last().zip(told.since);
     let message = message.filter(|(message, said)| now - said <= moment(Some(message.severity)));
     match message {
-        Some((message, said)) => plate(ui, rect, size, &message.text, Some(message.severity), said == now),
+        Some((message, said)) => {
+            plate(ui, screen, &message.text, (Some(message.severity), said == now), place);
+        }
         None if now - since <= moment(None) => {
-            plate(ui, rect, size, "Esc leaves the presentation", None, since == now);
+            plate(ui, screen, "Esc leaves the presentation", (None, since == now), place);
         }
         None => {}
     }
@@ -64,16 +72,22 @@ pub(super) fn wake(ctx: &Context, seconds: f64) {
     });
 }
 
-fn plate(ui: &Ui, rect: Rect, size: f32, text: &str, severity: Option<Severity>, first: bool) {
+fn plate(
+    ui: &Ui,
+    (screen, size): (Rect, f32),
+    text: &str,
+    (severity, first): (Option<Severity>, bool),
+    place: impl Fn(Vec2) -> Rect,
+) {
     if first {
         wake(ui.ctx(), moment(severity) + 0.1);
     }
     let palette = Palette::here(ui);
     let left = if severity.is_some() { 1.2 * size } else { 0.0 };
-    let room = WIDTH * rect.width() - left;
+    let room = WIDTH * screen.width() - left;
     let galley = ui.painter().layout(text.to_owned(), FontId::proportional(size), palette.text, room);
     let extent = galley.size() + vec2(left, 0.0) + vec2(24.0, 12.0);
-    let place = Align2::RIGHT_BOTTOM.anchor_size(rect.right_bottom() - vec2(12.0, 12.0), extent);
+    let place = place(extent);
     ui.painter().rect_filled(place, theme::UNIT, palette.panel);
     if let Some(severity) = severity {
         let line = galley.rows.first().map_or(size, |row| row.height());

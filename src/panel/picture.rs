@@ -12,8 +12,9 @@ use super::{
     explain,
     focus::{self, Region},
     handles, keys, labels, marks,
+    placer::Placer,
     prelude::*,
-    presentation::{CAPTION, Footer, Stage},
+    presentation::{self, CAPTION, Footer, Needed, Spot, Stage},
     state::{Badge, Cell, SHADER_TAB},
     wires,
 };
@@ -46,21 +47,32 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let presenting = session.view.presenting;
     let several = presenting && !session.document.variants.is_empty();
     let footer = several.then(|| Footer::of(ui, whole, session, registry));
-    let arrangement = compare::arrange(session, whole, footer.as_ref().map_or(0.0, |f| f.height));
-    let mut over = Overlaid { context, places: Vec::new(), written: Vec::new() };
-    let (rect, frame) = if arrangement.is_single() {
-        let stage = presenting.then(|| Stage::of(ui, whole, session, registry));
+    let high = footer.as_ref().map_or(0.0, |footer| footer.height);
+    let mut arrangement = compare::arrange(session, whole, high, 0.0);
+    let needed = if presenting { Needed::so_far(ui, whole, session) } else { Needed::default() };
+    let mut over = Overlaid { context, places: Vec::new(), written: Vec::new(), sizes: Needed::default() };
+    let (rect, frame, pictures) = if arrangement.is_single() {
+        let stage = presenting.then(|| Stage::of(ui, whole, session, registry, needed));
         let frame = stage.as_ref().map_or(whole, |stage| stage.picture);
         over.single(ui, [whole, frame], stage.as_ref());
-        (whole, frame)
+        (whole, frame, stage.map_or_else(Vec::new, |stage| vec![stage.free()]))
     } else {
-        over.views(ui, &arrangement);
-        (arrangement.picture, arrangement.picture)
+        let spot = several.then(|| Spot::of_pictures(ui, arrangement.cells[0].rect, session, needed));
+        if let Some(Spot::Band(band)) = spot {
+            arrangement = compare::arrange(session, whole, high, band);
+        }
+        over.views(ui, &arrangement, spot);
+        let pictures = arrangement.cells.iter().map(|cell| cell.rect).collect();
+        (arrangement.picture, arrangement.picture, pictures)
     };
-    let Overlaid { mut places, written, .. } = over;
+    let Overlaid { mut places, written, sizes, .. } = over;
     places.extend(compare::show(ui, &arrangement, context));
     if let Some(footer) = footer {
         footer.paint(ui, whole, session, registry);
+    }
+    if presenting {
+        sizes.keep(ui, whole, session);
+        presentation::message(ui, whole, &pictures, &written, session);
     }
     let mut area = PictureArea { rect, frame, written, ..PictureArea::default() };
     if !arrangement.is_single() {
@@ -85,6 +97,8 @@ struct Overlaid<'c, 'a> {
     places: Vec<Rect>,
     /// Rectangles of badges, caption and axes.
     written: Vec<Rect>,
+    /// Room that badges, legends and the message about an error take in a presentation.
+    sizes: Needed,
 }
 
 impl<'a> Overlaid<'_, 'a> {
@@ -102,13 +116,20 @@ impl<'a> Overlaid<'_, 'a> {
         self.written.extend(labels::labels(ui, rect, view, session, registry));
         self.written.extend(explain::vectors(ui, view, self.sight(rect)));
         ui.scope(|ui| {
-            let free = stage.map_or(rect, |stage| stage.paint(ui, session, registry));
-            let covered = self.stale(ui, free);
-            let top = if covered.is_positive() { covered.bottom() + 4.0 } else { free.top() + 8.0 };
-            let top = self.channel(ui, free, (Align2::LEFT_TOP, top), view);
+            let mut placer = match stage {
+                Some(stage) => {
+                    stage.paint(ui, session, registry);
+                    self.written.extend(stage.plates().into_iter().filter(Rect::is_positive));
+                    stage.placer()
+                }
+                None => Placer::column(rect, Align2::LEFT_TOP, rect.top() + placer::EDGE),
+            };
+            self.stale(ui, rect, &mut placer);
+            self.channel(ui, &mut placer, view);
             let signs = badges_of(view, whole, ui, session, registry);
             let signs = signs.into_iter().chain(of_disk(session)).collect();
-            self.badges(ui, free, (Align2::LEFT_TOP, top), signs);
+            self.badges(ui, &mut placer, signs);
+            self.sizes = Needed::of(&placer.sizes, placer.room.width());
             hint(ui, rect, session);
         });
         if stage.is_none() {
@@ -120,13 +141,12 @@ impl<'a> Overlaid<'_, 'a> {
         }
     }
 
-    /// Paints the legend of a view's debug channel from a corner on, if there is one. Returns the top of the free space
-    /// below.
-    fn channel(&mut self, ui: &mut Ui, rect: Rect, (side, top): (Align2, f32), view: usize) -> f32 {
-        let Some(place) = channels::legend(ui, rect, (side, top), view, self.context) else { return top };
-        self.places.push(place);
-        self.written.push(place);
-        place.bottom() + 4.0
+    /// Paints the legend of a view's debug channel, if there is one.
+    fn channel(&mut self, ui: &mut Ui, placer: &mut Placer, view: usize) {
+        if let Some(place) = channels::legend(ui, placer, view, self.context) {
+            self.places.push(place);
+            self.written.push(place);
+        }
     }
 
     /// A picture for marks and vectors, which keep clear of what was written over it in the previous frame.
@@ -153,8 +173,8 @@ impl<'a> Overlaid<'_, 'a> {
     }
 
     /// Paints the overlays of a comparison: marks and handles into every view, and messages about the picture into the
-    /// active one.
-    fn views(&mut self, ui: &mut Ui, arrangement: &Arrangement) {
+    /// active one. In a presentation, `spot` is the place of its plates.
+    fn views(&mut self, ui: &mut Ui, arrangement: &Arrangement, spot: Option<Spot>) {
         let (session, registry) = (self.context.session(), self.context.registry());
         let cells = &arrangement.cells;
         let layout = session.document.comparison.layout;
@@ -177,26 +197,56 @@ impl<'a> Overlaid<'_, 'a> {
             self.written.extend(explain::vectors(ui, cell.view, self.sight(cell.rect)));
         }
         let active = cells.iter().find(|cell| cell.view == session.active());
-        let mut stale = None;
-        if let Some(cell) = active.or(cells.first()) {
-            ui.scope(|ui| {
-                let covered = self.stale(ui, cell.rect);
-                hint(ui, cell.rect, session);
-                stale = Some((cell.view, covered)).filter(|_| covered.is_positive());
-            });
+        let told = active.or(cells.first());
+        if let Some(cell) = told {
+            hint(ui, cell.rect, session);
         }
+        if let Some(spot) = spot {
+            ui.scope(|ui| self.on_slide(ui, cells, spot));
+            return;
+        }
+        let covered = told.map(|cell| {
+            let mut placer = Placer::column(cell.rect, Align2::LEFT_TOP, cell.rect.top() + placer::EDGE);
+            (cell.view, ui.scope(|ui| self.stale(ui, cell.rect, &mut placer)).inner)
+        });
         if let Some((map, reason)) = arrangement.map.zip(session.no_difference()) {
             // Objects are in the middle.
             let (font, low) = (TextStyle::Body.resolve(ui.style()), map.center_bottom() - vec2(0.0, 16.0));
-            self.written.push(plate(ui, map, Align2::CENTER_BOTTOM, low, &reason, font, 0.0));
+            let put = |size| Align2::CENTER_BOTTOM.anchor_size(low, size);
+            self.written.push(plate(ui, map, put, &reason, font, 0.0));
         }
-        ui.scope(|ui| {
-            if session.view.presenting {
-                let body = FontId::proportional(CAPTION * arrangement.picture.height());
-                ui.style_mut().text_styles.insert(TextStyle::Body, body);
+        ui.scope(|ui| self.badges_in_views(ui, cells, covered.filter(|(_, place)| place.is_positive())));
+    }
+
+    /// Paints the plates of a presentation of several views, where they hide no object.
+    fn on_slide(&mut self, ui: &mut Ui, cells: &[Cell], spot: Spot) {
+        let (session, registry) = (self.context.session(), self.context.registry());
+        let layout = session.document.comparison.layout;
+        let palette = Palette::here(ui);
+        let body = FontId::proportional(CAPTION * ui.max_rect().height());
+        ui.style_mut().text_styles.insert(TextStyle::Body, body);
+        let mut disk = of_disk(session);
+        let mut shared: Option<Placer> = None;
+        // The plates of a difference are those of both views.
+        let shown: Vec<_> = cells.iter().filter(|c| c.part.is_positive() || layout.is_map()).collect();
+        let told = shown.iter().find(|cell| cell.view == session.active()).or(shown.first());
+        let told = told.map(|cell| cell.view);
+        for cell in &shown {
+            let mut placer = shared.take().filter(|_| !layout.is_beside()).unwrap_or_else(|| {
+                let above = cell.rect.with_min_y(cell.rect.top() - spot.above()).with_max_y(cell.rect.top());
+                ui.painter().rect_filled(above, 0.0, palette.panel);
+                spot.placer(cell.rect)
+            });
+            if told == Some(cell.view) {
+                self.stale(ui, cell.rect, &mut placer);
             }
-            self.badges_in_views(ui, cells, stale);
-        });
+            self.channel(ui, &mut placer, cell.view);
+            let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
+            signs.extend(disk.take());
+            self.badges(ui, &mut placer, signs);
+            self.sizes = self.sizes.or(Needed::of(&placer.sizes, cell.rect.width()));
+            shared = Some(placer);
+        }
     }
 
     /// Paints the legends and badges of views, below the message about a shader error in one of them.
@@ -226,33 +276,38 @@ impl<'a> Overlaid<'_, 'a> {
                 Edge::Horizontal if is_second => (Align2::LEFT_TOP, first.max(cell.part.top() + 8.0)),
                 _ => (Align2::LEFT_TOP, next.filter(|_| !apart).unwrap_or(first)),
             };
-            let top = self.channel(ui, cell.rect, from, cell.view);
+            let mut placer = Placer::column(cell.rect, from.0, from.1);
+            self.channel(ui, &mut placer, cell.view);
             let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
             signs.extend(disk.take());
             // Keeps badges on their own side of the edge of a wipe, if there is room.
             let beside = cell.part.is_positive() && cell.part.width() >= NARROWEST * scale;
             let room = if beside { cell.part } else { cell.rect };
-            next = Some(self.badges(ui, room, (from.0, top), signs));
+            let mut placer = Placer::column(room, from.0, placer.below());
+            self.badges(ui, &mut placer, signs);
+            next = Some(placer.below());
         }
     }
 
     /// Shows that the picture does not match the shaders, in a way that stands out on any picture: a frame, and a filled
     /// plate that opens the panel with the errors. Returns the rectangle of the plate.
-    fn stale(&mut self, ui: &mut Ui, rect: Rect) -> Rect {
+    fn stale(&mut self, ui: &mut Ui, rect: Rect, placer: &mut Placer) -> Rect {
         let (session, registry) = (self.context.session(), self.context.registry());
         let shown = registry.model(session.model_shown()).map_or("", |m| m.declaration.name);
         let Some((heading, lines)) = stale_words(&session.shaders, shown) else { return Rect::NOTHING };
         let palette = Palette::here(ui);
-        let painter = ui.painter_at(rect);
-        painter.rect_stroke(rect, 0.0, Stroke::new(3.0, palette.error), StrokeKind::Inside);
+        ui.painter_at(rect).rect_stroke(rect, 0.0, Stroke::new(3.0, palette.error), StrokeKind::Inside);
+        let painter = ui.painter_at(placer.room);
         // Without them, there is room for the frame only.
         // The editor has the messages at their lines, and the object is what is looked at.
+        let low = PLATE * placer.room.height() - placer::EDGE;
         let (said, tallest) = match session.edits_troubles() {
-            true => (&lines[..0], PLATE * rect.height() - MARGIN),
+            true => (&lines[..0], low),
+            false if session.view.presenting => (&lines[..], low),
             false => (&lines[..], f32::INFINITY),
         };
-        let Some(galleys) = that_fit(ui, rect, &heading, said, tallest) else { return Rect::NOTHING };
-        let place = Rect::from_min_size(rect.min + Vec2::splat(MARGIN), size_of(&galleys));
+        let Some(galleys) = that_fit(ui, placer.room, &heading, said, tallest) else { return Rect::NOTHING };
+        let place = placer.place(size_of(&galleys));
         let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
         theme::says(&response, WidgetType::Button, format!("{heading}: {}", lines.join("; ")));
         // The rim stands out even where the picture has the colour of the plate.
@@ -282,14 +337,15 @@ impl<'a> Overlaid<'_, 'a> {
         place
     }
 
-    /// Paints a column of badges from a corner on. Returns the top of the free space below.
-    fn badges(&mut self, ui: &mut Ui, rect: Rect, (side, top): (Align2, f32), all: Vec<Sign>) -> f32 {
+    /// Paints badges, one after the other.
+    fn badges(&mut self, ui: &mut Ui, placer: &mut Placer, all: Vec<Sign>) {
         let palette = Palette::here(ui);
         let scale = theme::scale_here(ui);
         let font = theme::bold(ui);
-        let mut at = pos2(side.pos_in_rect(&rect.shrink(8.0)).x, top);
+        let rect = placer.room;
         for (badge, actions) in all {
-            let place = plate(ui, rect, side, at, &badge.text, font.clone(), 18.0 * scale);
+            let put = |size| placer.place(size);
+            let place = plate(ui, rect, put, &badge.text, font.clone(), 18.0 * scale);
             let sense = if actions.is_empty() { Sense::hover() | Sense::FOCUSABLE } else { Sense::click() };
             let response = ui.interact(place, ui.id().with(("badge", &badge.text)), sense);
             let painter = ui.painter_at(rect);
@@ -316,9 +372,7 @@ impl<'a> Overlaid<'_, 'a> {
                 }
                 response.on_hover_text(&badge.help);
             }
-            at.y = place.bottom() + 4.0;
         }
-        at.y
     }
 }
 
@@ -347,8 +401,6 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
     Some((heading, lines))
 }
 
-/// Distance of the message about a shader error from the edges of the picture, in points.
-const MARGIN: f32 = 10.0;
 /// Space around the message about a shader error, and of the sign at its left, in points.
 const PADDING: Vec2 = vec2(10.0, 7.0);
 const SIGN: f32 = 26.0;
@@ -363,7 +415,8 @@ fn size_of(galleys: &[Arc<Galley>]) -> Vec2 {
 /// Heading and lines, as far as their plate leaves room for the picture: that has priority, then the heading; the panel
 /// lists all errors. The plate is not taller than `tallest`.
 fn that_fit(ui: &Ui, rect: Rect, heading: &str, lines: &[String], tallest: f32) -> Option<Vec<Arc<Galley>>> {
-    let room = (rect.width() - 2.0 * MARGIN).min(560.0 * theme::scale_here(ui)) - SIGN - 2.0 * PADDING.x;
+    let room =
+        (rect.width() - 2.0 * placer::EDGE).min(560.0 * theme::scale_here(ui)) - SIGN - 2.0 * PADDING.x;
     let room = room.max(64.0);
     let body = TextStyle::Body.resolve(ui.style()).size;
     let lay_out = |text: &str, font: FontId, rows: usize, room: f32| {
@@ -394,13 +447,13 @@ fn that_fit(ui: &Ui, rect: Rect, heading: &str, lines: &[String], tallest: f32) 
     Some(galleys).filter(|galleys| !too_large(galleys))
 }
 
-/// Text on a background that is readable over any picture. Returns the rectangle.
-fn plate(ui: &Ui, rect: Rect, anchor: Align2, at: Pos2, text: &str, font: FontId, left: f32) -> Rect {
+/// Text on a background that is readable over any picture, where `put` puts a plate of its size. Returns the rectangle.
+fn plate(ui: &Ui, rect: Rect, put: impl FnOnce(Vec2) -> Rect, text: &str, font: FontId, left: f32) -> Rect {
     let palette = Palette::here(ui);
     let padding = vec2(8.0, 4.0) * theme::scale_here(ui);
     let room = rect.width() - 16.0 - 2.0 * padding.x - left;
     let galley = ui.painter().layout(text.to_owned(), font, palette.text, room.max(64.0));
-    let place = anchor.anchor_size(at, galley.size() + 2.0 * padding + vec2(left, 0.0));
+    let place = put(galley.size() + 2.0 * padding + vec2(left, 0.0));
     let painter = ui.painter_at(rect);
     painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
     painter.galley(place.min + padding + vec2(left, 0.0), galley, palette.text);
@@ -523,5 +576,6 @@ fn hint(ui: &Ui, rect: Rect, session: &Session) {
         return;
     };
     let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, FontFamily::Proportional);
-    plate(ui, rect, Align2::CENTER_CENTER, rect.center(), text, font, 0.0);
+    let put = |size| Rect::from_center_size(rect.center(), size);
+    plate(ui, rect, put, text, font, 0.0);
 }

@@ -80,7 +80,7 @@ use lights::Lights;
 pub(crate) use lights::within_bounds;
 use meshes::{Meshes, Prepared};
 use object::{Draw, hidden};
-pub use outlines::{covered, outlines};
+pub use outlines::{covered, covers_alike, outlines};
 pub(crate) use raster::sample_positions;
 use raster::{Screen, TILE, Tile, Triangle, even};
 pub use vertices::brightest_vertex;

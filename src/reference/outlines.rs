@@ -30,6 +30,14 @@ pub fn covered(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<b
     render(&plain(scene), registry, settings).pixels.iter().map(|pixel| pixel.w > 0.0).collect()
 }
 
+/// True if the objects, and the lights that are seen, [cover](covered) the same pixels in two scenes, whatever the
+/// models, the materials and the display.
+#[must_use]
+pub fn covers_alike(a: &Scene, b: &Scene) -> bool {
+    let bodies = |scene: &Scene| Scene { display: Default::default(), ..plain(scene) };
+    bodies(a) == bodies(b)
+}
+
 /// True for each pixel whose right or lower neighbour shows another object or the background, row by row from
 /// the top.
 #[must_use]
@@ -86,6 +94,20 @@ mod tests {
                 assert!(all.contains(&true));
             }
         }
+    }
+
+    #[test]
+    fn views_of_the_same_bodies_cover_alike_and_others_do_not() {
+        let scene = Scene::default();
+        let mut views = vec![scene.clone(); 4];
+        views[0].display.exposure += 1.0;
+        views[0].reflection_model = "glass".to_owned();
+        views[0].objects[0].material.set("alpha", Value::Integer(7));
+        views[1].objects[0].tessellation = Some(5);
+        views[2].observer.field_of_view += 1.0;
+        views[3].objects[0].visible = false;
+        let alike: Vec<_> = views.iter().map(|view| covers_alike(view, &scene)).collect();
+        assert_eq!(alike, [true, false, false, false]);
     }
 
     #[test]

@@ -92,7 +92,7 @@ fn layouts(
     };
     let mut layout = shown;
     if width + 16.0 > most {
-        choose(ui, "layout", Layout::ALL, &mut layout, Layout::name, Layout::summary);
+        choose(ui, "layout", Layout::ALL, &mut layout, Layout::name, Layout::summary, None);
     } else if let Some(other) = values(ui, "Layout", Layout::ALL, shown, Layout::name, tip) {
         layout = other;
     }
@@ -102,7 +102,7 @@ fn layouts(
     width
 }
 
-/// A drop-down list of options.
+/// A drop-down list of options, which is beside its label and as wide as its text, or without a label of a given width.
 pub(super) fn choose<T: Copy + PartialEq>(
     ui: &mut Ui,
     label: &str,
@@ -110,15 +110,31 @@ pub(super) fn choose<T: Copy + PartialEq>(
     value: &mut T,
     name: fn(T) -> &'static str,
     summary: fn(T) -> &'static str,
+    width: Option<f32>,
 ) {
-    ui.label(theme::small(ui, label));
     let list = egui::ComboBox::from_id_salt(("comparison", label)).selected_text(name(*value));
-    let shown = list.show_ui(ui, |ui| {
+    let entries = |ui: &mut Ui| {
         for choice in all {
             ui.selectable_value(value, *choice, name(*choice)).on_hover_text(summary(*choice));
         }
+    };
+    let shown = match width {
+        None => {
+            ui.label(theme::small(ui, label));
+            list.show_ui(ui, entries)
+        }
+        Some(width) => {
+            let left = ui.cursor().left();
+            let place = Rect::from_x_y_ranges(left..=left + width, ui.max_rect().y_range());
+            let inside = UiBuilder::new().max_rect(place).layout(Direction::left_to_right(Align::Center));
+            ui.scope_builder(inside, |ui| list.width(width).truncate().show_ui(ui, entries)).inner
+        }
+    };
+    let help = summary(*value);
+    shown.response.on_hover_text(match width {
+        None => help.to_owned(),
+        Some(_) => format!("{label}: {help}"),
     });
-    shown.response.on_hover_text(summary(*value));
 }
 
 /// Space between two statistics, in points.
@@ -133,7 +149,10 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
             let later =
                 "The difference is calculated once both pictures have all samples of light with extent.";
             let help = if session.incomparable().is_some() { &reason } else { later };
-            let galley = theme::elided(ui, &reason, TextStyle::Body, palette.weak, room);
+            // In small letters, the row has room for two lines.
+            let whole = theme::elided(ui, &reason, TextStyle::Body, palette.weak, f32::INFINITY);
+            let two = || theme::lines(ui, &reason, TextStyle::Small, palette.weak, (room, 2));
+            let galley = if whole.size().x <= room { whole } else { two() };
             let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
             ui.painter().galley(rect.min, galley, palette.weak);
             theme::says(&response, WidgetType::Label, &reason);

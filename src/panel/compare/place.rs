@@ -76,6 +76,8 @@ pub(super) struct Frame<'a> {
     pub(super) views: Vec<usize>,
     /// Height of a header.
     pub(super) high: f32,
+    /// Height of the space between a header and its view.
+    pub(super) band: f32,
 }
 
 impl Frame<'_> {
@@ -84,7 +86,7 @@ impl Frame<'_> {
     }
 
     pub(super) fn below_header(&self, rect: Rect) -> Rect {
-        Rect::from_min_max(rect.min + vec2(0.0, self.high), rect.max)
+        Rect::from_min_max(rect.min + vec2(0.0, self.high + self.band), rect.max)
     }
 
     pub(super) fn header(&self, rect: Rect) -> Rect {

@@ -3,7 +3,7 @@
 use super::{probe, rows, side};
 use crate::{
     explain::Seen,
-    panel::{keys, maths, prelude::*},
+    panel::{keys, lesson::point, maths, prelude::*},
 };
 
 /// Shows the refraction of the view, for models that bend light. Returns true if the ray is to be seen from the side.
@@ -18,7 +18,8 @@ pub(super) fn refraction(ui: &mut Ui, seen: &Seen, session: &Session) -> bool {
     for line in refraction.lines() {
         let mut text = maths::prose(ui, &line, TextStyle::Body);
         text.wrap.max_width = ui.available_width();
-        ui.add(Label::new(text).wrap().selectable(true));
+        let place = ui.add(Label::new(text).wrap().selectable(true)).rect;
+        point::line(ui, &line, seen.position, place);
     }
     aside.inner
 }

@@ -1,7 +1,7 @@
 //! Points at the controls that a step names: each gets a ring, and is scrolled into view once.
 //!
-//! The code that shows a control reports it by [`knob`], [`menu`], [`button`], [`tab`] or [`part`]; without a lesson
-//! that costs a look-up in egui's memory.
+//! The code that shows a control reports it by [`knob`], [`menu`], [`button`], [`tab`], [`part`] or [`line()`]; without
+//! a lesson that costs a look-up in egui's memory.
 
 use bevy_egui::egui::{LayerId, WidgetRect};
 
@@ -27,8 +27,8 @@ struct Pointed {
     since: f64,
     /// The pass after which nothing is scrolled into view any more.
     until: u64,
-    /// Controls that were scrolled into view, or already are in view.
-    revealed: Vec<Control>,
+    /// Controls that were scrolled into view, or already are in view; lines with the point that they explain.
+    revealed: Vec<(Control, Option<Vec3>)>,
     found: Vec<(Rect, Rect, LayerId)>,
 }
 
@@ -57,8 +57,14 @@ pub(in crate::panel) fn begin(ctx: &Context, session: &Session) {
 
 /// Reports that a control is shown here.
 fn shown(ui: &Ui, rect: Rect, is: impl Fn(&Control) -> bool) {
+    shown_of(ui, None, rect, is);
+}
+
+/// Reports that a control is shown here, which is scrolled into view once for each point that it explains.
+fn shown_of(ui: &Ui, point: Option<Vec3>, rect: Rect, is: impl Fn(&Control) -> bool) {
     let found = kept::with(ui.ctx(), |pointed: &mut Pointed| {
         let control = pointed.controls.iter().find(|control| is(control))?.clone();
+        let control = (control, point);
         Some((pointed.revealed.contains(&control), control))
     });
     let Some((revealed, control)) = found.filter(|_| ui.is_visible() && rect.is_positive()) else { return };
@@ -72,6 +78,7 @@ fn shown(ui: &Ui, rect: Rect, is: impl Fn(&Control) -> bool) {
     kept::with(ui.ctx(), |pointed: &mut Pointed| {
         // Panels that settle may move it out of sight again, but what has no room is not sought for ever.
         if !revealed && (!hidden || pass > pointed.until) {
+            pointed.revealed.retain(|(known, _)| *known != control.0);
             pointed.revealed.push(control);
         }
         pointed.found.push(place);
@@ -159,6 +166,12 @@ pub(in crate::panel) fn tab(ui: &Ui, id: &str, rect: Rect) {
 pub(in crate::panel) fn part(ui: &Ui, session: &Session, part: Selection, rect: Rect) {
     let document = &session.document;
     shown(ui, rect, |control| matches!(control, Control::Part(name) if name.find(document) == Some(part)));
+}
+
+/// Reports a line of *Explain* about a point.
+pub(in crate::panel) fn line(ui: &Ui, text: &str, point: Vec3, rect: Rect) {
+    let gives = |value: &str| text.contains(&format!("{value} = "));
+    shown_of(ui, Some(point), rect, |control| matches!(control, Control::Line(value) if gives(value)));
 }
 
 /// True if the step points at a part of the scene, so that the scene list must be visible.

@@ -152,13 +152,13 @@ fn row(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, kind: Kind, context: &mut 
             } else {
                 ui.add_space(icon::SIZE + 4.0);
             }
-            if let Some(value) = value(panel, entry, drawn.map(|drawn| &**drawn)) {
-                ui.label(theme::strong(ui, value));
-            }
+            let value = value(panel, entry, drawn.map(|drawn| &**drawn));
+            let below = value_beside(ui, panel, value);
             ui.with_layout(Layout::top_down(Align::Min), |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;
                 let colour = if entry.shown { palette.text } else { palette.weak };
                 ui.add(Label::new(RichText::new(&name).color(colour)).wrap());
+                below.into_iter().for_each(|value| _ = ui.label(theme::strong(ui, value)));
                 if entry.slot == Slot::Live
                     && let Some((scene, object)) = session.plotted()
                     && let Some(i) = scene.objects.iter().position(|o| std::ptr::eq(o, object))
@@ -175,23 +175,43 @@ fn row(ui: &mut Ui, panel: &PlotPanel, entry: &Entry, kind: Kind, context: &mut 
     });
 }
 
+/// The least room for a name beside its value, in points.
+const NAME: f32 = 96.0;
+
+/// Shows a value at the right, with the room of the longest: names wrap alike whether there is one or not. Returns the
+/// line to be shown below the name where there is too little room.
+fn value_beside(ui: &mut Ui, panel: &PlotPanel, value: Option<String>) -> Option<String> {
+    let longest = panel.figure.as_ref().map_or("", |built| &*built.longest);
+    if longest.is_empty() {
+        return value;
+    }
+    let width = |text: &str| {
+        let font = theme::bold(ui);
+        ui.painter().layout_no_wrap(text.to_owned(), font, Color32::WHITE).size().x
+    };
+    let width = value.iter().map(|value| width(value)).fold(width(longest), f32::max);
+    if ui.available_width() - width < NAME {
+        return Some(value.unwrap_or_else(|| " ".to_owned()));
+    }
+    let room = vec2(width, ui.text_style_height(&TextStyle::Body));
+    ui.allocate_ui_with_layout(room, Layout::right_to_left(Align::Min), |ui| {
+        ui.set_min_width(width);
+        value.into_iter().for_each(|value| _ = ui.label(theme::strong(ui, value)));
+    });
+    None
+}
+
 /// The value of a curve where the plot is read.
 fn value(panel: &PlotPanel, entry: &Entry, drawn: Option<&Drawn>) -> Option<String> {
     let sheet = &panel.figure.as_ref()?.sheet;
-    let value = match (panel.reading.filter(|_| entry.shown)?, drawn?) {
-        (Reading::Angle(angle), Drawn::Curve(curve)) => {
-            let text = |v: f64| match curve.sigma_at(angle) {
-                Some(sigma) if v.is_finite() => reading::with_error(v, sigma),
-                _ => reading::text(v),
-            };
-            return Some(reading::of_curve(sheet, curve, angle).map_or_else(|| "–".to_owned(), text));
-        }
+    match (panel.reading.filter(|_| entry.shown)?, drawn?) {
+        (Reading::Angle(angle), Drawn::Curve(curve)) => Some(reading::curve_text(sheet, curve, angle)),
         (Reading::Angles(half, difference), Drawn::Slice(slice)) => {
-            reading::of_slice(sheet, slice, [half, difference])
+            let value = reading::of_slice(sheet, slice, [half, difference]);
+            Some(value.map_or_else(|| "–".to_owned(), reading::text))
         }
-        _ => return None,
-    };
-    Some(value.map_or_else(|| "–".to_owned(), reading::text))
+        _ => None,
+    }
 }
 
 /// The sample of a curve, which opens the choice of its colour and its dash.

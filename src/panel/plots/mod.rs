@@ -55,6 +55,8 @@ struct Built {
     notes: Vec<String>,
     /// The place in the list of each curve of the sheet.
     slots: Vec<Slot>,
+    /// The longest value in the list.
+    longest: String,
 }
 
 impl PlotPanel {
@@ -145,8 +147,12 @@ impl PlotPanel {
         let sheet = request.sheet(drawn.iter().map(|(_, style, drawn)| (*style, &**drawn)));
         let (figure, notes) = bare(sheet.figure());
         self.textures.stale = true;
-        let slots = drawn.iter().map(|(slot, ..)| *slot).collect();
-        self.figure = Some(Built { of, sheet, figure, notes, slots });
+        let slots: Vec<_> = drawn.iter().map(|(slot, ..)| *slot).collect();
+        // While a knob is turned, the room for the values only grows.
+        let before = self.figure.take().filter(|built| built.of.1.kind == kind && built.slots == slots);
+        let all = before.map(|built| built.longest).into_iter().chain([reading::longest(&sheet)]);
+        let longest = all.max_by_key(|text| text.chars().count()).unwrap_or_default();
+        self.figure = Some(Built { of, sheet, figure, notes, slots, longest });
     }
 }
 

@@ -94,6 +94,31 @@ pub(super) fn of_slice(sheet: &Sheet, slice: &Slice, [half, difference]: [f64; 2
     slice.values.get(row * side + index(half)).map(|f| sheet.value(*f))
 }
 
+/// The value of a curve at an angle in words, with its uncertainty if that is known.
+pub(super) fn curve_text(sheet: &Sheet, curve: &Curve, angle: f64) -> String {
+    let said = |v: f64| match curve.sigma_at(angle) {
+        Some(sigma) if v.is_finite() => with_error(v, sigma),
+        _ => text(v),
+    };
+    of_curve(sheet, curve, angle).map_or_else(|| "–".to_owned(), said)
+}
+
+/// The longest of the values that can be read: the list keeps room for it, so that it does not move with the pointer.
+pub(super) fn longest(sheet: &Sheet) -> String {
+    /// Number of values of each curve that are looked at: neighbours have as many digits.
+    const MOST: usize = 128;
+    let step = |count: usize| count.div_ceil(MOST).max(1);
+    let curves = sheet.curves.iter().flat_map(|curve| {
+        let points = curve.points.iter().step_by(step(curve.points.len()));
+        points.map(move |point| curve_text(sheet, curve, point.angle))
+    });
+    let slices = sheet.slices.iter().flat_map(|slice| {
+        let values = slice.values.iter().step_by(step(slice.values.len()));
+        values.map(move |value| text(sheet.value(*value)))
+    });
+    curves.chain(slices).max_by_key(|text| text.chars().count()).unwrap_or_default()
+}
+
 /// A value with so many digits as can be told apart.
 pub(super) fn text(value: f64) -> String {
     if value.is_nan() {
@@ -154,6 +179,21 @@ mod tests {
             assert_eq!(of_slice(&sheet, &slice, [half, difference]), Some(i as f64));
         }
         assert_eq!(of_slice(&sheet, &slice, [90.0, 90.0]), Some(2.0));
+    }
+
+    #[test]
+    fn the_longest_value_of_all_curves_is_known_before_any_is_read() {
+        let mut sheet = Sheet::new(Setup { kind: Kind::Brdf, theta_i: 0.0, phi_i: 0.0 });
+        assert_eq!(longest(&sheet), "");
+        let of = |values: &[f32]| {
+            let points = values.iter().zip([0.0, 10.0, 20.0]);
+            let points = points.map(|(value, angle)| Point { angle, rgb: Vec3::splat(*value) });
+            Curve { points: points.collect(), ..curve(false) }
+        };
+        sheet.curves = vec![of(&[1.0, 2.0]), of(&[0.5, 1.5e-7, 3.0]), of(&[12.3456])];
+        assert_eq!(longest(&sheet), "1.500 × 10⁻⁷");
+        sheet.curves[2].sigma = vec![0.0025];
+        assert_eq!(longest(&sheet), "12.3456 ± 0.0025");
     }
 
     #[test]

@@ -3,13 +3,12 @@
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::{BODY, Block, CAPTION, Definition, columns, padding, since};
+use super::{BODY, Block, CAPTION, Definition, columns, padding, sides};
 use crate::{
     caption::{Part, single},
     panel::{
-        caption::{Lines, parts_of},
+        caption::Lines,
         maths::{self, Sizes},
-        notice,
         prelude::*,
     },
     scene::comparison::Layout,
@@ -34,6 +33,8 @@ struct Set {
     side: usize,
     block: Block,
     at: Pos2,
+    /// True if the letter of the view stands before it.
+    lettered: bool,
 }
 
 /// The footer of a presentation of several views.
@@ -52,10 +53,7 @@ pub struct Footer {
 }
 
 impl Side {
-    fn of(session: &Session, view: usize, registry: &Registry) -> Self {
-        let seen = (view != session.active()).then(|| session.document.seen(view, registry)).flatten();
-        let scene = seen.as_ref().map_or(session.scene(), |(scene, _)| scene);
-        let mut parts = parts_of(scene, session.terms_of(view), registry);
+    fn of(scene: &Scene, view: usize, mut parts: Vec<Part>, registry: &Registry) -> Self {
         let letter = LETTERS.get(view).copied().unwrap_or_default();
         parts.insert(0, Part::new(0, format!("{letter}:")));
         // With several models, an equation would seem to apply to all of them.
@@ -74,14 +72,21 @@ impl Footer {
             Layout::Single => vec![session.active()],
             _ => vec![0, session.compared_with().min(session.document.variants.len())],
         };
-        let sides: Vec<_> = views.into_iter().map(|view| Side::of(session, view, registry)).collect();
+        let seen = |view: &usize| (*view != session.active()).then(|| session.document.seen(*view, registry));
+        let seen: Vec<_> = views.iter().map(|view| seen(view).flatten()).collect();
+        let scenes = seen.iter().map(|seen| seen.as_ref().map_or(session.scene(), |(scene, _)| scene));
+        let shown: Vec<_> = scenes.zip(views.iter().map(|view| session.terms_of(*view))).collect();
+        let captions = sides::alike(&shown, registry);
+        let sides = shown.iter().zip(&views).zip(captions);
+        let sides: Vec<_> =
+            sides.map(|((shown, view), parts)| Side::of(shown.0, *view, parts, registry)).collect();
         let mut hasher = DefaultHasher::new();
         format!("{sides:?} {whole:?}").hash(&mut hasher);
         let (ctx, id) = (ui.ctx().clone(), Id::new("footer of the presentation"));
         kept::of_key(&ctx, id, hasher.finish(), || Self::laid_out(ui, whole, sides))
     }
 
-    fn laid_out(ui: &mut Ui, whole: Rect, sides: Vec<Side>) -> Self {
+    fn laid_out(ui: &mut Ui, whole: Rect, mut sides: Vec<Side>) -> Self {
         let (height, padding) = (whole.height(), padding(whole));
         let most = whole.width() - 2.0 * padding.x;
         let several = sides.len() > 1;
@@ -90,9 +95,11 @@ impl Footer {
         let left = [padding.x, padding.x + half + gap];
         let words =
             |side: &Side| Lines::of(ui, side.parts.clone(), CAPTION * height, Palette::here(ui).text, half);
+        fit(&mut sides, |side| !words(side).cut);
         let words = sides.iter().map(|side| words(side).size.y).fold(0.0, f32::max);
         let mut trial = ui.new_child(UiBuilder::new().id_salt("footer trial").max_rect(whole).invisible());
-        let room = Room { half, most, left, space: padding.y, limit: MOST * height };
+        let indent = letter(ui, "A:", height).size().x + padding.x;
+        let room = Room { half, most, left, indent, space: padding.y, limit: MOST * height };
         let mut in_size = |scale: f32| {
             let font = FontId::proportional(scale * BODY * height);
             trial.style_mut().text_styles.insert(TextStyle::Body, font);
@@ -119,8 +126,14 @@ impl Footer {
         let (height, padding) = (whole.height(), padding(whole));
         let place = whole.with_min_y(whole.bottom() - self.height);
         ui.painter().rect_filled(place, 0.0, palette.panel);
-        for Set { side, block, at } in &self.equations {
-            let Side { equation, model, .. } = &self.sides[*side];
+        for Set { side, block, at, lettered } in &self.equations {
+            let Side { equation, model, parts } = &self.sides[*side];
+            if let Some(part) = parts.first().filter(|_| *lettered) {
+                let galley = letter(ui, &part.text, height);
+                let first = galley.rows.first().and_then(|row| row.row.glyphs.first());
+                let top = at.y + block.baseline - first.map_or(0.0, |glyph| glyph.pos.y);
+                ui.painter().galley(place.min + vec2(padding.x, top), galley, palette.text);
+            }
             let model = model.as_deref().and_then(|id| registry.model(id));
             ui.push_id(("equation", side), |ui| {
                 columns(ui, block, equation, model, place.min + at.to_vec2(), self.scale * height);
@@ -128,7 +141,7 @@ impl Footer {
         }
         let (corners, width) = &self.captions;
         for (side, at) in self.sides.iter().zip(corners) {
-            let words = Lines::of(ui, side.parts.clone(), CAPTION * height, palette.text, *width);
+            let words = Lines::of(ui, side.parts.clone(), CAPTION * height, palette.text, *width).closed();
             words.paint(ui, place.min + at.to_vec2(), palette.text);
         }
         if let Some(top) = self.numbers {
@@ -138,7 +151,23 @@ impl Footer {
             let galley = theme::elided(ui, &text, FontId::proportional(CAPTION * height), ink, room);
             ui.painter().galley(place.min + vec2(padding.x, top), galley, ink);
         }
-        notice::show(ui, whole.with_max_y(place.top()), CAPTION * height, since(ui), &session.messages);
+    }
+}
+
+/// The letter of a view before its equation, on a screen of this height.
+fn letter(ui: &Ui, text: &str, height: f32) -> Arc<Galley> {
+    let font = FontId::new(CAPTION * height, theme::semibold());
+    theme::elided(ui, text, font, Palette::here(ui).text, f32::INFINITY)
+}
+
+/// Leaves parts out until all captions fit, the same ones of each.
+fn fit(sides: &mut [Side], fits: impl Fn(&Side) -> bool) {
+    while !sides.iter().all(&fits) {
+        let last = sides.iter().flat_map(|side| &side.parts).map(|part| part.rank).max().unwrap_or(0);
+        if last == 0 {
+            return;
+        }
+        sides.iter_mut().for_each(|side| side.parts.retain(|part| part.rank < last));
     }
 }
 
@@ -150,6 +179,8 @@ struct Room {
     most: f32,
     /// Left edges of both sides.
     left: [f32; 2],
+    /// Width of the letter before one of several equations above each other.
+    indent: f32,
     /// Space around equations.
     space: f32,
     /// Maximum height of all equations.
@@ -161,7 +192,10 @@ impl Room {
     fn for_all(&self, ui: &Ui, sides: &[Side]) -> Option<(Vec<Set>, f32)> {
         let wanted = wanted(sides);
         let blocks = |width: f32| wanted.iter().map(move |i| (*i, block(ui, &sides[*i].equation, width)));
-        let (narrow, wide): (Vec<_>, Vec<_>) = (blocks(self.half).collect(), blocks(self.most).collect());
+        let lettered = sides.len() > 1 && !shared(sides);
+        let indent = if lettered { self.indent } else { 0.0 };
+        let narrow: Vec<_> = blocks(self.half).collect();
+        let wide: Vec<_> = blocks(self.most - indent).collect();
         let fits = narrow.iter().all(|(_, b)| b.size.x <= self.half + 1.0);
         let above = wide.iter().map(|(_, b)| b.size.y + self.space).sum::<f32>() - self.space;
         if wanted.len() > 1 && fits {
@@ -173,9 +207,9 @@ impl Room {
         let mut top = self.space;
         let mut sets = Vec::new();
         for (side, block) in wide {
-            let at = pos2(self.left[0], top);
+            let at = pos2(self.left[0] + indent, top);
             top += block.size.y + self.space;
-            sets.push(Set { side, block, at });
+            sets.push(Set { side, block, at, lettered });
         }
         (above <= self.limit).then_some((sets, above.max(0.0)))
     }
@@ -200,17 +234,22 @@ impl Room {
         let set = |(side, block): (usize, Block)| {
             let lower = baseline - block.baseline;
             height = height.max(lower + block.size.y);
-            Set { side, at: pos2(self.left[if several { side } else { 0 }], self.space + lower), block }
+            let at = pos2(self.left[if several { side } else { 0 }], self.space + lower);
+            Set { side, block, at, lettered: false }
         };
         (blocks.into_iter().map(set).collect(), height)
     }
 }
 
+/// True if all views have one model.
+fn shared(sides: &[Side]) -> bool {
+    sides.windows(2).all(|pair| pair[0].model == pair[1].model)
+}
+
 /// The sides whose equations are shown: one that both share appears once.
 fn wanted(sides: &[Side]) -> Vec<usize> {
-    let shared = sides.windows(2).all(|pair| pair[0].model == pair[1].model);
     let mut wanted: Vec<usize> = (0..sides.len()).filter(|i| !sides[*i].equation.is_empty()).collect();
-    wanted.truncate(if shared { 1 } else { sides.len() });
+    wanted.truncate(if shared(sides) { 1 } else { sides.len() });
     wanted
 }
 
@@ -227,8 +266,7 @@ fn numbers(ui: &Ui, session: &Session, size: f32, room: f32) -> String {
     let with = LETTERS.get(session.compared_with()).copied().unwrap_or("B");
     let mut line = format!("{with} compared with A:");
     if let Some(reason) = session.no_difference() {
-        // A map says it itself.
-        return if session.document.comparison.layout.is_map() { String::new() } else { reason };
+        return reason;
     }
     let Some(numbers) = &session.facts.comparison else { return line + " …" };
     let end = if numbers.outdated { " …" } else { "" };

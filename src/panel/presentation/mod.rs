@@ -14,7 +14,7 @@ use super::{
     keys,
     marks::Lens,
     maths::{self, Sizes},
-    notice,
+    placer::Placer,
     prelude::*,
     shares::shared,
     typeset::Break,
@@ -22,8 +22,11 @@ use super::{
 use crate::reflection::{ModelEntry, Term};
 
 pub use footer::Footer;
+pub(super) use free::{Needed, Spot, message};
 
 mod footer;
+mod free;
+mod sides;
 
 /// Font size of the caption, as a fraction of the screen height. The cap height of its font is 0.727.
 pub(super) const CAPTION: f32 = 0.036;
@@ -75,12 +78,19 @@ pub struct Stage {
     plate: Rect,
     caption: Rect,
     parts: Vec<caption::Part>,
+    /// Place of badges, legend and messages.
+    spot: Spot,
 }
 
 impl Stage {
-    /// Lays out the texts for a screen.
-    #[must_use]
-    pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
+    /// Lays out the texts for a screen, with room for the plates over the picture.
+    pub(super) fn of(
+        ui: &mut Ui,
+        whole: Rect,
+        session: &Session,
+        registry: &Registry,
+        needed: Needed,
+    ) -> Self {
         // None with several models, since it would seem to apply to all of them.
         let equation =
             model_of(session, registry).map(|model| maths::definitions(model.declaration.equation));
@@ -89,23 +99,33 @@ impl Stage {
         // A turning camera must not move the layout: its position at the start counts.
         let mut hasher = DefaultHasher::new();
         let objects: Vec<_> = session.scene().shown().map(|o| (o.position, o.size)).collect();
-        format!("{equation:?} {parts:?} {whole:?} {objects:?} {}", since(ui)).hash(&mut hasher);
+        format!("{equation:?} {parts:?} {whole:?} {objects:?} {needed:?} {}", since(ui)).hash(&mut hasher);
         let (ctx, id) = (ui.ctx().clone(), Id::new("stage of the presentation"));
-        kept::of_key(&ctx, id, hasher.finish(), || Self::laid_out(ui, whole, session, equation, parts))
+        kept::of_key(&ctx, id, hasher.finish(), || {
+            let over = Self::laid_out(ui, whole, 0.0, session, (equation.clone(), parts.clone()));
+            let (discs, taken) = (discs(session, over.picture), [over.plate, over.caption]);
+            if let Some(spot) = Spot::corner(&discs, over.free(), needed, &taken) {
+                return Self { spot, ..over };
+            }
+            let spot = Spot::band(needed, whole);
+            Self { spot, ..Self::laid_out(ui, whole, spot.above(), session, (equation, parts)) }
+        })
     }
 
+    /// Lays out the texts below a band of the height `above`.
     fn laid_out(
         ui: &mut Ui,
         whole: Rect,
+        above: f32,
         session: &Session,
-        equation: Vec<Definition>,
-        parts: Vec<caption::Part>,
+        (equation, parts): (Vec<Definition>, Vec<caption::Part>),
     ) -> Self {
         let padding = padding(whole);
+        let (spot, below) = (Spot::Corner(Align2::LEFT_TOP, 0.0), whole.with_min_y(whole.top() + above));
         let most = whole.width() - 2.0 * padding.x;
         let words = Lines::of(ui, parts.clone(), CAPTION * whole.height(), Palette::here(ui).text, most);
         let caption = Align2::LEFT_BOTTOM.anchor_size(whole.left_bottom(), words.size + 2.0 * padding);
-        let room = whole.with_max_y(caption.top());
+        let room = below.with_max_y(caption.top());
         let mut ui = ui.new_child(UiBuilder::new().id_salt("trial").max_rect(whole).invisible());
         ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(BODY * whole.height()));
         let block = |columns, width, even| {
@@ -128,14 +148,14 @@ impl Stage {
         if let Some(limit) = limit {
             all.retain(|b| within(b, limit));
         }
-        let discs = discs(session, whole);
+        let discs = discs(session, below);
         let mut over = all.iter().filter(|b| b.size.y <= tall).flat_map(|block| {
             [Align2::LEFT_TOP, Align2::RIGHT_TOP, Align2::LEFT_BOTTOM]
                 .map(|corner| (block, corner.align_size_within_rect(block.size_with(padding), room)))
         });
-        if let Some((block, plate)) = over.find(|(_, plate)| hidden(&discs, [*plate, caption]) <= HIDDEN) {
+        if let Some((block, plate)) = over.find(|(_, plate)| hidden(&discs, &[*plate, caption]) <= HIDDEN) {
             let block = (*block).clone();
-            return Self { whole, picture: whole, equation, block, plate, caption, parts };
+            return Self { whole, picture: below, equation, block, plate, caption, parts, spot };
         }
         // Beside or above the picture, whichever leaves the larger picture.
         let plate = |b: &Block| Align2::LEFT_TOP.align_size_within_rect(b.size_with(padding), room);
@@ -150,34 +170,44 @@ impl Stage {
         let above = all.iter().filter(|b| b.columns != narrow.columns).map(|b| above(b));
         let (block, plate, picture) = (sides.into_iter().chain(above))
             .max_by(|a, b| scale(&a.2).total_cmp(&scale(&b.2)))
-            .unwrap_or_else(|| (narrow.clone(), Rect::NOTHING, whole));
-        Self { whole, picture, equation, block, plate, caption, parts }
+            .unwrap_or_else(|| (narrow.clone(), Rect::NOTHING, below));
+        Self { whole, picture, equation, block, plate, caption, parts, spot }
     }
 
-    /// Paints equation and caption on backgrounds that make them readable over any picture. Returns the free part of
-    /// the picture, and sets the text size for it.
-    pub(super) fn paint(&self, ui: &mut Ui, session: &Session, registry: &Registry) -> Rect {
+    /// The part of the picture above the caption.
+    pub(super) fn free(&self) -> Rect {
+        self.picture.with_max_y(self.caption.top().min(self.picture.bottom()))
+    }
+
+    /// The places of badges, legend and messages.
+    pub(super) fn placer(&self) -> Placer {
+        match self.spot {
+            Spot::Corner(..) => self.spot.placer(self.free()),
+            Spot::Band(height) => self.spot.placer(self.whole.with_min_y(self.whole.top() + height)),
+        }
+    }
+
+    /// The rectangles of equation and caption.
+    pub(super) fn plates(&self) -> [Rect; 2] {
+        [self.plate, self.caption]
+    }
+
+    /// Paints equation and caption on backgrounds that make them readable over any picture, and sets the text size for
+    /// the picture.
+    pub(super) fn paint(&self, ui: &mut Ui, session: &Session, registry: &Registry) {
         let palette = Palette::here(ui);
         let height = self.whole.height();
         let padding = padding(self.whole);
         ui.painter().rect_filled(self.caption, CornerRadius { ne: 8, ..CornerRadius::ZERO }, palette.panel);
         let width = self.whole.width() - 2.0 * padding.x;
-        let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width);
+        let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width).closed();
         words.paint(ui, self.caption.min + padding, palette.text);
-        let below = self.picture.with_max_y(self.caption.top().min(self.picture.bottom()));
-        notice::show(ui, below, CAPTION * height, since(ui), &session.messages);
-        let mut free = self.picture;
         if !self.equation.is_empty() {
             ui.painter().rect_filled(self.plate, 8.0, palette.panel);
             let model = model_of(session, registry);
             columns(ui, &self.block, &self.equation, model, self.plate.min + padding, height);
-            let above = self.plate.left() < free.center().x && self.plate.top() <= free.top();
-            if above && self.plate.right() > free.left() {
-                free.min.y = free.min.y.max(self.plate.bottom());
-            }
         }
         ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(CAPTION * height));
-        free.with_max_y(free.bottom().min(self.caption.top()))
     }
 }
 
@@ -294,7 +324,7 @@ fn discs(session: &Session, rect: Rect) -> Vec<(Pos2, f32)> {
 }
 
 /// The share of the discs that rectangles hide, by their areas.
-fn hidden(discs: &[(Pos2, f32)], plates: [Rect; 2]) -> f32 {
+fn hidden(discs: &[(Pos2, f32)], plates: &[Rect]) -> f32 {
     let covered = |at: Pos2, r: f32| plates.iter().any(|p| p.is_positive() && at.distance(p.clamp(at)) < r);
     let share = |d: &(Pos2, f32)| if covered(d.0, d.1) { d.1 * d.1 } else { 0.0 };
     discs.iter().map(share).sum::<f32>() / discs.iter().map(|d| d.1 * d.1).sum::<f32>().max(1.0)

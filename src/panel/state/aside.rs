@@ -22,14 +22,17 @@ pub(super) struct Shown {
     active: usize,
     pinned: Option<Pin>,
     pin_number: u64,
+    show_markers: bool,
     bottom_open: bool,
     bottom_tab: String,
 }
 
 impl Shown {
     pub(super) fn of(view: &View) -> Self {
-        let View { terms, channels, active, pinned, pin_number, bottom_open, bottom_tab, .. } = view.clone();
-        Self { terms, channels, active, pinned, pin_number, bottom_open, bottom_tab }
+        let View {
+            terms, channels, active, pinned, pin_number, show_markers, bottom_open, bottom_tab, ..
+        } = view.clone();
+        Self { terms, channels, active, pinned, pin_number, show_markers, bottom_open, bottom_tab }
     }
 
     pub(super) fn put(self, view: &mut View) {
@@ -37,6 +40,7 @@ impl Shown {
         view.channels = self.channels;
         view.active = self.active;
         (view.pinned, view.pin_number) = (self.pinned, self.pin_number);
+        view.show_markers = self.show_markers;
         view.bottom_open = self.bottom_open;
         view.bottom_tab = self.bottom_tab;
         view.blinking = false;
@@ -58,7 +62,7 @@ pub struct Aside {
 impl Aside {
     /// An unchanged document without a file, to be exchanged with the user's own.
     pub(super) fn around(document: Document, session: &Session) -> Self {
-        let mut view = View::default();
+        let mut view = View { show_markers: session.view.show_markers, ..View::default() };
         (view.bottom_open, view.bottom_tab) = (false, session.view.bottom_tab.clone());
         Self {
             document,
@@ -69,6 +73,11 @@ impl Aside {
             left_open: true,
             examples_open: false,
         }
+    }
+
+    /// The view settings with which a lesson begins, where these are the user's own.
+    pub(super) fn beginning(&self) -> Shown {
+        Shown { show_markers: self.shown.show_markers, ..Shown::of(&View::default()) }
     }
 }
 

@@ -148,6 +148,9 @@ impl Session {
                 view.bottom_open = false;
             }
         };
+        if let Some(on) = change.markers {
+            self.view.show_markers = on;
+        }
         if let Some(open) = change.explain {
             tab(open, EXPLAIN_TAB, &mut self.view);
         }
@@ -234,11 +237,12 @@ impl Session {
         open.step = step;
         open.answers.remove(&step);
         let (lesson, entered) = (open.lesson.clone(), open.entered.get(&step).cloned());
+        let beginning = open.aside.beginning();
         let Some(entered) = entered else {
             return match lesson.state(step, registry) {
                 Ok(scene) => {
                     self.show_scene(scene, registry);
-                    Shown::of(&View::default()).put(&mut self.view);
+                    beginning.put(&mut self.view);
                     self.plots = Plots::default();
                     self.show_from_start(step);
                     self.arrived();

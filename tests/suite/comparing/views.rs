@@ -557,6 +557,97 @@ fn legends_of_two_channels_do_not_overlap() {
 }
 
 #[test]
+fn legends_of_four_views_are_whole_within_their_pictures() {
+    for scale in [100, 200] {
+        let mut bench = bench();
+        (0..3).for_each(|_| bench.apply(Action::Compare(CompareCommand::Add)));
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        for view in 0..4 {
+            bench.apply(Action::Compare(CompareCommand::Activate(view)));
+            bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::Normals))));
+        }
+        bench.settle();
+        for cell in bench.area.cells.clone() {
+            let name = format!("Channel: {} · ", ["A", "B", "C", "D"][cell.view]);
+            let legend = bench.tree.iter().find(|s| s.label.starts_with(&name)).expect("its legend").rect;
+            assert!(cell.rect.contains_rect(legend), "{scale} %: {legend:?} in {:?}", cell.rect);
+            assert!(legend.height() < 0.5 * cell.rect.height(), "{scale} %: {legend:?} in {:?}", cell.rect);
+        }
+    }
+}
+
+#[test]
+fn the_bar_says_in_full_why_views_are_not_compared() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::Normals))));
+    bench.settle();
+    let bar = bench.shapes().into_iter().find_map(|shape| match shape {
+        Shape::Text(text) if text.galley.text().starts_with("Not compared: ") => Some(text.galley),
+        _ => None,
+    });
+    let bar = bar.expect("it says why");
+    assert!(!bar.elided && bar.rows.len() <= 2, "{} in {} rows", bar.text(), bar.rows.len());
+}
+
+#[test]
+fn the_bar_of_a_difference_stays_within_its_column() {
+    for (width, scale) in [(1280.0, 100), (1280.0, 150), (1280.0, 200), (1500.0, 100), (1920.0, 200)] {
+        let mut bench = bench();
+        bench.size = vec2(width, 900.0);
+        bench.key(Key::B, CTRL);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
+        bench.settle();
+        let picture = bench.area.rect;
+        for label in ["Amplify automatically", "largest channel", "display codes"] {
+            let place = place(&bench, label);
+            let here = format!("{width} at {scale} %: {label} at {place:?} of {picture:?}");
+            assert!(place.left() >= picture.left() && place.right() <= picture.right() + 0.5, "{here}");
+        }
+    }
+}
+
+#[test]
+fn a_heading_that_leaves_something_out_says_so() {
+    let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+    let values = [("k_a", 0.3), ("k_d", 0.7), ("k_s", 0.9)].map(|(name, v)| (name.into(), Value::Number(v)));
+    scene.variants = vec![Variant {
+        reflection_model: Some("blinn_phong".to_owned()),
+        shading_model: Some("phong".to_owned()),
+        material: Values(values.into()),
+        exposure: Some(1.0),
+        tessellation: Some(12),
+        ..Variant::default()
+    }];
+    scene.comparison = Comparison { layout: Layout::SideBySide, ..Comparison::default() };
+    let mut bench = Bench::new(Session::new(scene));
+    let mut cut = 0;
+    for width in (900..1500).step_by(20) {
+        bench.size = vec2(width as f32, 720.0);
+        bench.settle();
+        let shapes = bench.shapes();
+        let ends = [0, 1].map(|i| {
+            let place = bench.area.cells[i].rect;
+            let above = Rect::from_min_max(place.min - vec2(0.0, 28.0), place.right_top());
+            shapes.iter().any(|shape| match shape {
+                Shape::Text(text) if above.contains(text.visual_bounding_rect().center()) => {
+                    text.galley.elided || text.galley.text().ends_with('…')
+                }
+                _ => false,
+            })
+        });
+        assert_eq!(ends[0], ends[1], "{width}");
+        cut += usize::from(ends[0]);
+    }
+    assert!(cut > 0, "nothing is tested");
+    let heading = bench.area.cells[0].rect.left_top() + vec2(60.0, -14.0);
+    bench.hover(heading);
+    assert!(bench.texts().iter().any(|text| text.starts_with("Phong, ") && text.contains("k_a")));
+}
+
+#[test]
 fn beside_each_other_objects_keep_their_size() {
     let radius = |bench: &Bench, cell: Rect| {
         let lens = Lens::of(&bench.session, cell);

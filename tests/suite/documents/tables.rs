@@ -702,6 +702,11 @@ fn lesson_controls() -> String {
             "`room`, `observer`, `object 1`, `light \"key light\"`, …".to_owned(),
             "its line in the list at the left",
         ),
+        (
+            "line",
+            all(lesson::VALUES),
+            "the line of *Explain* that gives this value, under *Through the surface*",
+        ),
     ];
     let rows = rows.map(|(kind, names, what)| vec![code(kind), names, what.to_owned()]);
     table(&["control", "names", "what is highlighted"], rows.into_iter())

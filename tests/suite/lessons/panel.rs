@@ -1020,6 +1020,55 @@ fn a_part_that_a_step_points_at_is_in_sight() {
     assert_eq!(all.len(), 3);
 }
 
+/// A window with the lesson about refraction.
+fn straw() -> Bench {
+    let i =
+        LESSONS.iter().position(|lesson| lesson.id.ends_with("why_a_straw_looks_broken")).expect("shipped");
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    bench.settle();
+    go(&mut bench, LessonCommand::Open(LessonSource::Shipped(i)));
+    bench
+}
+
+#[test]
+fn the_line_that_a_task_asks_to_read_is_in_sight_for_every_point() {
+    let mut bench = straw();
+    for (step, line) in
+        [(2, "° inside, n = "), (4, "the part of the light that is reflected here"), (7, "1: after ")]
+    {
+        go(&mut bench, LessonCommand::GoTo(step));
+        for at in [[0.02, 0.03], [0.05, 0.08], [-0.03, -0.06]] {
+            bench.apply(Action::View(ViewChange::Pin(Some(Pin { view: 0, at }))));
+            (0..60).for_each(|_| drop(bench.frame(Vec::new())));
+            let texts = bench.texts_in_sight();
+            let found = texts.iter().find(|(text, _)| text.contains(line));
+            let (_, place) = found.unwrap_or_else(|| panic!("step {step}, {at:?}: {texts:?}"));
+            assert!(place.bottom() < 710.0, "step {step}, {at:?}: {place:?}");
+            let around = rings(&mut bench).into_iter().find(|ring| ring.contains_rect(place.shrink(2.0)));
+            assert!(around.is_some(), "step {step}, {at:?}");
+        }
+    }
+}
+
+#[test]
+fn no_marker_of_a_light_covers_the_straw_and_the_own_markers_come_back() {
+    let mut bench = straw();
+    assert!(!bench.session.view.show_markers);
+    // What the learner changes there lasts as long as the lesson.
+    bench.apply(Action::View(ViewChange::Markers(true)));
+    go(&mut bench, LessonCommand::Again);
+    assert!(!bench.session.view.show_markers, "as the step began");
+    go(&mut bench, LessonCommand::Leave);
+    assert!(bench.session.view.show_markers);
+    // Whoever hides them has none in lessons that say nothing of them.
+    bench.apply(Action::View(ViewChange::Markers(false)));
+    go(&mut bench, LessonCommand::Open(LessonSource::Shipped(0)));
+    assert!(!bench.session.view.show_markers);
+    go(&mut bench, LessonCommand::GoTo(2));
+    assert!(!bench.session.view.show_markers);
+}
+
 // ── the way in ──
 
 #[test]

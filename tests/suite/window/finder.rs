@@ -141,6 +141,8 @@ fn a_row_says_why_it_is_found_where_its_name_does_not() {
         ("shininess", "shininess · "),
         ("kelemen", "masking: Kelemen · "),
         ("openpbr sheen", "sheen · "),
+        ("disney sheen", "sheen · "),
+        ("disney cloth", "in the description · "),
     ] {
         let texts = notes(letters);
         assert!(texts.iter().any(|text| text.starts_with(why)), "{letters}: {texts:?}");

@@ -12,7 +12,7 @@ use std::{
 };
 
 use bevy::{app::PluginGroup as _, ecs::message::Messages};
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, accesskit::Role, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, accesskit::Role, vec2};
 use glam::Vec3;
 use lights_camera_models::{
     curves::{Channel, Detail, Kind, Setup, Style, Subject, curve, draw::Line},
@@ -272,10 +272,8 @@ fn models_and_measured_data_are_laid_over() {
     wait(&mut bench, |bench| surface(bench).label.contains("Garnet red (measured)"));
 }
 
-#[test]
-fn slices_of_several_files_say_which_each_is_of() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut bench = plots("lambert", Kind::Slice);
+/// Lays measurements in files of these names over, all of the same values.
+fn lay_files(bench: &mut Bench, folder: &Path, names: &[String]) {
     let parameter =
         bench.registry.model("measured_table").and_then(|model| model.file()).expect("it reads one");
     let format = parameter.kind.format().expect("a file");
@@ -287,14 +285,47 @@ fn slices_of_several_files_say_which_each_is_of() {
     {
         let _ = writeln!(samples, "{i},0,{o},{azimuth},0.2");
     }
-    let names = [1, 2, 3, 4].map(|n| format!("paper_measured_by_the_goniometer_of_the_institute_{n}.csv"));
-    for name in &names {
-        fs::write(folder.path().join(name), &samples).expect("writable");
+    for name in names {
+        fs::write(folder.join(name), &samples).expect("writable");
         let mut values = Values::default();
-        values.set(parameter.name, Value::File(NamedFile::chosen(name, folder.path(), format)));
+        values.set(parameter.name, Value::File(NamedFile::chosen(name, folder, format)));
         let of = Of::Model { id: "measured_table".to_owned(), values, encoding: Encoding::Srgb };
-        ask(&mut bench, PlotCommand::Add(of));
+        ask(bench, PlotCommand::Add(of));
     }
+}
+
+#[test]
+fn the_list_stays_where_it_is_while_values_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut bench = plots("lambert", Kind::Brdf);
+    // So many letters that the room for a value decides on the lines of some.
+    let names = [16, 18, 20, 22, 24, 26, 28, 30].map(|letters| format!("{}.csv", "a".repeat(letters)));
+    lay_files(&mut bench, folder.path(), &names);
+    let places = |bench: &Bench| -> Vec<(String, Rect)> {
+        let rows = bench.tree.iter().filter(|seen| seen.label.starts_with("Hide the curve of "));
+        let mut rows: Vec<_> = rows.map(|seen| (seen.label.clone(), seen.rect)).collect();
+        rows.sort_by(|a, b| a.0.cmp(&b.0));
+        rows
+    };
+    wait(&mut bench, |bench| surface(bench).label.contains(&"a".repeat(30)));
+    rest(&mut bench);
+    let before = places(&bench);
+    assert_eq!(before.len(), 9, "{before:?}");
+    for part in [0.3, 0.5, 0.6] {
+        let plot = surface(&bench).rect;
+        bench.hover(plot.lerp_inside(vec2(part, 0.4)));
+        bench.settle();
+        assert!(reading(&bench).is_some(), "{part}");
+        assert_eq!(places(&bench), before, "{part}");
+    }
+}
+
+#[test]
+fn slices_of_several_files_say_which_each_is_of() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut bench = plots("lambert", Kind::Slice);
+    let names = [1, 2, 3, 4].map(|n| format!("paper_measured_by_the_goniometer_of_the_institute_{n}.csv"));
+    lay_files(&mut bench, folder.path(), &names);
     let whole = |bench: &Bench, name: &str| {
         let right = surface(bench).rect.right();
         let label = format!("Measured (table), {name}");

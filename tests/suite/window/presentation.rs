@@ -4,15 +4,18 @@ use std::collections::HashMap;
 
 use bevy_egui::egui::{self, Key, Modifiers, Shape, accesskit::Role, vec2};
 use lights_camera_models::{
+    channel::DebugChannel,
     document::{Edit, Selection},
+    library::status::Trouble,
     optics::TermSelection,
     panel::{
         marks::Lens,
         maths::definitions,
-        state::{Action, Clipping, Effect, SCALES, Session, Severity, ViewChange},
+        state::{Action, Clipping, CompareCommand, Effect, SCALES, Session, Severity, ViewChange},
     },
     registry::Registry,
-    scene::{Object, Part, Scene, examples::EXAMPLES},
+    scene::{Object, Part, Scene, comparison::Layout, examples::EXAMPLES},
+    shader::check::ShaderProblem,
 };
 
 use crate::window::panels::{Bench, Seen};
@@ -388,6 +391,186 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
             }
         }
     }
+}
+
+/// A shipped scene in a window of 1280 × 720 pixels.
+fn shipped(file: &str, scale: u16) -> Bench {
+    let example = EXAMPLES.iter().find(|example| example.file == file).expect("shipped");
+    let mut bench = Bench::new(Session::new(example.scene(&Registry::builtin()).expect("it is valid")));
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::Scale(scale)));
+    bench
+}
+
+/// Asserts that no plate lies over an object, in any of the pictures of a presentation.
+fn assert_that_nothing_is_hidden(bench: &mut Bench, what: &str) {
+    let shapes = bench.shapes();
+    let pictures: Vec<_> = match bench.area.cells.as_slice() {
+        [] => vec![bench.area.frame],
+        cells => cells.iter().map(|cell| cell.rect).collect(),
+    };
+    for picture in pictures {
+        assert!(picture.height() > 0.2 * 720.0 / bench.area.zoom, "{what}: {picture:?}");
+        let lens = Lens::of(&bench.session, picture);
+        for object in bench.session.scene().shown() {
+            let at = lens.project(object.position).expect("before the camera");
+            let edge = lens.project(object.position + 0.5 * object.size * glam::Vec3::X).expect("as well");
+            for shape in &shapes {
+                let Shape::Rect(r) = shape else { continue };
+                let hides = r.rect.clamp(at).distance(at) < edge.distance(at);
+                assert!(!hides || r.rect.contains_rect(picture), "{what}: {:?} hides it", r.rect);
+            }
+        }
+    }
+}
+
+#[test]
+fn badges_legends_banner_and_hint_of_a_presentation_hide_no_object() {
+    let all = Clipping::GRID[0] * Clipping::GRID[1];
+    let problem = ShaderProblem {
+        file: "mine.wgsl".to_owned(),
+        line: 3,
+        column: 5,
+        source: "    return lobe(l, v);".to_owned(),
+        message: "no definition in scope for identifier: `lobe`".to_owned(),
+    };
+    for file in [
+        "superellipsoids.json",
+        "default.json",
+        "compare_flat_derivative.json",
+        "compare_tone_mappings.json",
+        "compare_gouraud_phong.json",
+        "compare_gold.json",
+    ] {
+        for scale in [100, 150, 200] {
+            for case in ["hint", "badges", "legend", "banner"] {
+                let what = format!("{file}, {scale} %, {case}");
+                let mut bench = shipped(file, scale);
+                let views = bench.session.document.variants.len();
+                bench.apply(Action::View(ViewChange::Presenting(true)));
+                match case {
+                    "badges" => {
+                        let fill = |clipping: &mut Option<Clipping>| *clipping = Clipping::new(vec![50; all]);
+                        bench.session.facts.clipping.iter_mut().take(views + 1).for_each(fill);
+                        bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
+                    }
+                    "legend" => {
+                        for view in (0..=views).rev() {
+                            bench.apply(Action::Compare(CompareCommand::Activate(view)));
+                            bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::Normals))));
+                        }
+                    }
+                    "banner" => {
+                        let stale = vec!["Mine".to_owned()];
+                        bench.session.shaders.troubles =
+                            vec![Trouble { problem: problem.clone(), path: None, stale }];
+                    }
+                    _ => {}
+                }
+                bench.settle();
+                let words = match case {
+                    "badges" => "Clipped",
+                    "legend" => "Channel: ",
+                    "banner" => "Showing",
+                    _ => "",
+                };
+                assert!(bench.says(words), "{what}");
+                if case == "hint" {
+                    assert!(bench.texts().iter().any(|text| text.starts_with("Esc leaves")), "{what}");
+                }
+                assert_that_nothing_is_hidden(&mut bench, &what);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_picture_of_a_presentation_stays_as_it_is_when_nothing_clips_any_more() {
+    let mut bench = shipped("compare_gouraud_phong.json", 200);
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    let whole = bench.area.cells[0].rect;
+    let all = Clipping::GRID[0] * Clipping::GRID[1];
+    bench.session.facts.clipping[0] = Clipping::new(vec![50; all]);
+    bench.settle();
+    let with = bench.area.cells[0].rect;
+    bench.session.facts.clipping[0] = None;
+    bench.settle();
+    assert_eq!(bench.area.cells[0].rect, with, "otherwise it might clip again, and so on");
+    bench.apply(Action::View(ViewChange::Presenting(false)));
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    assert_eq!(bench.area.cells[0].rect, whole);
+}
+
+#[test]
+fn a_presentation_says_below_the_map_why_there_is_no_difference() {
+    let mut bench = shipped("compare_gold.json", 200);
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
+    bench.apply(Action::Compare(CompareCommand::Activate(1)));
+    bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotV))));
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    let map = bench.area.map.expect("a map");
+    let said = super::layout::texts(&mut bench);
+    let places: Vec<_> = said.iter().filter(|(text, _)| text.starts_with("Not compared")).collect();
+    assert!(places.len() == 1 && places[0].1.top() >= map.bottom(), "{places:?}");
+}
+
+/// The texts of the captions of A and B in a presentation, each with the ends of its lines.
+fn captions(bench: &mut Bench) -> [Vec<(String, egui::Rect)>; 2] {
+    let said = super::layout::texts(bench);
+    let last = |text: &str| said.iter().rfind(|(t, _)| t == text).map(|(_, r)| *r);
+    let (a, b) = (last("A:").expect("A"), last("B:").expect("B"));
+    let numbers = said.iter().find(|(t, _)| t.starts_with("B compared with A")).expect("numbers").1;
+    let within = |from: f32, to: f32| {
+        let here = said.iter().filter(|(_, r)| r.top() > a.top() - 10.0 && r.bottom() < numbers.top() + 5.0);
+        here.filter(|(_, r)| r.left() > from - 1.0 && r.left() < to - 1.0).cloned().collect::<Vec<_>>()
+    };
+    [within(a.left(), b.left()), within(b.left(), f32::INFINITY)]
+}
+
+#[test]
+fn captions_of_a_presentation_say_the_same_of_both_views_and_end_in_no_dot() {
+    for scale in [100, 150, 200] {
+        for (file, pairs) in [
+            ("compare_gouraud_phong.json", &[["computed per vertex", "computed per pixel"]][..]),
+            ("compare_tone_mappings.json", &[["no tone mapping", "Reinhard"]][..]),
+        ] {
+            let mut bench = shipped(file, scale);
+            bench.apply(Action::View(ViewChange::Presenting(true)));
+            let [a, b] = captions(&mut bench);
+            for [of_a, of_b] in pairs {
+                assert!(a.iter().any(|(text, _)| text == of_a), "{file}, {scale} %: {a:?}");
+                assert!(b.iter().any(|(text, _)| text == of_b), "{file}, {scale} %: {b:?}");
+            }
+            assert!(a.iter().chain(&b).all(|(text, _)| text != " ·"), "{file}, {scale} %: {a:?} {b:?}");
+            // One view has another term and exposure.
+            bench.apply(Action::Compare(CompareCommand::Activate(0)));
+            bench.apply(Action::View(ViewChange::Terms(TermSelection::Specular)));
+            let [a, b] = captions(&mut bench);
+            let facts = |said: &[(String, egui::Rect)]| {
+                said.iter().filter(|(text, _)| !text.trim_matches([' ', '·']).is_empty()).count()
+            };
+            assert_eq!(facts(&a), facts(&b), "{file}, {scale} %: {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn equations_of_two_views_above_each_other_have_the_letters_of_the_views() {
+    let mut stacked = 0;
+    for (file, scale) in [("compare_gold.json", 200), ("compare_diffuse_models.json", 200)] {
+        let mut bench = shipped(file, scale);
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let count = |bench: &mut Bench, text: &str| bench.texts().iter().filter(|t| *t == text).count();
+        let letters = [count(&mut bench, "A:"), count(&mut bench, "B:")];
+        let is_total = |label: &str| label.split("; ").any(|text| text.starts_with("I = "));
+        let totals = bench.tree.iter().filter(|s| s.role == Role::Label && is_total(&s.label));
+        let totals: Vec<_> = totals.map(|s| s.rect).collect();
+        let [first, second] = totals[..] else { continue };
+        let is_stacked = (first.left() - second.left()).abs() < 20.0;
+        assert_eq!(letters, if is_stacked { [2, 2] } else { [1, 1] }, "{file}: {totals:?}");
+        stacked += usize::from(is_stacked);
+    }
+    assert!(stacked > 0, "nothing is tested");
 }
 
 #[test]
