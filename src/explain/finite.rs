@@ -342,11 +342,8 @@ pub fn traced(
 
 fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 2]) -> Vec<NotFinite> {
     let mut found = Vec::new();
-    let of = |what| NotFinite {
-        path: part("objects", seen.object.index),
-        name: seen.object.name.as_deref().map(str::to_owned),
-        what,
-    };
+    let of =
+        |what| NotFinite { path: part("objects", seen.object.index), name: seen.object.name.clone(), what };
     for spot in &seen.spots {
         for lit in spot.lights.iter().filter(|lit| !lit.is_finite()) {
             let light = scene.lights.get(lit.light.index).filter(|_| lit.integral.is_some());
