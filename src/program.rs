@@ -5,6 +5,8 @@ use std::{borrow::Cow, env, path::PathBuf, sync::OnceLock};
 
 /// The name of the lab itself, and of its folders.
 pub const LAB: &str = "lights-camera-models";
+/// The lab's name for people.
+pub const LAB_TITLE: &str = "Lights, Camera, Models!";
 /// The lab's name on the command line.
 const COMMAND: &str = "lcm";
 /// The hidden command that tries shaders in a process of its own, lest they end this one.
@@ -45,6 +47,12 @@ fn fit(name: &str) -> String {
     if name.is_empty() { "program".to_owned() } else { name }
 }
 
+/// The name of this program for people: in the titles of its window and its manual.
+#[must_use]
+pub fn title() -> &'static str {
+    if name() == LAB { LAB_TITLE } else { name() }
+}
+
 /// The name of the program on the command line.
 #[must_use]
 pub fn command() -> &'static str {
@@ -62,6 +70,12 @@ pub fn without_window(remedy: &str) -> String {
 #[must_use]
 pub fn own(shared: PathBuf) -> PathBuf {
     if name() == LAB { shared } else { shared.join(OTHERS).join(name()) }
+}
+
+/// A text in which the lab names itself and its commands, with the names of this program inserted.
+#[must_use]
+pub fn in_own_name(text: &str) -> String {
+    in_own_words(text).replace(LAB_TITLE, title())
 }
 
 /// A text in which the lab names its commands, with the name of this program inserted.
@@ -85,7 +99,7 @@ fn replaced<'a>(text: &'a str, name: &str) -> Cow<'a, str> {
         let begins =
             !before.ends_with(|c: char| c.is_alphanumeric() || "/_-.".contains(c)) && !before.ends_with("* ");
         let ends = match next.next() {
-            Some(' ') => next.next().is_none_or(|c| c.is_ascii_lowercase() || "-[<".contains(c)),
+            Some(' ') => next.next().is_none_or(|c| c.is_ascii_lowercase() || "-[< ".contains(c)),
             Some('`') => true,
             _ => false,
         };
@@ -116,11 +130,13 @@ mod tests {
 
     #[test]
     fn commands_have_the_name_of_the_program() {
-        let lab = "`lcm render` makes pictures, `lcm` shows; lcm models check ID; Usage: lcm [OPTIONS]";
-        let own =
-            "`velvet render` makes pictures, `velvet` shows; velvet models check ID; Usage: velvet [OPTIONS]";
+        let lab =
+            "`lcm render` makes pictures, `lcm` shows; lcm models check ID; Usage: lcm [OPTIONS]; lcm  # a";
+        let own = "`velvet render` makes pictures, `velvet` shows; velvet models check ID; \
+                   Usage: velvet [OPTIONS]; velvet  # a";
         assert_eq!(replaced(lab, "velvet"), own);
         assert!(matches!(replaced(lab, COMMAND), Cow::Borrowed(_)));
+        assert_eq!(in_own_name("*Lights, Camera, Models!* is here"), format!("*{}* is here", name()));
         let others = "/* lcm { \"name\": 1 } */ /tmp/lcm x.lcm my-lcm render lcm_screen.png";
         assert_eq!(replaced(others, "velvet"), others);
     }

@@ -47,7 +47,7 @@ fn drawn(scene: &Scene, name: &str, registry: &Registry) -> (String, Vec<Problem
         let odd = probe(&seen, registry, Scope::All, &mut tried);
         for odd in odd.into_iter().chain(tried.too_long().to_vec()) {
             let line = format!("{name}: {odd}");
-            put(&mut problems, Problem::about(odd.path, odd.what), || said.push(line));
+            put(&mut problems, Problem::about(odd.path.clone(), odd.rest()), || said.push(line));
         }
     }
     (said.join("\n"), problems)

@@ -51,7 +51,7 @@ fn describe(command: clap::Command, folder: &Path, pages: &mut Vec<(PathBuf, Str
     let within: Vec<_> = command.get_subcommands().filter(|one| !one.is_hide_set()).cloned().collect();
     let page = Man::new(command)
         .source(concat!("lights-camera-models ", env!("CARGO_PKG_VERSION")))
-        .manual("Lights, Camera, Models!");
+        .manual(program::title());
     let mut text = Vec::new();
     page.render(&mut text)?;
     pages

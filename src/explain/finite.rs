@@ -44,12 +44,22 @@ const MOST_PIXELS: usize = 16;
 
 /// A light, or an object with its reflection model, whose light is not finite or cannot be calculated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{path} {what}")]
+#[error("{path} {}{what}", named(.name.as_deref()))]
 pub struct NotFinite {
     /// Path in the scene.
     pub path: Path,
+    /// Its name, if it has one of its own.
+    pub name: Option<String>,
     /// The rest of the sentence: type or model, value, and position.
     pub what: String,
+}
+
+impl NotFinite {
+    /// What the path does not say: the name, and the rest of the sentence.
+    #[must_use]
+    pub fn rest(&self) -> String {
+        named(self.name.as_deref()) + &self.what
+    }
 }
 
 /// Selects the lights and models of a scene to try.
@@ -105,11 +115,11 @@ pub fn probe(scene: &Scene, registry: &Registry, scope: Scope, tried: &mut Tried
             continue;
         }
         let what = tried.surfaces.entry(key).or_insert_with(|| surface(scene, object, model));
-        found.extend(what.clone().map(|what| NotFinite { path: part("objects", i), what }));
+        let of = |what| NotFinite { path: part("objects", i), name: object.name.clone(), what };
+        found.extend(what.clone().map(of));
         // It did not run too long before, so this object triggers it.
         if model.runs_too_long() {
-            let what = too_long(object, model, registry);
-            tried.too_long.push(NotFinite { path: part("objects", i), what });
+            tried.too_long.push(of(too_long(model, registry)));
         }
     }
     found
@@ -141,9 +151,9 @@ fn lights(scene: &Scene, registry: &Registry, scope: Scope) -> Vec<NotFinite> {
 }
 
 fn of_light(index: usize, name: Option<&str>, id: &str, p: Vec3, odd: &Odd) -> NotFinite {
-    let (name, p, Odd { of, value, must_be }) = (named(name), triple(p), odd);
-    let what = format!("{name}is of the type {id}, whose {of} at {p} m is {value}; it must be {must_be}");
-    NotFinite { path: part("lights", index), what }
+    let (p, Odd { of, value, must_be }) = (triple(p), odd);
+    let what = format!("is of the type {id}, whose {of} at {p} m is {value}; it must be {must_be}");
+    NotFinite { path: part("lights", index), name: name.map(str::to_owned), what }
 }
 
 /// A quantity of a light that has no legal value.
@@ -248,19 +258,19 @@ fn surface(scene: &Scene, object: &Object, model: &ModelEntry) -> Option<String>
     check_that_it_ends(model, &object.material, scene.display.encoding).ok()?;
     let surface = model.instantiate(&object.material, scene.display.encoding);
     let (value, where_) = directed(&*surface, model).or_else(|| everywhere(&*surface, scene))?;
-    Some(of_model(object.name.as_deref(), model.declaration.id, value, &where_))
+    Some(of_model(model.declaration.id, value, &where_))
 }
 
-fn too_long(object: &Object, model: &ModelEntry, registry: &Registry) -> String {
+fn too_long(model: &ModelEntry, registry: &Registry) -> String {
     let id = model.declaration.id;
     let file = registry.custom_file(id).map_or_else(String::new, |file| format!(" of {}", file.shown()));
-    let (name, why) = (named(object.name.as_deref()), model.not_on_cpu().unwrap_or_default());
-    format!("{name}has the reflection model {id}{file}, which cannot be run: {why}")
+    let why = model.not_on_cpu().unwrap_or_default();
+    format!("has the reflection model {id}{file}, which cannot be run: {why}")
 }
 
-fn of_model(object: Option<&str>, model: &str, value: Vec3, where_: &str) -> String {
-    let (name, value) = (named(object), triple(value));
-    format!("{name}has the reflection model {model}, which gives {value} for {where_}; it must be finite")
+fn of_model(model: &str, value: Vec3, where_: &str) -> String {
+    let value = triple(value);
+    format!("has the reflection model {model}, which gives {value} for {where_}; it must be finite")
 }
 
 /// The sum of the terms, if any of them is not finite.
@@ -332,7 +342,8 @@ pub fn traced(
 
 fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 2]) -> Vec<NotFinite> {
     let mut found = Vec::new();
-    let object = seen.object.name.as_deref();
+    let of =
+        |what| NotFinite { path: part("objects", seen.object.index), name: seen.object.name.clone(), what };
     for spot in &seen.spots {
         for lit in spot.lights.iter().filter(|lit| !lit.is_finite()) {
             let light = scene.lights.get(lit.light.index).filter(|_| lit.integral.is_some());
@@ -347,16 +358,14 @@ fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 
                 None => {
                     let value = odd(&lit.response).unwrap_or(lit.contribution);
                     let where_ = format!("{} at pixel {x},{y}", part("lights", *index));
-                    let what = of_model(object, seen.model.id, value, &where_);
-                    NotFinite { path: part("objects", seen.object.index), what }
+                    of(of_model(seen.model.id, value, &where_))
                 }
             });
         }
     }
     if found.is_empty() {
         // Only the GPU produces it, or the CPU cannot run the model.
-        let what = format!("{}has the reflection model {}: pixel {x},{y}", named(object), seen.model.id);
-        found.push(NotFinite { path: part("objects", seen.object.index), what });
+        found.push(of(format!("has the reflection model {}: pixel {x},{y}", seen.model.id)));
     }
     found
 }

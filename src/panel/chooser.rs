@@ -468,7 +468,13 @@ fn opened(popup: Popup, height: f32, context: &mut PanelContext<'_>) {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
+
     use super::*;
+    use crate::shader::{
+        compose::{OPTICS, TRANSMISSION},
+        definitions::functions,
+    };
 
     #[test]
     fn every_model_is_listed_and_words_in_any_order_find_it() {
@@ -543,18 +549,71 @@ mod tests {
         assert_eq!(why_of(registry.model("openpbr").expect("built in"), "sheen"), "sheen");
     }
 
+    /// WGSL without comments.
+    fn code(text: &str) -> String {
+        text.lines().filter_map(|line| line.split("//").next()).collect::<Vec<_>>().join("\n")
+    }
+
+    /// The names of the functions that a WGSL text calls.
+    fn calls(text: &str) -> Vec<&str> {
+        let word = |c: char| c.is_alphanumeric() || c == '_';
+        let named = text.match_indices('(').map(|(at, _)| {
+            let before = text[..at].trim_end();
+            &before[before.trim_end_matches(word).len()..]
+        });
+        named.filter(|name| !name.is_empty()).collect()
+    }
+
+    /// True if a model calls the distribution, itself or by functions of the vocabulary of the models.
+    fn calls_ggx(model: &ModelEntry) -> bool {
+        let vocabulary: Vec<_> = OPTICS.iter().chain(TRANSMISSION).map(|source| code(source.text)).collect();
+        let mut bodies = HashMap::new();
+        for text in &vocabulary {
+            let all = functions(text);
+            for (i, (at, name)) in all.iter().enumerate() {
+                let end = all.get(i + 1).map_or(text.len(), |(next, _)| *next);
+                bodies.insert(*name, &text[at + name.len()..end]);
+            }
+        }
+        let text = code(model.declaration.wgsl.text);
+        for (_, own) in functions(&text) {
+            bodies.remove(own);
+        }
+        let mut open = vec![&*text];
+        while let Some(text) = open.pop() {
+            for name in calls(text) {
+                if name == "ggx" {
+                    return true;
+                }
+                // Each is followed once.
+                open.extend(bodies.remove(name));
+            }
+        }
+        false
+    }
+
     #[test]
     fn every_model_with_ggx_is_found_by_both_of_its_names() {
         let registry = Registry::builtin();
         let has_ggx = |model: &&ModelEntry| {
             let mut options = model.parameters.iter().flat_map(|p| p.kind.options());
-            let text = model.declaration.wgsl.text.to_lowercase();
-            text.contains("ggx") || options.any(|(id, _)| *id == "ggx")
+            // One writes it out, and says so.
+            let names_it = model.declaration.wgsl.text.to_lowercase().contains("ggx");
+            names_it || calls_ggx(model) || options.any(|(id, _)| *id == "ggx")
         };
         let with: Vec<_> = registry.models().iter().filter(has_ggx).map(|m| m.declaration.id).collect();
-        for id in ["microfacet", "metallic_roughness", "disney", "openpbr", "rough_dielectric", "thin_glass"]
-        {
-            assert!(with.contains(&id), "{id}: {with:?}");
+        for (id, has_it) in [
+            ("microfacet", true),
+            ("metallic_roughness", true),
+            ("disney", true),
+            ("openpbr", true),
+            ("rough_dielectric", true),
+            ("thin_glass", true),
+            ("glass", true),
+            ("cook_torrance", false),
+            ("ward", false),
+        ] {
+            assert_eq!(with.contains(&id), has_it, "{id}: {with:?}");
         }
         for search in ["ggx", "trowbridge", "Reitz"] {
             let found = find(&registry, search);

@@ -31,6 +31,10 @@ const SHARE: f32 = 0.7;
 const ALL: f32 = 0.96;
 /// Width below which a window is narrow, in points; also reached by a large interface scale.
 const NARROW: f32 = 1000.0;
+/// Width of a column below which the name of a file and the filter have a line each, and the buttons share the next.
+const SHARED_LINE: f32 = 560.0;
+/// Caption of the button that closes a dialog.
+const CANCEL: &str = "🚫 Cancel";
 /// Number of frames after which an empty list is taken to be final.
 const BLANK_FRAMES: u8 = 3;
 
@@ -258,7 +262,9 @@ impl Dialogs {
             // The buttons would seem to touch the edge of their panel.
             style.visuals.panel_fill = style.visuals.window_fill;
             if narrow {
-                style.spacing.window_margin = Margin::same(theme::UNIT as i8);
+                let spacing = &mut style.spacing;
+                spacing.window_margin = Margin::same(theme::UNIT as i8);
+                (spacing.interact_size.y, spacing.item_spacing.y) = (2.5 * theme::UNIT, 0.25 * theme::UNIT);
             }
         });
         self.arrange(ctx);
@@ -290,10 +296,23 @@ impl Dialogs {
         let screen = ctx.content_rect().size();
         let narrow = is_narrow(ctx);
         let size = if narrow { ALL } else { SHARE } * screen;
+        let id = self.dialog.get_window_id();
         let config = self.dialog.config_mut();
         (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
         // Leaves enough width for the buttons below the list.
         config.right_panel_width = Some(if narrow { 0.28 } else { 0.34 } * size.x);
+        config.labels.cancel_button = cancel(ctx, id);
+        let known = ctx.data(|data| data.get_temp::<Vec2>(id));
+        if known != Some(size) {
+            // The widths of another size would leave no room for the list and the buttons.
+            ctx.data_mut(|data| {
+                data.insert_temp(id, size);
+                for name in ["left_panel", "right_panel"] {
+                    data.remove::<PanelState>(id.with(name));
+                }
+            });
+            ctx.request_repaint();
+        }
     }
 
     /// Adds to the dialog, once shown, what it lacks.
@@ -372,6 +391,24 @@ impl Dialogs {
 
 fn is_narrow(ctx: &Context) -> bool {
     ctx.content_rect().width() < NARROW
+}
+
+/// The caption of the button that closes a dialog, padded in a narrow column: the dialog makes its other button as wide,
+/// and the filter as wide as both, which leaves the line above to the name of the file.
+fn cancel(ctx: &Context, dialog: Id) -> String {
+    let column = Places::of(ctx, dialog).map(|places| places.list.width());
+    let Some(column) = column.filter(|width| *width < SHARED_LINE) else { return CANCEL.to_owned() };
+    let style = ctx.global_style();
+    let (spacing, font) = (&style.spacing, TextStyle::Body.resolve(&style));
+    // The margins of the panel and of the window beside it, and two buttons with the padding that the dialog adds.
+    let line = column - 2.0 * theme::UNIT - spacing.window_margin.leftf() - spacing.item_spacing.y;
+    let wanted = 0.5 * line - 4.0 * spacing.button_padding.x;
+    let [own, space] = ctx.fonts_mut(|fonts| {
+        let mut width = |c: char| fonts.glyph_width(&font, c);
+        [CANCEL.chars().map(&mut width).sum::<f32>(), width(' ')]
+    });
+    let pad = " ".repeat((0.5 * (wanted - own) / space.max(1.0)).max(0.0) as usize);
+    format!("{pad}{CANCEL}{pad}")
 }
 
 /// The areas of a dialog.

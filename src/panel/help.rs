@@ -3,6 +3,7 @@
 use bevy_egui::egui::Window;
 
 use super::{keys, prelude::*};
+use crate::program;
 
 /// The least width of the window in which the list has two columns, points.
 const TWO_COLUMNS: f32 = 1000.0;
@@ -115,8 +116,15 @@ fn column(ui: &mut Ui, groups: &[&str], rows: &[Row]) {
 }
 
 fn about(ui: &mut Ui, session: &Session, registry: &Registry) {
-    ui.label(theme::strong(ui, format!("Lights, Camera, Models!  {}", env!("CARGO_PKG_VERSION"))));
-    ui.add(Label::new(env!("CARGO_PKG_DESCRIPTION")).wrap());
+    let version = env!("CARGO_PKG_VERSION");
+    if program::name() == program::LAB {
+        ui.label(theme::strong(ui, format!("{}  {version}", program::title())));
+        ui.add(Label::new(env!("CARGO_PKG_DESCRIPTION")).wrap());
+    } else {
+        // Its own version is not known.
+        ui.label(theme::strong(ui, program::title()));
+        ui.add(Label::new(format!("Made with {} {version}.", program::LAB_TITLE)).wrap());
+    }
     ui.add_space(8.0);
     let line = format!(
         "{} reflection models · {} shading models · {} light types · {} object types",

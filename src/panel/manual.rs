@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use maud::{DOCTYPE, PreEscaped, html};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html::push_html};
 
+use crate::program::{self, in_own_name};
+
 macro_rules! pages {
     ($($id:literal)+) => { [$(($id, include_str!(concat!("../../docs/", $id, ".md")))),+] };
 }
@@ -29,7 +31,7 @@ pub fn page() -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Lights, Camera, Models! – manual" }
+                title { (program::title()) " – manual" }
                 style { (PreEscaped(include_str!("manual.css"))) }
             }
             body {
@@ -93,8 +95,21 @@ fn section(id: &str, text: &str) -> (String, String) {
         }
     }
     let mut body = String::new();
-    push_html(&mut body, events.into_iter());
-    (title, body)
+    push_html(&mut body, events.into_iter().map(renamed));
+    (in_own_name(&title), body)
+}
+
+/// Text with the names of this program instead of those of the lab. Anchors, to which links lead, keep their words.
+fn renamed(event: Event<'_>) -> Event<'_> {
+    match event {
+        Event::Text(text) => Event::Text(in_own_name(&text).into()),
+        Event::Code(code) => {
+            // A command alone is known by its quotes.
+            let quoted = in_own_name(&format!("`{code}`"));
+            Event::Code(quoted[1..quoted.len() - 1].to_owned().into())
+        }
+        other => other,
+    }
 }
 
 /// The target of a link of a page; `None` unless it is in the manual or on the web.

@@ -20,6 +20,7 @@ use super::{
 };
 use crate::{
     caption::single,
+    channel::DebugChannel,
     library::status::{ShaderStatus, shown_instead},
     optics::TermSelection,
     reflection::Term,
@@ -493,19 +494,42 @@ fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<S
     Some((badge, vec![Action::View(ViewChange::Terms(TermSelection::All))]))
 }
 
+/// The badge for lights and objects of a view whose light is not a finite number, which switches the channel that shows
+/// where.
+fn no_number(view: usize, session: &Session, registry: &Registry) -> Option<Sign> {
+    /// Maximum number of names; more would hide the picture.
+    const MOST: usize = 2;
+    let odd = session.facts.not_finite.get(view).filter(|odd| !odd.is_empty())?;
+    let all: Vec<_> = odd.iter().map(|odd| (session.name_of(odd.part, registry), &odd.what)).collect();
+    let mut names: Vec<_> = all.iter().take(MOST).map(|(name, _)| name.clone()).collect();
+    if let Some(more) = all.len().checked_sub(MOST).filter(|more| *more > 0) {
+        names.push(format!("{more} more"));
+    }
+    let lines: Vec<_> = all.iter().take(MOST).map(|(name, what)| format!("{name} {what}.")).collect();
+    let badge = Badge {
+        severity: Severity::Warning,
+        text: format!("Not a number: {}", names.join(", ")),
+        help: format!("{} It is drawn black or white. Click to show where.", lines.join(" ")),
+    };
+    let shown = session.view.channels.get(view).copied().flatten() == Some(DebugChannel::NotANumber);
+    let channel = (!shown).then_some(DebugChannel::NotANumber);
+    Some((badge, vec![Action::View(ViewChange::Channel(channel))]))
+}
+
 /// The badges of a view's picture. An action on the active view activates the view first.
 fn badges_of(view: usize, picture: Rect, ui: &Ui, session: &Session, registry: &Registry) -> Vec<Sign> {
     let per_point = ui.pixels_per_point();
     let pixels = f64::from(picture.area() * per_point * per_point);
     let toggle = Action::View(ViewChange::Clipping(!session.view.show_clipping));
     let clipped = clipping::badge(session, view, pixels).map(|badge| (badge, vec![toggle]));
-    let mut terms = hidden_terms(view, session, registry);
-    if view != session.active()
-        && let Some((_, actions)) = &mut terms
-    {
-        actions.insert(0, Action::Compare(CompareCommand::Activate(view)));
+    let of_view = hidden_terms(view, session, registry).into_iter().chain(no_number(view, session, registry));
+    let mut all: Vec<_> = of_view.collect();
+    if view != session.active() {
+        for (_, actions) in &mut all {
+            actions.insert(0, Action::Compare(CompareCommand::Activate(view)));
+        }
     }
-    let mut all: Vec<_> = terms.into_iter().chain(clipped).collect();
+    all.extend(clipped);
     if !session.document.variants.is_empty() {
         for (badge, _) in &mut all {
             badge.text = format!("{} · {}", LETTERS[view.min(MAX_VARIANTS)], badge.text);

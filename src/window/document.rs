@@ -13,6 +13,7 @@ use super::{
     finite::report_light_that_is_not_finite,
     laws::LawChecks,
     lessons::follow_lesson,
+    manual::Manuals,
     matching::Matches,
     order::Loading,
     plots::PlotFiles,
@@ -91,6 +92,7 @@ impl Plugin for DocumentPlugin {
             .init_resource::<SheetFiles>()
             .insert_resource(LawChecks::by(options.trial_program.clone()))
             .init_resource::<Editors>()
+            .init_resource::<Manuals>()
             .add_message::<Effect>()
             .add_message::<FilesChanged>()
             .configure_sets(LabFrame, steps.chain().in_set(LabSystems::Load))

@@ -22,6 +22,7 @@ pub(super) struct Unattended;
 #[derive(SystemParam)]
 pub(super) struct Work<'w> {
     editors: Res<'w, editor::Editors>,
+    manuals: Res<'w, manual::Manuals>,
     laws: Res<'w, laws::LawChecks>,
     exports: Res<'w, exports::Exports>,
     matches: Res<'w, matching::Matches>,
@@ -30,18 +31,17 @@ pub(super) struct Work<'w> {
     proxy: Option<Res<'w, EventLoopProxyWrapper>>,
 }
 
-fn show_manual(session: &mut Session) {
-    match manual::show() {
-        Ok(said) => session.say(Severity::Info, said),
-        Err(why) => session.say(Severity::Warning, why),
-    }
-}
-
 impl Work<'_> {
     /// Reports the tasks that have ended. Shows the folder of an export to the user, if there is one.
     fn report(&self, session: &mut ResMut<Session>, registry: &Registry, unattended: bool) {
         for complaint in self.editors.take() {
             session.say(Severity::Error, complaint);
+        }
+        for outcome in self.manuals.take() {
+            match outcome {
+                Ok(said) => session.say(Severity::Info, said),
+                Err(why) => session.say(Severity::Warning, why),
+            }
         }
         if let Some((model, outcome)) = self.laws.take() {
             session.authoring.laws_checked(&model, outcome);
@@ -64,6 +64,7 @@ impl Work<'_> {
                 let variable = std::env::var(editor::EDITOR_VARIABLE).ok();
                 self.editors.open(variable.as_deref(), &path, line, wake);
             }
+            Effect::OpenManual => self.manuals.open(wake),
             Effect::Export { form, path, overwrite } => {
                 self.exports.begin(form, path, overwrite, session, registry, wake);
             }
@@ -135,7 +136,6 @@ pub(super) fn carry_out(
             Effect::Complain(text) => watching::complain(&text),
             // The panels handle the clipboard. Pictures are taken elsewhere, since the views must be read back first.
             Effect::CopyText(_) | Effect::Picture { .. } | Effect::CancelPicture => {}
-            Effect::OpenManual => show_manual(&mut session),
             Effect::Reveal(folder) => session.warn(exports::reveal(&folder)),
             dialog @ Effect::Pick(_) => session.wanted_dialog = Some(dialog),
             model @ (Effect::NewModel { .. } | Effect::AdoptModel(_) | Effect::ExportShaders(_)) => {

@@ -105,16 +105,21 @@ fn described(info: &PanicHookInfo<'_>) -> String {
 
 /// The innermost function in a backtrace that belongs neither to this crate nor to its foundations.
 fn culprit(trace: &str) -> Option<&str> {
-    const OTHERS: [&str; 9] =
-        ["std", "core", "alloc", "backtrace", "rust_", "__rust", "_rust", "bevy", "lights_camera_models"];
+    const OTHERS: [&str; 7] =
+        ["std", "core", "alloc", "backtrace", "__rustc", "bevy", "lights_camera_models"];
     let names = trace.lines().filter_map(|line| line.trim_start().split_once(": "));
     let names =
         names.filter(|(number, _)| number.bytes().all(|b| b.is_ascii_digit())).map(|(_, name)| name.trim());
-    let name = |name: &&str| {
-        let plain = name.trim_start_matches(['<', '&']);
-        plain.contains("::") && !OTHERS.iter().any(|other| plain.starts_with(other))
-    };
-    names.into_iter().find(name)
+    let is_foreign =
+        |name: &&str| crate_of(name).is_some_and(|own| !OTHERS.contains(&own) && !own.starts_with("bevy_"));
+    names.into_iter().find(is_foreign)
+}
+
+/// The crate at the beginning of a path, such as `velvet` of `<&mut velvet::Spin as Trait>::run`.
+fn crate_of(path: &str) -> Option<&str> {
+    let (before, _) = path.split_once("::")?;
+    let (before, _) = before.split_once('[').unwrap_or((before, ""));
+    before.rsplit(|c: char| !c.is_alphanumeric() && c != '_').next().filter(|name| !name.is_empty())
 }
 
 fn lost(what: &str, kept: Option<String>) -> String {
@@ -156,5 +161,37 @@ mod tests {
    6: main";
         assert_eq!(culprit(trace), Some("velvet::systems::spin"));
         assert_eq!(culprit("   0: <unknown>\n   1: main\n"), None);
+    }
+
+    #[test]
+    fn foundations_are_told_by_the_whole_names_of_crates() {
+        let innermost = |name: &str| {
+            let trace = format!("   0: std::panicking::panic\n   1: {name}\n   2: velvet::outer\n");
+            culprit(&trace).map(str::to_owned)
+        };
+        for own in [
+            "corelab::spin",
+            "stdio_panel::show",
+            "allocator::run",
+            "bevyish::turn",
+            "rust_lab::f",
+            "lights_camera_models_extra::f",
+            "<&mut corelab::Spin as bevy_ecs::system::System>::run",
+        ] {
+            assert_eq!(innermost(own).as_deref(), Some(own));
+        }
+        for foundation in [
+            "core::ops::function::FnOnce::call_once",
+            "core[1f2e3d]::ops::function::FnOnce::call_once",
+            "alloc::boxed::Box<F>::call",
+            "bevy::app::App::run",
+            "<bevy_ecs::system::FunctionSystem<F> as System>::run",
+            "<F as core::ops::FnOnce<A>>::call_once",
+            "__rustc::rust_begin_unwind",
+            "rust_begin_unwind",
+            "<lights_camera_models::panel::Panels as Show>::show",
+        ] {
+            assert_eq!(innermost(foundation).as_deref(), Some("velvet::outer"), "{foundation}");
+        }
     }
 }

@@ -21,6 +21,7 @@ use super::{
 };
 use crate::{
     panel::PanelPlugin,
+    program,
     render::{capture::gpu::wgpu_settings, plugin::ScenePlugin},
 };
 
@@ -151,8 +152,8 @@ impl PluginGroup for LabPlugins {
 /// Bevy's default plugins.
 fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
     let window = Window {
-        title: "Lights, Camera, Models!".to_owned(),
-        name: Some("lights-camera-models".to_owned()),
+        title: program::title().to_owned(),
+        name: Some(program::name().to_owned()),
         resolution: options.size.map_or_else(
             || WindowResolution::new(SIZE.x, SIZE.y),
             |[w, h]| WindowResolution::new(w, h).with_scale_factor_override(1.0),

@@ -8,7 +8,10 @@ use bevy::{
 use bevy_egui::{EguiPostUpdateSet, EguiPreUpdateSet};
 
 use super::{Acting, frames, input, redraw};
-use crate::panel::state::{Action, Session};
+use crate::{
+    panel::state::{Action, Session},
+    program,
+};
 
 /// The window on the desktop. It sleeps while nothing changes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -48,7 +51,7 @@ impl Plugin for ShellPlugin {
 
 fn window_title(session: Res<Session>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
     let mark = if session.shows_unsaved() { " •" } else { "" };
-    let title = format!("{}{mark} – Lights, Camera, Models!", session.window_title());
+    let title = format!("{}{mark} – {}", session.window_title(), program::title());
     if window.title != title {
         window.title = title;
     }

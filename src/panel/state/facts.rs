@@ -2,7 +2,10 @@
 
 use glam::{Quat, Vec3};
 
-use crate::scene::{Observer, observer::rotation, variant::MAX_VARIANTS};
+use crate::{
+    document::Selection,
+    scene::{Observer, observer::rotation, variant::MAX_VARIANTS},
+};
 
 /// Facts that the app provides to the panels, up to once per frame.
 ///
@@ -20,6 +23,8 @@ pub struct Facts {
     pub compiling: bool,
     /// Clipped parts of each view's picture, view A first; `None` if nothing clips.
     pub clipping: [Option<Clipping>; MAX_VARIANTS + 1],
+    /// Lights and objects of each view, view A first, whose light is not a finite number.
+    pub not_finite: [Vec<NoNumber>; MAX_VARIANTS + 1],
     /// Convergence of each view's picture, view A first.
     pub converged: [Converging; MAX_VARIANTS + 1],
     /// Statistics of the comparison; `None` until they are known.
@@ -60,6 +65,15 @@ impl Facts {
     pub fn fps(&self) -> f32 {
         if self.frame_ms > 0.0 { 1000.0 / self.frame_ms } else { 0.0 }
     }
+}
+
+/// A light or object whose light is not a finite number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoNumber {
+    /// The light or object.
+    pub part: Selection,
+    /// The sentence about it without its name: type or model, value, and where.
+    pub what: String,
 }
 
 /// Convergence of a picture with light with extent.

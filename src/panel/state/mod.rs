@@ -22,7 +22,7 @@ pub use desk::Desk;
 pub use disk::OnDisk;
 pub use effect::{CameraChange, Effect, Pick, RecoveryChoice, Steer};
 pub use export::PictureEnd;
-pub use facts::{Clipping, Converging, Facts, LARGEST, Numbers, Running};
+pub use facts::{Clipping, Converging, Facts, LARGEST, NoNumber, Numbers, Running};
 pub use fits::Fits;
 pub use lesson::{LessonCommand, LessonSource};
 pub use lobe::{LobeChoice, LobeScale};

@@ -45,6 +45,8 @@ const OVER: [f32; 2] = [0.45, 0.7];
 const GAP: f32 = 2.2;
 /// Factor from bounding boxes and spheres to the slightly smaller outlines.
 const OUTLINE: f32 = 0.95;
+/// Minimum distance between the markers of two lights, in halves of the height of the picture.
+const MARKER: f32 = 0.12;
 
 /// A scene, and the camera in front of which something is placed.
 pub(super) struct Stand<'a> {
@@ -52,15 +54,15 @@ pub(super) struct Stand<'a> {
     registry: &'a Registry,
     eye: Vec3,
     turn: Quat,
-    /// Bounding spheres of the objects.
-    taken: Vec<(Vec3, f32)>,
+    /// The space that the objects take.
+    taken: Vec<Block>,
     /// The position of the selected object.
     aim: Option<Vec3>,
 }
 
 impl<'a> Stand<'a> {
     pub(super) fn new(scene: &'a Scene, registry: &'a Registry, eye: Vec3, turn: Quat) -> Self {
-        let taken = scene.objects.iter().map(|o| (o.position, radius(o, registry))).collect();
+        let taken = scene.objects.iter().map(|o| Block::of(o, registry)).collect();
         Self { scene, registry, eye, turn, taken, aim: None }
     }
 
@@ -169,11 +171,7 @@ impl<'a> Stand<'a> {
     /// True if two blocks overlap in the picture, or with `centre`, if the first one covers the centre of the other. A
     /// block around the camera or behind it covers nothing.
     fn hides(&self, one: &Block, other: &Block, centre: bool) -> bool {
-        let flat = |block: &Block| {
-            let seen = self.turn.inverse() * (block.centre - self.eye);
-            (seen.truncate() / -seen.z, -seen.z)
-        };
-        let ((at, depth), (there, far)) = (flat(one), flat(other));
+        let ((at, depth), (there, far)) = (self.flat(one.centre), self.flat(other.centre));
         if depth <= one.radius.max(0.1) || far <= 0.1 {
             return centre && depth > -one.radius;
         }
@@ -225,14 +223,15 @@ impl<'a> Stand<'a> {
             self.darkest(sides.map(beside)).unwrap_or(self.eye)
         });
         let step = 0.1 * distance.min(self.scene.scene_size.corner().min_element()).max(AIR);
+        let copied = near.filter(|_| !is_lamp);
         let apart = |p: Vec3| {
             let lights = self.scene.lights.iter().filter_map(|l| l.position);
-            self.free(p, 0.0) && lights.into_iter().all(|q| p.distance(q) > step)
+            self.free_for_light(p, 0.0, copied) && lights.into_iter().all(|q| p.distance(q) > step)
         };
         // A copy of a light outside the view is still placed near it.
-        let copied = near.filter(|_| !is_lamp);
         let hidden = copied.is_some_and(|near| !self.sees(near, 0.0));
-        let fits = |p: Vec3| apart(p) && (hidden || self.sees(p, 0.08 * p.distance(self.eye)));
+        let shows = |p: Vec3| self.sees(p, 0.08 * p.distance(self.eye)) && self.is_beside_markers(p);
+        let fits = |p: Vec3| apart(p) && (hidden || shows(p));
         copied
             .and_then(|near| self.beside(near, [1.1 * step; 2], &APART, fits))
             .or_else(|| self.search(wanted, step, fits))
@@ -349,22 +348,50 @@ impl<'a> Stand<'a> {
 
     /// True if a sphere neither hides an object nor is hidden by one.
     fn is_beside_all(&self, p: Vec3, radius: f32) -> bool {
-        let flat = |p: Vec3| {
-            let seen = self.turn.inverse() * (p - self.eye);
-            (seen.truncate() / -seen.z, -seen.z)
-        };
-        let (at, depth) = flat(p);
-        self.taken.iter().all(|(q, other)| {
-            let (there, far) = flat(*q);
-            far < 0.1 || at.distance(there) >= 0.9 * (radius / depth + other / far)
+        let (at, depth) = self.flat(p);
+        let mut others = self.taken.iter().filter(|other| !other.ball_holds(self.eye));
+        others.all(|other| {
+            let (there, far) = self.flat(other.centre);
+            far < 0.1 || at.distance(there) >= 0.9 * (radius / depth + other.radius / far)
         })
     }
 
-    /// True if a sphere is inside the room and touches nothing.
+    /// True if the marker of a light at a position covers none of another light.
+    fn is_beside_markers(&self, p: Vec3) -> bool {
+        let least = MARKER * self.opening()[1];
+        let (at, _) = self.flat(p);
+        let mut lights = self.scene.lights.iter().filter_map(|l| l.position).map(|q| self.flat(q));
+        lights.all(|(there, far)| far < 0.1 || at.distance(there) >= least)
+    }
+
+    /// A position in the picture, as tangents across and up, and its depth.
+    fn flat(&self, p: Vec3) -> (Vec2, f32) {
+        let seen = self.turn.inverse() * (p - self.eye);
+        (seen.truncate() / -seen.z, -seen.z)
+    }
+
+    /// True if a sphere is inside the room and touches no sphere around an object. The sphere around a floor contains
+    /// the camera and most of the scene: there the box counts.
     fn free(&self, p: Vec3, radius: f32) -> bool {
-        self.is_inside(p, Vec3::splat(radius).max(self.margin()))
-            && self.is_in_air(p, radius)
-            && self.taken.iter().all(|(q, other)| p.distance(*q) > other + 1.05 * radius.max(0.05))
+        let gap = |other: &Block| {
+            if other.ball_holds(self.eye) { other.gap(p) } else { p.distance(other.centre) - other.radius }
+        };
+        self.has_air(p, radius) && self.taken.iter().all(|other| gap(other) > clearance(radius))
+    }
+
+    /// True if a light of a radius is inside the room and outside objects. What already contains the camera or the
+    /// light `copied` is a room, not an obstacle.
+    fn free_for_light(&self, p: Vec3, radius: f32, copied: Option<Vec3>) -> bool {
+        let is_room = |other: &Block| {
+            other.gap(self.eye) <= 0.0 || copied.is_some_and(|copied| other.gap(copied) <= 0.0)
+        };
+        self.has_air(p, radius)
+            && self.taken.iter().all(|other| other.gap(p) > clearance(radius) || is_room(other))
+    }
+
+    /// True if a sphere is inside the room, and away from lights and cameras.
+    fn has_air(&self, p: Vec3, radius: f32) -> bool {
+        self.is_inside(p, Vec3::splat(radius).max(self.margin())) && self.is_in_air(p, radius)
     }
 
     /// Minimum distance from the walls.
@@ -442,10 +469,9 @@ impl<'a> Stand<'a> {
     }
 }
 
-/// Radius of an object's bounding sphere.
-fn radius(object: &Object, registry: &Registry) -> f32 {
-    let shape = registry.shape(&object.object_type);
-    shape.map_or(0.0, |shape| shape.bounds(&object.shape).radius * object.size)
+/// Minimum distance of a new sphere of a radius from objects.
+fn clearance(radius: f32) -> f32 {
+    1.05 * radius.max(0.05)
 }
 
 /// Rounds to the given number of steps per metre.

@@ -1,6 +1,6 @@
 //! The manual in the Help menu: complete without the folder of the program.
 
-use std::{collections::BTreeSet, fs};
+use std::{collections::BTreeSet, fs, path::Path};
 
 use bevy_egui::egui::{Key, PointerButton};
 use lights_camera_models::{
@@ -8,7 +8,8 @@ use lights_camera_models::{
         manual::{PAGES, page},
         state::{Effect, Session},
     },
-    window::manual::write,
+    program,
+    window::manual::{folder, write},
 };
 
 use crate::{helpers::support::root, window::panels::Bench};
@@ -65,4 +66,18 @@ fn help_writes_the_manual_where_a_browser_finds_it() {
     fs::write(folder.path().join("taken"), "").expect("written");
     let why = write(&folder.path().join("taken")).expect_err("a file is no folder");
     assert!(why.contains("taken"), "{why}");
+}
+
+#[test]
+fn the_manual_of_another_program_has_its_name() {
+    // The tests are such a program.
+    let (page, name) = (page(), program::name());
+    assert!(page.contains(&format!("<title>{name} – manual</title>")));
+    assert!(!page.contains("Lights, Camera, Models!"));
+    for command in ["render", "view", "check"] {
+        assert!(page.contains(&format!("<code>{name} {command}")), "{command}");
+        assert!(!page.contains(&format!("lcm {command} ")), "{command}");
+    }
+    assert!(!page.contains("<code>lcm</code>"));
+    assert!(folder().ends_with(Path::new("programs").join(name)), "{:?}", folder());
 }

@@ -209,6 +209,47 @@ fn copies_of_neighbours_leave_each_other_room() {
     touches_nothing("copy", &session, 1, &registry);
 }
 
+#[test]
+fn on_a_floor_copies_of_lights_stand_beside_them_and_new_parts_in_view() {
+    let registry = Registry::builtin();
+    for index in 0..2 {
+        let mut session = Session::new(shipped("shapes_and_lights"));
+        let (eye, to_camera) = (session.facts.eye, session.facts.camera.inverse());
+        session.apply(Action::Duplicate(Selection::Light(index)), &registry);
+        let [was, is] = [index, index + 1].map(|i| session.document.lights[i].position.expect("it has one"));
+        assert!(was.distance(is) < 6.0, "{index}: from {was} to {is}");
+        let [from, to] = [was, is].map(|p| to_camera * (p - eye));
+        assert!((from.z - to.z).abs() < 0.02, "{index}: from {from} to {to}, seen by the camera");
+        assert!(!sees(&session, was) || sees(&session, is), "{index}: {is} is out of the picture");
+        assert!(is.y > 40.0, "{index}: {is} is in the floor");
+    }
+    for kind in ["point", "spot", "rectangle"] {
+        let mut session = Session::new(shipped("shapes_and_lights"));
+        session.apply(Action::AddLight(kind.to_owned()), &registry);
+        let at = session.document.lights.last().and_then(|light| light.position).expect("it has one");
+        assert!(sees(&session, at) && at.y > 40.0, "a {kind} at {at}");
+    }
+    let mut session = Session::new(shipped("shapes_and_lights"));
+    session.apply(Action::AddObject("sphere".to_owned()), &registry);
+    let added = session.document.objects.last().expect("added");
+    assert!(sees(&session, added.position), "{}", added.position);
+    assert!(added.position.y - radius(added, &registry) > 40.0, "{} is in the floor", added.position);
+}
+
+#[test]
+fn in_a_room_that_is_an_object_copies_of_lights_stand_beside_them() {
+    let registry = Registry::builtin();
+    let mut scene = Scene::default();
+    let room =
+        Object { object_type: "cube".to_owned(), position: Vec3::splat(5.0), size: 9.9, ..Object::default() };
+    scene.objects.push(room);
+    scene.lights[0].position = Some(Vec3::new(5.5, 5.5, 6.0));
+    let mut session = Session::new(scene);
+    session.apply(Action::Duplicate(Selection::Light(0)), &registry);
+    let [was, is] = [0, 1].map(|i| session.document.lights[i].position.expect("it has one"));
+    assert!(was.distance(is) < 2.0 && sees(&session, is), "from {was} to {is}");
+}
+
 /// Twelve objects in columns and rows at these distances, and others, with a camera.
 fn twelve(start: Vec3, apart: Vec3, others: Vec<Object>, eye: Vec3, ahead: Vec3) -> Session {
     let object = |i: usize| Object {

@@ -4,17 +4,23 @@
 
 use std::{env, ffi::OsString, fs, path::Path, process::Command};
 
-use bevy::prelude::{DetectChangesMut as _, Local, Res, ResMut, Update};
+use bevy::{
+    prelude::{DetectChangesMut as _, Local, Res, ResMut, Single, Update, Window, With},
+    window::PrimaryWindow,
+};
 use bevy_egui::egui;
 use lights_camera_models::{
     cli,
     document::Edit,
     panel::{
-        Panel, PanelApp as _, PanelContext, Place, settings,
-        state::{Action, Session},
+        Panel, PanelApp as _, PanelContext, Place, progress, settings,
+        state::{Action, Past, Session, ViewChange},
     },
     program::{self, LAB},
-    recovery::{About, Store},
+    recovery::{
+        About, Store,
+        texts::{self, TextKeeper},
+    },
     registry::{Register as _, Registry},
     scene::{Part, Scene},
 };
@@ -23,10 +29,15 @@ use crate::{
     helpers::screen::{Screen, alone},
     helpers::support::root,
     library::extension::Toon,
+    window::panels::Bench,
 };
 
 /// The arguments of the program run by a child process.
 const ARGUMENTS: &str = "LCM_TEST_ARGUMENTS";
+
+/// Set for a program that panics, and for one that says the title of its window.
+const BREAKS: &str = "LCM_TEST_BREAKS";
+const TITLE: &str = "LCM_TEST_TITLE";
 
 /// The frame in which the system panics, after it changed the scene in an earlier one.
 const LAST: u32 = 40;
@@ -41,18 +52,29 @@ fn breaking(mut frame: Local<u32>, mut session: ResMut<Session>, registry: Res<R
     assert!(*frame < LAST, "the forty frames are over");
 }
 
+/// Says the title of the window once.
+fn titled(window: Single<&Window, With<PrimaryWindow>>, mut frame: Local<u32>) {
+    *frame += 1;
+    if *frame == 3 {
+        eprintln!("the title is {}", window.title);
+    }
+}
+
 /// Run by the tests below in a separate process: windows need the main thread.
 #[test]
 #[ignore = "a program, run by other tests"]
 fn a_program() {
     let Ok(arguments) = env::var(ARGUMENTS) else { return };
     let arguments = ["velvet"].into_iter().chain(arguments.split_whitespace()).map(OsString::from);
-    let breaks = env::var_os("LCM_TEST_BREAKS").is_some();
+    let [breaks, says_title] = [BREAKS, TITLE].map(|name| env::var_os(name).is_some());
     let code = cli::run_with(
         arguments,
         |_| (),
         move |app| {
             app.add_reflection_model::<Toon>();
+            if says_title {
+                app.add_systems(Update, titled);
+            }
             if breaks {
                 app.add_panel(Fragile).add_systems(Update, breaking);
             }
@@ -109,6 +131,22 @@ fn its_help_and_its_errors_have_its_name() {
 }
 
 #[test]
+fn its_window_has_its_name() {
+    let screen = Screen::new(800, 600);
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut open = program("view --exit-after 5", folder.path());
+    let (_, err) = said(open.env("DISPLAY", screen.display()).env(TITLE, "1"));
+    let title = err.lines().find_map(|line| line.split_once("the title is ")).expect(&err).1;
+    // The tests themselves are such a program, and have the name of the same file.
+    assert!(title.ends_with(program::name()) && !title.contains("Lights, Camera"), "{title}");
+    let mut bench = Bench::new(Session::default());
+    bench.apply(Action::View(ViewChange::About(true)));
+    let texts = bench.texts();
+    assert!(texts.iter().any(|text| text == program::name()), "{texts:?}");
+    assert!(!texts.iter().any(|text| text.starts_with("Lights, Camera")), "{texts:?}");
+}
+
+#[test]
 fn what_the_window_registers_is_known_to_the_scene_that_it_opens() {
     let screen = Screen::new(800, 600);
     let folder = tempfile::tempdir().expect("a folder");
@@ -146,7 +184,7 @@ fn a_panic_in_a_system_is_located_and_unsaved_work_is_kept_for_this_program_alon
     let screen = Screen::new(800, 600);
     let folder = tempfile::tempdir().expect("a folder");
     let mut breaks = program("view", folder.path());
-    let (_, err) = said(breaks.env("DISPLAY", screen.display()).env("LCM_TEST_BREAKS", "1"));
+    let (_, err) = said(breaks.env("DISPLAY", screen.display()).env(BREAKS, "1"));
     let line = err.lines().find(|line| line.contains("the window was closed: the system")).expect(&err);
     assert!(line.contains("programs.rs:") && line.contains("the forty frames are over"), "{line}");
     assert!(err.contains("the panel is fragile") && !line.contains("fragile"), "it was caught: {err}");
@@ -171,7 +209,8 @@ fn a_panic_in_a_system_is_located_and_unsaved_work_is_kept_for_this_program_alon
 const NAME: &str = "LCM_TEST_NAME";
 const SCALE: &str = "LCM_TEST_SCALE";
 
-/// Run by the test below under several names: says what it finds, and leaves settings and a copy of unsaved work behind.
+/// Run by the test below under several names: says what it finds, and leaves settings, progress in a lesson and copies of
+/// unsaved work behind.
 #[test]
 #[ignore = "a program, run by another test"]
 fn a_program_with_settings() {
@@ -180,13 +219,21 @@ fn a_program_with_settings() {
     let (mut own, unread) = settings::load_own();
     let store = Store::of_user().expect("a folder");
     let copies: Vec<_> = store.abandoned().into_iter().map(|copy| copy.about.title).collect();
-    println!("found {} {copies:?} {unread:?}", own.scale);
+    let of_texts = Store::of_texts().expect("a folder");
+    let kept: Vec<_> = texts::left(&of_texts).into_iter().map(|kept| kept.text).collect();
+    let (mut lessons, unread_too) = progress::load_own();
+    println!("found {} {copies:?} {kept:?} {:?} {unread:?} {unread_too:?}", own.scale, lessons.last);
     own.scale = scale.parse().expect("a number");
     settings::save_own(&own).expect("writable");
     if copies.is_empty() {
         let about = About { title: format!("of {name}"), ..About::default() };
         store.begin().and_then(|mut journal| journal.write(&about, "{}")).expect("writable");
+        let mut keeper = TextKeeper::start(Some(of_texts));
+        keeper.keep([("/models/a.wgsl".into(), format!("by {name}").into())].into());
     }
+    lessons.last = Some(format!("read by {name}"));
+    lessons.lessons.insert(name.clone(), Past::default());
+    progress::save_own(&lessons, &name).expect("writable");
 }
 
 #[test]
@@ -200,11 +247,15 @@ fn settings_and_copies_of_unsaved_work_are_those_of_the_program_of_that_name() {
         let line = out.lines().find_map(|line| Some(line.split_once("found ")?.1.to_owned()));
         line.unwrap_or_else(|| panic!("{out}{err}"))
     };
-    assert_eq!(found("velvet", "150"), "100 [] None");
-    assert_eq!(found(LAB, "125"), "100 [] None", "the lab does not read those of another program");
-    assert_eq!(found("satin", "100"), "100 [] None", "nor another program those of the lab");
-    assert_eq!(found("velvet", "150"), "150 [\"of velvet\"] None", "the others left them alone");
-    assert_eq!(found(LAB, "125"), "125 [\"of lights-camera-models\"] None");
+    let nothing = "100 [] [] None None None";
+    let own = |scale: &str, name: &str| {
+        format!("{scale} [\"of {name}\"] [\"by {name}\"] Some(\"read by {name}\") None None")
+    };
+    assert_eq!(found("velvet", "150"), nothing);
+    assert_eq!(found(LAB, "125"), nothing, "the lab does not read those of another program");
+    assert_eq!(found("satin", "100"), nothing, "nor another program those of the lab");
+    assert_eq!(found("velvet", "150"), own("150", "velvet"), "the others left them alone");
+    assert_eq!(found(LAB, "125"), own("125", LAB));
     assert!(folder.path().join("settings.json").is_file());
     assert!(folder.path().join("programs/velvet/settings.json").is_file());
 }

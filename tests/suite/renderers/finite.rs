@@ -7,6 +7,7 @@ use bevy::app::PluginGroup as _;
 use glam::{Vec2, Vec3};
 use lights_camera_models::{
     channel::{DebugChannel, Setting},
+    document::Selection,
     explain::finite::{NotFinite, Scope, Tried, marked, probe, traced},
     light::{
         self, Incident, LightRecord, LightType,
@@ -19,7 +20,7 @@ use lights_camera_models::{
     reflection::{self, ReflectionModel},
     registry::{Register as _, Registry},
     scene::{
-        Light, Object, Scene,
+        Light, Object, Scene, Variant,
         load::{self, Defaults},
         save,
     },
@@ -277,6 +278,29 @@ fn the_cpu_renderer_notes_it_and_pixels_lead_to_it() {
     }
 }
 
+#[test]
+fn the_window_knows_which_view_has_light_that_is_no_number() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("s.json");
+    let override_of_b = Variant { reflection_model: Some("torn".to_owned()), ..Variant::default() };
+    let scene =
+        Scene { shading_model: "phong".to_owned(), variants: vec![override_of_b], ..Scene::default() };
+    fs::write(&file, save::to_json(&scene, None, &registry())).expect("written");
+    let plugins = LabPlugins::default().scene(&file).size(120, 90).exit_after(100_000).headless();
+    let mut app = app(plugins.build(), |app| {
+        app.add_reflection_model::<Torn>();
+    });
+    for _ in 0..5 {
+        app.update();
+    }
+    let session = app.world().resource::<Session>();
+    let odd = session.facts.not_finite.each_ref().map(Vec::len);
+    assert_eq!(odd[..2], [0, 1], "{:?}", session.messages);
+    let name = session.name_of(Selection::Object(0), &registry());
+    let said = session.messages.iter().find(|m| m.text.contains("must be finite")).expect("a message");
+    assert!(said.text.starts_with(&format!("{name} has the reflection model torn")), "{}", said.text);
+}
+
 /// A custom model that is finite only for light at more than 37° to the normal.
 const TORN: &str = r#"/* lcm
 { "name": "Torn file", "summary": "Torn.", "equation": [{ "term": "diffuse", "text": "I_d = √(0.5 − N·L)" }],
@@ -376,6 +400,9 @@ fn the_window_says_once_which_model_gives_no_number() {
     let said: Vec<_> = session.messages.iter().filter(|m| m.text.contains("must be finite")).collect();
     assert_eq!(said.len(), 1, "{:?}", session.messages);
     assert_eq!(said[0].severity, Severity::Warning);
-    let expected = "objects[1] (\"Bad\") has the reflection model torn";
-    assert!(said[0].text.starts_with(expected), "{}", said[0].text);
+    // By the name in the list of the scene, not by the path in the file.
+    assert!(said[0].text.starts_with("Bad has the reflection model torn"), "{}", said[0].text);
+    let odd = &session.facts.not_finite;
+    assert_eq!(odd[0].iter().map(|odd| odd.part).collect::<Vec<_>>(), [Selection::Object(1)]);
+    assert!(odd[1..].iter().all(Vec::is_empty));
 }

@@ -1,7 +1,11 @@
 //! The picture reports where it clips, counted in what the renderer draws.
 
 use bevy_egui::egui::{Color32, PointerButton};
-use lights_camera_models::panel::state::{Action, Clipping, Session, ViewChange};
+use lights_camera_models::{
+    channel::DebugChannel,
+    document::Selection,
+    panel::state::{Action, Clipping, NoNumber, Session, ViewChange},
+};
 
 use crate::{helpers::screen::Picture, window::panels::Bench};
 
@@ -40,6 +44,27 @@ fn the_sign_tells_the_share_and_the_view_shows_where() {
     assert!(bench.session.view.show_clipping && bench.session.selection == selected);
     // A chequered pattern, minus the part covered by the object's marks.
     assert!((3200..4900).contains(&there) && elsewhere == 0, "{there} and {elsewhere} of 8100");
+}
+
+#[test]
+fn what_gives_no_number_has_a_badge_that_shows_where() {
+    let mut bench = Bench::new(Session::default());
+    bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
+    bench.settle();
+    assert!(!bench.says("Not a number:"));
+    let odd = |part| NoNumber { part, what: "has the reflection model torn, which gives NaN".to_owned() };
+    bench.session.facts.not_finite[0] = vec![odd(Selection::Object(0))];
+    bench.settle();
+    let sign = bench.find("Not a number: Sphere 1").expect("a badge").rect.center();
+    bench.click_at(sign, PointerButton::Primary);
+    assert_eq!(bench.session.view.channels[0], Some(DebugChannel::NotANumber));
+    let sign = bench.find("Not a number: Sphere 1").expect("still there").rect.center();
+    bench.click_at(sign, PointerButton::Primary);
+    assert_eq!(bench.session.view.channels[0], None);
+    // Many are counted.
+    bench.session.facts.not_finite[0] = (0..4).map(|_| odd(Selection::Object(0))).collect();
+    bench.settle();
+    assert!(bench.find("Not a number: Sphere 1, Sphere 1, 2 more").is_some());
 }
 
 #[cfg(target_os = "linux")]

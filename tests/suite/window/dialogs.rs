@@ -80,7 +80,7 @@ fn a_dialog_is_whole_at_every_size_of_type() {
             .collect();
         for words in ["Open a scene", "Scenes", "Cancel", "Open"] {
             let is_whole = |rect: Rect| whole.shrink(8.0).contains_rect(rect);
-            let mut found = texts.iter().filter(|text| text.galley.text().ends_with(words));
+            let mut found = texts.iter().filter(|text| text.galley.text().trim_end().ends_with(words));
             assert!(found.any(|text| is_whole(text.visual_bounding_rect())), "{percent} %: no {words}");
         }
         let panel = PanelState::load(&bench.ctx, Id::new("open dialog").with("bottom_panel")).expect("shown");
@@ -476,4 +476,66 @@ fn the_name_of_the_selected_file_is_whole() {
         _ => false,
     });
     assert!(whole, "beside the list, in as many lines as it takes");
+}
+
+#[test]
+fn the_name_of_the_selected_file_has_a_line_of_its_own() {
+    const NAME: &str = "compare_diffuse_models.json";
+    for percent in [100, 150, 200] {
+        let (mut bench, folder) = open(ThemeChoice::Dark, percent);
+        bench.key(Key::Escape, Modifiers::NONE);
+        fs::copy(folder.path().join("shapes.json"), folder.path().join(NAME)).expect("copied");
+        bench.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL);
+        until(&mut bench, "the list", |b: &mut Bench| b.tree.iter().any(|s| s.label.contains("compare_")));
+        select(&mut bench, "compare_");
+        bench.settle();
+        let bottom = PanelState::load(&bench.ctx, Id::new("open dialog").with("bottom_panel"))
+            .expect("shown")
+            .outer_rect;
+        let shapes = bench.shapes();
+        let place = |words: &str| {
+            let mut places = shapes.iter().filter_map(|shape| match shape {
+                Shape::Text(text) if text.galley.text() == words => Some(shape.visual_bounding_rect()),
+                _ => None,
+            });
+            let place = places.find(|place| bottom.contains(place.center()));
+            place.unwrap_or_else(|| panic!("{percent} %: no {words} below the list"))
+        };
+        let (label, name, filter) = (place("File:"), place(NAME), place("Scenes"));
+        assert!(
+            name.left() > label.right() && name.right() < bottom.right(),
+            "{percent} %: {name:?} is cut off between {label:?} and {bottom:?}"
+        );
+        assert!(filter.top() >= name.bottom(), "{percent} %: the filter {filter:?} is beside {name:?}");
+    }
+}
+
+#[test]
+fn a_dialog_opened_at_another_size_of_type_has_room_for_its_buttons() {
+    let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
+    bench.key(Key::Escape, Modifiers::NONE);
+    for percent in [200, 150, 100, 200] {
+        bench.apply(Action::View(ViewChange::Scale(percent)));
+        bench.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL);
+        until(&mut bench, "the list", |b: &mut Bench| b.tree.iter().any(|s| s.label.contains("shapes.json")));
+        bench.settle();
+        let panel = |name: &str| {
+            let state = PanelState::load(&bench.ctx, Id::new("open dialog").with(name));
+            state.unwrap_or_else(|| panic!("no {name}")).outer_rect
+        };
+        let (bottom, preview) = (panel("bottom_panel"), panel("right_panel"));
+        let whole = bench.ctx.memory(|m| m.area_rect(Id::new("open dialog"))).expect("open");
+        assert!(preview.width() < 0.4 * whole.width(), "{percent} %: {preview:?} of {whole:?}");
+        for words in ["Cancel", "Open", "Scenes"] {
+            let is_whole = bench.shapes().into_iter().any(|shape| match &shape {
+                Shape::Text(text) => {
+                    let is_it = text.galley.text().trim_end().ends_with(words) && !text.galley.elided;
+                    is_it && bottom.contains_rect(shape.visual_bounding_rect())
+                }
+                _ => false,
+            });
+            assert!(is_whole, "{percent} %: {words} is cut off in {bottom:?}");
+        }
+        bench.key(Key::Escape, Modifiers::NONE);
+    }
 }

@@ -66,6 +66,19 @@ impl Block {
         edges.map(|(axis, half)| half * axis.dot(way).abs()).sum::<f32>().min(self.radius)
     }
 
+    /// True if a position is inside the sphere.
+    pub(super) fn ball_holds(&self, p: Vec3) -> bool {
+        p.distance(self.centre) < self.radius
+    }
+
+    /// Distance of a position from the block, at least that from the box and that from the sphere; 0 inside.
+    pub(super) fn gap(&self, p: Vec3) -> f32 {
+        let way = p - self.centre;
+        let beyond = |i: usize| (self.axes[i].dot(way).abs() - self.half[i]).max(0.0);
+        let from_box = Vec3::new(beyond(0), beyond(1), beyond(2)).length();
+        from_box.max(way.length() - self.radius)
+    }
+
     /// True unless a plane separates the blocks: one along faces or edges of the two, or between the centres.
     pub(super) fn touches(&self, other: &Self) -> bool {
         let between = other.centre - self.centre;
@@ -109,6 +122,11 @@ mod tests {
         // Inside the sphere around the floor, but above the floor.
         assert!(!floor.touches(&cube(Vec3::new(0.0, 30.6, 0.0), 1.0, 30.0)));
         assert!(floor.touches(&cube(Vec3::new(0.0, 30.4, 0.0), 1.0, 30.0)));
+        // The gap is that from the box where it ends before the sphere.
+        assert!((floor.gap(Vec3::new(5.0, 33.0, -9.0)) - 3.0).abs() < 1e-4);
+        assert_eq!(floor.gap(Vec3::new(5.0, 29.0, -9.0)), 0.0);
+        assert!(floor.ball_holds(Vec3::new(5.0, 33.0, -9.0)));
+        assert!((Block::ball(Vec3::ZERO, 1.0).gap(Vec3::splat(2.0)) - (12f32.sqrt() - 1.0)).abs() < 1e-5);
         let one = cube(Vec3::ZERO, 1.0, 0.0);
         // A corner reaches farther than a face.
         assert!(one.touches(&cube(Vec3::X * 1.15, 1.0, 45.0)));

@@ -34,7 +34,7 @@ impl Stand<'_> {
         let all = BESIDE.map(|[side, rise]| {
             self.eye + DEPTH * (way + way.length() * (side * across * right + rise * up * above))
         });
-        let has_room = |p: Vec3| self.free(p, 0.5 * SPAN[0] * p.distance(target));
+        let has_room = |p: Vec3| self.free_for_light(p, 0.5 * SPAN[0] * p.distance(target), None);
         let shows = |p: Vec3| self.sees(p, 0.08 * p.distance(self.eye));
         let of = |good: &dyn Fn(Vec3) -> bool| self.darkest(all.into_iter().filter(|p| good(*p)));
         of(&|p| has_room(p) && shows(p))
@@ -59,7 +59,7 @@ impl Stand<'_> {
     pub(in crate::panel::state) fn fit_size(&self, entry: &LightEntry, at: Vec3, values: &mut Values) {
         let span = entry.span(values);
         let distance = at.distance(self.target());
-        let gaps = self.taken.iter().map(|(q, radius)| at.distance(*q) - radius);
+        let gaps = self.taken.iter().map(|object| object.gap(at));
         let [least, most] = SPAN.map(|share| share * distance);
         let most = gaps.map(|gap| CLEAR * gap).fold(most, f32::min);
         let wanted = span.max(least).min(most);
