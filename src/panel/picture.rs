@@ -40,6 +40,9 @@ const WIDE_PLATE: f32 = 330.0;
 /// where the editor shows the error.
 const PLATE: f32 = 0.25;
 
+/// Maximum size of letters over one of several pictures of a presentation, as a fraction of its height.
+const LETTER_SIZE: f32 = 0.1;
+
 /// The picture's own panel: all that is written over the picture.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
@@ -224,7 +227,8 @@ impl<'a> Overlaid<'_, 'a> {
         let (session, registry) = (self.context.session(), self.context.registry());
         let layout = session.document.comparison.layout;
         let palette = Palette::here(ui);
-        let body = FontId::proportional(CAPTION * ui.max_rect().height());
+        let room = cells.first().map_or(0.0, |cell| cell.rect.height() + spot.above());
+        let body = FontId::proportional((CAPTION * ui.max_rect().height()).min(LETTER_SIZE * room));
         ui.style_mut().text_styles.insert(TextStyle::Body, body);
         let mut disk = of_disk(session);
         let mut shared: Option<Placer> = None;
@@ -304,7 +308,10 @@ impl<'a> Overlaid<'_, 'a> {
         let low = PLATE * placer.room.height() - placer::EDGE;
         let (said, tallest) = match session.edits_troubles() {
             true => (&lines[..0], low),
-            false if session.view.presenting => (&lines[..], low),
+            // In a low picture there is room for the heading.
+            false if session.view.presenting => {
+                (&lines[..], low.max(4.0 * TextStyle::Body.resolve(ui.style()).size))
+            }
             false => (&lines[..], f32::INFINITY),
         };
         let Some(galleys) = that_fit(ui, placer.room, &heading, said, tallest) else { return Rect::NOTHING };

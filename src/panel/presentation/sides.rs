@@ -123,9 +123,8 @@ mod tests {
         let mut b = a.clone();
         b.shading_model = "phong".to_owned();
         b.display.tone_mapping = ToneMapping::Reinhard;
-        let [a_says, b_says] = &said(&[(&a, TermSelection::All), (&b, TermSelection::Diffuse)])[..] else {
-            panic!("two captions")
-        };
+        let both = said(&[(&a, TermSelection::All), (&b, TermSelection::Diffuse)]);
+        let (a_says, b_says) = (&both[0], &both[1]);
         let head = "Gouraud shading · computed per vertex · all terms · no tone mapping · Blinn–Phong";
         assert!(a_says.starts_with(head), "{a_says}");
         let head = "Phong shading · computed per pixel · diffuse term alone · Reinhard · Blinn–Phong";
