@@ -12,7 +12,7 @@ use super::{
     explain,
     focus::{self, Region},
     handles, keys, labels, marks,
-    placer::Placer,
+    placer::{self, Placer},
     prelude::*,
     presentation::{self, CAPTION, Footer, Needed, Spot, Stage},
     state::{Badge, Cell, SHADER_TAB},
