@@ -1,7 +1,7 @@
 //! glTF 2.0 binary files (.glb): The Khronos Group (2021), *glTF 2.0 Specification*. Reads the triangles of
 //! the file's default scene, as placed by its nodes: positions, normals and the first texture coordinates.
 
-use glam::{Mat3, Mat4, Vec2, Vec3};
+use glam::{DMat3, DMat4, Mat4, Vec2, Vec3};
 use gltf::{
     Accessor, Document, Glb, Mesh, Semantic,
     accessor::{DataType, Dimensions},
@@ -79,26 +79,26 @@ fn mistake(error: &gltf::Error) -> String {
 }
 
 /// The meshes of the scene with their transformations: those of the nodes below its roots.
-fn placed(document: &Document) -> Result<Vec<(Mesh<'_>, Mat4)>, String> {
+fn placed(document: &Document) -> Result<Vec<(Mesh<'_>, DMat4)>, String> {
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let Some(scene) = scene else { return Err("it has no scene".to_owned()) };
     let mut seen = vec![false; document.nodes().len()];
-    let mut next: Vec<_> = scene.nodes().map(|node| (node, Mat4::IDENTITY)).collect();
+    let mut next: Vec<_> = scene.nodes().map(|node| (node, DMat4::IDENTITY)).collect();
     let mut meshes = Vec::new();
     while let Some((node, above)) = next.pop() {
         if std::mem::replace(&mut seen[node.index()], true) {
             return Err(format!("nodes[{}] has more than one parent, or is its own ancestor", node.index()));
         }
-        let place = above * Mat4::from_cols_array_2d(&node.transform().matrix());
+        let place = above * Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
         next.extend(node.children().map(|child| (child, place)));
         meshes.extend(node.mesh().map(|mesh| (mesh, place)));
     }
     Ok(meshes)
 }
 
-fn polygons(mesh: &Mesh, place: Mat4, blob: &[u8], to: &mut Builder) -> Result<(), String> {
+fn polygons(mesh: &Mesh, place: DMat4, blob: &[u8], to: &mut Builder) -> Result<(), String> {
     // Normals stay perpendicular to the stretched surface.
-    let turn = Mat3::from_mat4(place);
+    let turn = DMat3::from_mat4(place);
     let (turn_normals, mirrored) = (turn.inverse().transpose(), turn.determinant() < 0.0);
     for primitive in mesh.primitives() {
         if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
@@ -126,8 +126,9 @@ fn polygons(mesh: &Mesh, place: Mat4, blob: &[u8], to: &mut Builder) -> Result<(
             })?;
             let normal = normals.as_ref().and_then(|normals| normals.get(i));
             Ok::<_, String>(Corner {
-                position: place.transform_point3(Vec3::from_array(*position)),
-                normal: normal.map(|n| turn_normals * Vec3::from_array(*n)),
+                position: place.transform_point3(Vec3::from_array(*position).as_dvec3()),
+                normal: normal
+                    .map(|n| (turn_normals * Vec3::from_array(*n).as_dvec3()).normalize_or_zero().as_vec3()),
                 texture: textures.as_ref().and_then(|all| all.get(i)).map(|uv| Vec2::from_array(*uv)),
             })
         };
@@ -309,6 +310,9 @@ mod tests {
         let mesh = turned(json!({ "rotation": [0, 0, s, s], "scale": [2, 1, 1], "translation": [9, 9, 9] }));
         let extents = mesh.positions.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())) * 2.0;
         assert!((extents - Vec3::new(0.25, 1.0, 0.25)).length() < 1e-5, "{extents}");
+        // Far away, nothing of the shape is lost.
+        let far = turned(json!({ "translation": [4.6e6, 5.98e6, 3.22e6], "scale": [0.125, 0.125, 0.125] }));
+        assert_eq!(far.positions, after(|_| {}).expect("legal").positions);
         let plain = after(|_| {}).expect("legal").polygon_normals()[0];
         let mirrored = turned(json!({ "scale": [1, 1, -1] }));
         assert!((mirrored.polygon_normals()[0] - plain * Vec3::new(1.0, 1.0, -1.0)).length() < 1e-6);
