@@ -7,7 +7,7 @@ use gltf::{
     accessor::{DataType, Dimensions},
     binary,
     buffer::Source,
-    json::validation::Error as Mistake,
+    json::{Root, validation::Error as Mistake},
     mesh::Mode,
 };
 
@@ -19,6 +19,9 @@ use crate::{parameter::FileProblem, text::shortened};
 
 /// First bytes of such a file.
 pub const BEGIN: &[u8] = b"glTF";
+
+/// An extension that places meshes.
+const INSTANCES: &str = "EXT_mesh_gpu_instancing";
 
 /// Reads the polygons of a file.
 pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
@@ -46,10 +49,44 @@ fn whole(bytes: &[u8], to: &mut Builder) -> Result<(), String> {
             ));
         }
     }
+    can_be_placed(&json)?;
     let document = Document::from_json(json).map_err(wrong)?;
     let blob = bin.unwrap_or_default();
     for (mesh, place) in placed(&document)? {
         polygons(&mesh, place, &blob, to).map_err(|what| format!("meshes[{}]: {what}", mesh.index()))?;
+    }
+    let mut modes = document.meshes().flat_map(|mesh| mesh.primitives()).map(|primitive| primitive.mode());
+    match modes.next() {
+        Some(first) if to.is_empty() && !is_surface(first) && !modes.any(is_surface) => {
+            Err("it has lines or points alone; only triangles have a surface".to_owned())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// True for triangles.
+fn is_surface(mode: Mode) -> bool {
+    matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)
+}
+
+/// Fails for nodes whose place is not known.
+fn can_be_placed(json: &Root) -> Result<(), String> {
+    let mut named = json.extensions_used.iter().chain(&json.extensions_required);
+    if named.any(|name| name == INSTANCES) {
+        let remedy = "export every copy as a node of its own";
+        return Err(format!("it repeats meshes by the extension {INSTANCES}, which is not read; {remedy}"));
+    }
+    for (i, node) in json.nodes.iter().enumerate() {
+        let has_parts = node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
+        if node.matrix.is_some() && has_parts {
+            let rule = "a node must have either the one or the others";
+            return Err(format!("nodes[{i}] has a matrix and a translation, rotation or scale; {rule}"));
+        }
+        // Other programs round.
+        let is_unit = |q: &[f32; 4]| (q.iter().map(|n| n * n).sum::<f32>().sqrt() - 1.0).abs() < 0.01;
+        if let Some(rotation) = node.rotation.map(|rotation| rotation.0).filter(|q| !is_unit(q)) {
+            return Err(format!("nodes[{i}].rotation is {rotation:?}, but its length must be 1"));
+        }
     }
     Ok(())
 }
@@ -101,7 +138,7 @@ fn polygons(mesh: &Mesh, place: DMat4, blob: &[u8], to: &mut Builder) -> Result<
     let turn = DMat3::from_mat4(place);
     let (turn_normals, mirrored) = (turn.inverse().transpose(), turn.determinant() < 0.0);
     for primitive in mesh.primitives() {
-        if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+        if !is_surface(primitive.mode()) {
             continue;
         }
         let Some(positions) = primitive.get(&Semantic::Positions) else { continue };
@@ -331,7 +368,7 @@ mod tests {
         let strip = normals(5);
         assert!(strip.len() == 2 && strip[0] == Vec3::Z && strip[1].min_element() < 0.0, "{strip:?}");
         assert_eq!(normals(6), [Vec3::Z, Vec3::X]);
-        assert_eq!(of_mode(1), Err("it has no polygons with an area".to_owned()));
+        assert_eq!(of_mode(1), Err("it has lines or points alone; only triangles have a surface".to_owned()));
     }
 
     #[test]
@@ -377,6 +414,16 @@ mod tests {
             }),
             ("it has no scene", |json| {
                 json.as_object_mut().expect("an object").retain(|key, _| !key.starts_with("scene"));
+            }),
+            ("nodes[1] has a matrix and a translation, rotation or scale; a node must have either", |json| {
+                json["nodes"][1]["matrix"] = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+                json["nodes"][1]["scale"] = json!([2, 1, 1]);
+            }),
+            ("nodes[0].rotation is [0.0, 0.0, 0.0, 0.0], but its length must be 1", |json| {
+                json["nodes"][0]["rotation"] = json!([0, 0, 0, 0]);
+            }),
+            ("it repeats meshes by the extension EXT_mesh_gpu_instancing, which is not read", |json| {
+                json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
             }),
             ("it is not valid glTF: nodes[1].mesh is an index out of range", |json| {
                 json["nodes"][1]["mesh"] = json!(7)
