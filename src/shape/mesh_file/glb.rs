@@ -143,6 +143,7 @@ fn polygons(mesh: &Mesh, place: DMat4, blob: &[u8], to: &mut Builder) -> Result<
         }
         let Some(positions) = primitive.get(&Semantic::Positions) else { continue };
         let positions = floats::<3>(&positions, Dimensions::Vec3, "POSITION", blob)?;
+        to.note(positions.iter().map(|position| Vec3::from_array(*position)));
         let optional = |semantic, dimensions, what: &str| {
             primitive
                 .get(&semantic)

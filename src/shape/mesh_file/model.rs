@@ -36,6 +36,10 @@ pub struct Builder {
     corners: Vec<[u32; 2]>,
     /// Number of polygons that will be drawn.
     drawn: usize,
+    /// The first list of 32-bit positions that is too far from the origin for its extent: its distance and its extent.
+    coarse: Option<[f32; 2]>,
+    /// True if another list is not.
+    is_fine: bool,
 }
 
 /// A polygon that was read: the end of its corners, and the direction of increasing texture coordinates.
@@ -62,6 +66,8 @@ impl Pool {
     }
 }
 
+/// Smallest extent as a fraction of the distance from the origin: 256 steps of 32-bit floats.
+const COARSEST: f32 = 1.0 / 65536.0;
 /// Index that stands for a corner without a normal.
 const NONE: u32 = u32::MAX;
 /// Number of values per polygon: the number of its corners, four positions, four normals, and a direction.
@@ -113,6 +119,21 @@ impl Builder {
         Ok(())
     }
 
+    /// Notes positions that belong together and that the file has as 32-bit floats: far from the origin nothing is left of
+    /// their shape.
+    pub fn note(&mut self, positions: impl Iterator<Item = Vec3>) {
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for position in positions {
+            (low, high) = (low.min(position), high.max(position));
+        }
+        let (distance, extent) = (low.abs().max(high.abs()).max_element(), (high - low).max_element());
+        if extent > 0.0 && extent < distance * COARSEST {
+            self.coarse.get_or_insert([distance, extent]);
+        } else {
+            self.is_fine = true;
+        }
+    }
+
     /// True if there are no polygons.
     pub fn is_empty(&self) -> bool {
         self.polygons.is_empty()
@@ -122,9 +143,15 @@ impl Builder {
     /// Polygons without area are dropped.
     ///
     /// # Errors
-    /// Returns an error if there are no polygons.
+    /// Returns an error if there are no polygons, or if all positions are too coarse.
     pub fn numbers(self) -> Result<Vec<f32>, String> {
-        let Self { positions, normals, polygons, corners, .. } = self;
+        let Self { positions, normals, polygons, corners, coarse, is_fine, .. } = self;
+        if let Some([distance, extent]) = coarse.filter(|_| !is_fine) {
+            return Err(format!(
+                "it has an extent of {extent} at {distance} from its origin, where its 32-bit floats are too coarse; move it \
+                 to the origin before you export it, or save it as OBJ"
+            ));
+        }
         let mut faces: Vec<(&[[u32; 2]], Vec3)> = Vec::with_capacity(polygons.len());
         let mut begin = 0;
         for Read { end, brushed } in &polygons {
@@ -376,6 +403,26 @@ mod tests {
         assert_eq!(own.positions.len(), 6);
         assert_eq!(own.vertex_normals()[..3], [Vec3::Z; 3]);
         assert_eq!(own.vertex_normals()[3..], [Vec3::NEG_Y; 3]);
+    }
+
+    #[test]
+    fn positions_of_32_bits_far_from_the_origin_are_refused() {
+        let refused = |lists: &[&[Vec3]]| {
+            let mut builder = Builder::default();
+            add(&mut builder, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).expect("legal");
+            lists.iter().for_each(|list| builder.note(list.iter().copied()));
+            builder.numbers().err()
+        };
+        let at = |x: f32| [Vec3::X * x, Vec3::X * x + Vec3::ONE];
+        let said = refused(&[&at(4.6e6)]).expect("an error");
+        assert!(said.starts_with("it has an extent of 1 at 4600001 from its origin, where"), "{said}");
+        // Small parts of a large model may be coarse.
+        let (far, near, not_far, point) = (at(4.6e6), at(0.0), at(6e4), [Vec3::ONE * 1e9; 2]);
+        assert_eq!(refused(&[&far, &near]), None);
+        for fine in [&near[..], &not_far, &point, &[]] {
+            assert_eq!(refused(&[fine]), None, "{fine:?}");
+        }
+        assert_eq!(refused(&[]), None);
     }
 
     #[test]

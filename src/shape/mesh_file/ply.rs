@@ -131,6 +131,10 @@ pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
         };
         read.map_err(|e| in_element(&e, element, is_text, bytes))?;
     }
+    let float = |axis: &str| vertex.properties[axis].data_type == PropertyType::Scalar(ScalarType::Float);
+    if ["x", "y", "z"].into_iter().any(float) {
+        to.note(vertices.iter().map(|vertex: &Vertex| vertex.position.as_vec3()));
+    }
     for (i, Face(face)) in faces.iter().enumerate() {
         let corner = |index: &u32| {
             let Vertex { position, normal, texture } = *vertices.get(*index as usize)?;
@@ -306,6 +310,22 @@ mod tests {
         // s grows along y.
         assert!((mesh.polygon_tangents()[0] - Vec3::Y).length() < 1e-6);
         assert_eq!(super::tests::mesh(text.as_bytes(), false).vertex_normals(), [Vec3::Z; 3]);
+    }
+
+    #[test]
+    fn binary_floats_far_away_are_refused_and_text_is_not() {
+        let far = |text: &str| {
+            text.replace("\n0 0 0 7\n2 0 0 7\n", "\n4600000 0 0 7\n4600002 0 0 7\n")
+                .replace("\n2 1 0 7\n0 1 0 7\n", "\n4600002 1 0 7\n4600000 1 0 7\n")
+        };
+        assert!(numbers(far(SQUARE).as_bytes()).is_ok());
+        let mut bytes = binary(true);
+        let start = bytes.len() - 17 - 4 * 17;
+        for (i, x) in [4.6e6_f32, 4.6e6 + 2.0, 4.6e6 + 2.0, 4.6e6].into_iter().enumerate() {
+            bytes[start + 17 * i..][..4].copy_from_slice(&x.to_le_bytes());
+        }
+        let said = numbers(&bytes).expect_err("too far");
+        assert!(said.starts_with("it has an extent of 2 at 4600002 from its origin"), "{said}");
     }
 
     #[test]
