@@ -1,6 +1,7 @@
 //! `lcm compare`: the difference between two views, or two files, as numbers and as a picture.
 
 use std::{
+    borrow::Cow,
     path::{Path, PathBuf},
     sync::atomic::AtomicBool,
 };
@@ -162,7 +163,7 @@ struct View<'a> {
     view: usize,
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
     /// Fails if the view cannot be drawn.
     fn check(&self, registry: &Registry) -> Outcome {
         match self.input.scene().and_then(|scene| scene.seen(self.view, registry)) {
@@ -178,9 +179,9 @@ impl View<'_> {
         [width, height]: [u32; 2],
         drawing: &Drawing,
         (number, whole): (usize, &Progress),
-    ) -> Result<(Shown, Option<Reached>), Failure> {
+    ) -> Result<(Cow<'a, Shown>, Option<Reached>), Failure> {
         let scene = match self.input {
-            Input::Picture(_, shown) => return Ok((shown.clone(), None)),
+            Input::Picture(_, shown) => return Ok((Cow::Borrowed(shown), None)),
             Input::Scene(_, scene) => scene,
         };
         let registry = drawing.registry;
@@ -195,13 +196,14 @@ impl View<'_> {
         let (light, reached) = drawn.map_err(|cancelled| Failure::Invalid(cancelled.to_string()))?;
         // An endless function of a custom model is detected only when it runs.
         self.check(registry)?;
-        Ok((Shown::of_light(light, &seen.display), Some(reached).filter(|reached| reached.samples > 0)))
+        let shown = Shown::of_light(light, &seen.display);
+        Ok((Cow::Owned(shown), Some(reached).filter(|reached| reached.samples > 0)))
     }
 
     /// The picture of the view, with the outlines of its objects if it is a view of a scene.
-    fn outlined(&self, shown: Shown, registry: &Registry) -> Shown {
+    fn outlined(&self, shown: Cow<'a, Shown>, registry: &Registry) -> Cow<'a, Shown> {
         match self.input.scene().and_then(|scene| scene.seen(self.view, registry)) {
-            Some((seen, _)) => shown.outlined(&seen, registry),
+            Some((seen, _)) => Cow::Owned(shown.into_owned().outlined(&seen, registry)),
             None => shown,
         }
     }
@@ -246,9 +248,9 @@ enum Most {
 }
 
 impl Most {
-    fn of(largest: Largest, shown: &[Shown; 2]) -> Self {
+    fn of(largest: Largest, shown: &[Cow<Shown>; 2]) -> Self {
         let Largest { x, y, difference, .. } = largest;
-        let light = |shown: &Shown| Some(shown.light()?.pixel(x, y).truncate().to_array());
+        let light = |shown: &Cow<Shown>| Some(shown.light()?.pixel(x, y).truncate().to_array());
         match [&shown[0], &shown[1]].map(light) {
             [Some(a), Some(b)] if shown.iter().any(|shown| !shown.has_codes()) => {
                 Self::Light { x, y, difference, a, b }
@@ -362,10 +364,14 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let differences = pair.differences(&comparison).map_err(invalid)?;
     let measured =
         pair.measure().ok_or_else(|| Failure::Invalid("the pictures have no pixels".to_owned()))?;
+    let largest = differences.largest.map(|largest| Most::of(largest, &shown));
 
     let drawn = match &arguments.output {
         Some(_) if beside.is_some() => beside,
-        Some(_) => Some((size, compose(&comparison, size, &shown).map_err(invalid)?)),
+        Some(_) => {
+            let shown = shown.map(Cow::into_owned);
+            Some((size, compose(&comparison, size, &shown).map_err(invalid)?))
+        }
         None => None,
     };
     let report = Report {
@@ -377,7 +383,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         channel: comparison.channel.id(),
         all: Numbers(measured.all.clone()),
         covered: measured.covered.clone().map(Numbers),
-        largest: differences.largest.map(|largest| Most::of(largest, &shown)),
+        largest,
     };
     let printed = print_json(&report);
     let broken = broken(arguments, &measured, differences.largest)?;
@@ -512,7 +518,7 @@ fn side_by_side(
         || Failure::Usage(format!("{}x{} pixels are too few for the views side by side", size[0], size[1]));
     let places = cells(comparison, variants, whole).ok_or_else(no_room)?;
     let shown = views.iter().zip(&places).enumerate().map(|(i, (view, cell))| {
-        Ok::<_, Failure>(view.shown([cell.width, cell.height], drawing, (2 + i, progress))?.0)
+        Ok::<_, Failure>(view.shown([cell.width, cell.height], drawing, (2 + i, progress))?.0.into_owned())
     });
     let shown = shown.collect::<Result<Vec<_>, _>>()?;
     let rgb8 = compose(comparison, whole, &shown).map_err(|error| Failure::Invalid(error.to_string()))?;

@@ -45,6 +45,14 @@ const LIMITS: Limits = Limits {
     surroundings: false,
 };
 
+/// Fails if a picture has a size that is not read.
+fn can_be_compared(width: usize, height: usize) -> Result<(), String> {
+    let most = MAX_SIDE as usize;
+    let fits = (1..=most).contains(&width) && (1..=most).contains(&height) && width * height <= MAX_PIXELS;
+    let rule = format!("each side must have 1 to {most}, and both together at most {MAX_PIXELS}");
+    fits.then_some(()).ok_or_else(|| format!("the picture has {width}×{height} pixels, but {rule}"))
+}
+
 /// The light of a file.
 struct Light {
     picture: Picture,
@@ -57,11 +65,7 @@ struct Light {
 
 impl Pixels for Light {
     fn check(width: usize, height: usize) -> Result<(), String> {
-        let most = MAX_SIDE as usize;
-        let fits =
-            (1..=most).contains(&width) && (1..=most).contains(&height) && width * height <= MAX_PIXELS;
-        let rule = format!("each side must have 1 to {most}, and both together at most {MAX_PIXELS}");
-        fits.then_some(()).ok_or_else(|| format!("the picture has {width}×{height} pixels, but {rule}"))
+        can_be_compared(width, height)
     }
 
     fn new(width: usize, height: usize, scale: DVec3) -> Self {
@@ -113,10 +117,8 @@ fn decode(bytes: &[u8]) -> Result<Shown, String> {
     decoder.set_ignore_text_chunk(true);
     let mut reader = decoder.read_info().map_err(broken)?;
     let (width, height) = (reader.info().width, reader.info().height);
-    if width.max(height) > MAX_SIDE {
-        let size = format!("{width}×{height} pixels");
-        return Err(format!("the picture has {size}, but each side must have at most {MAX_SIDE}"));
-    }
+    // A file of less than a megabyte can claim gigabytes.
+    can_be_compared(width as usize, height as usize)?;
     let size = reader.output_buffer_size().ok_or_else(|| "the picture is too large".to_owned())?;
     let mut codes = vec![0; size];
     let frame = reader.next_frame(&mut codes).map_err(broken)?;

@@ -93,8 +93,7 @@ impl Workshop {
                 // The problems have been reported by now; their position is as good as a name.
                 if let Some((path, first)) = problems.first() {
                     let file = folder::file_with(first, path);
-                    let place = format!("{}:{}:{}", file.shown(), first.line, first.column);
-                    self.registry.mark_broken(id, place);
+                    self.registry.mark_broken(id, first.place(file.shown()));
                 }
                 true
             }

@@ -37,7 +37,7 @@ mod table;
 
 use glam::Vec3;
 
-use crate::progress::Cancelled;
+use crate::{progress::Cancelled, text::shortened};
 
 pub use channel::Channel;
 pub use format::Format;
@@ -64,12 +64,12 @@ impl Setup {
     /// A setup with legal angles.
     ///
     /// # Errors
-    /// Returns an error if the light is not above the surface, or an angle is not finite.
+    /// Returns an error if the light is not above the surface, or the azimuth is more than a turn.
     pub fn new(kind: Kind, theta_i: f64, phi_i: f64) -> Result<Self, CurveError> {
         if !(0.0..90.0).contains(&theta_i) {
             return Err(CurveError::Light(theta_i));
         }
-        if !phi_i.is_finite() {
+        if !(-360.0..=360.0).contains(&phi_i) {
             return Err(CurveError::Azimuth(phi_i));
         }
         Ok(Self { kind, theta_i, phi_i })
@@ -164,10 +164,10 @@ impl std::fmt::Display for Missing {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CurveError {
     /// The light is below the surface.
-    #[error("the angle of the light is {0}°, but it must be at least 0° and less than 90°")]
+    #[error("the angle of the light is {}°, but it must be at least 0° and less than 90°", shortened(.0.to_string().as_str()))]
     Light(f64),
-    /// The azimuth is not a direction.
-    #[error("the azimuth of the light is {0}°, but it must be a finite number")]
+    /// The azimuth is more than a turn.
+    #[error("the azimuth of the light is {}°, but it must be at least −360° and at most 360°", shortened(.0.to_string().as_str()))]
     Azimuth(f64),
     /// The model does not have the factor.
     #[error("{name} has no {what}")]

@@ -316,6 +316,8 @@ fn light_from_below_is_refused() {
         (90.0, 0.0, "is 90°, but it must be at least 0° and less than 90°"),
         (-1.0, 0.0, "is -1°, but"),
         (f64::NAN, 0.0, "is NaN°, but"),
+        (1.0, 361.0, "the azimuth of the light is 361°, but it must be at least −360° and at most 360°"),
+        (1.0, 1e300, "the azimuth of the light is 1000"),
         (1.0, f64::INFINITY, "the azimuth of the light is inf°"),
     ] {
         let error = Setup::new(Kind::Brdf, theta, phi).err().map(|e| e.to_string()).unwrap_or_default();

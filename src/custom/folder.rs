@@ -150,7 +150,7 @@ pub fn file_with(problem: &ShaderProblem, path: &Path) -> PathBuf {
 fn broken(id: &str, problems: Problems, registry: &mut Registry) -> Reading {
     if let Some((path, problem)) = problems.first() {
         let file = file_with(problem, path);
-        let place = format!("{}:{}:{}", file.shown(), problem.line, problem.column);
+        let place = problem.place(file.shown());
         registry.mark_broken(id, format!("{place}: {}", problem.message));
     }
     Reading::Broken(problems)
@@ -216,8 +216,8 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
         Err(e) => {
             let problem = ShaderProblem {
                 file: "models".to_owned(),
-                line: 1,
-                column: 1,
+                line: 0,
+                column: 0,
                 source: String::new(),
                 message: format!("the folder could not be read: {}", words(&e)),
             };

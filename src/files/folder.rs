@@ -146,14 +146,9 @@ pub fn clear(folder: &Path, is_own: impl Fn(&Path) -> bool) {
 /// # Errors
 /// Returns an error if the folder cannot be created, and the errors of `write`.
 pub fn in_folder<T, E: From<io::Error>>(folder: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
-    let new: Vec<_> = folder.ancestors().take_while(|folder| !folder.exists()).collect();
-    if let Some(file) = folder.ancestors().find(|path| path.exists()).filter(|path| !path.is_dir()) {
-        let message = format!("{} is not a folder", file.shown());
-        return Err(io::Error::new(io::ErrorKind::NotADirectory, message).into());
-    }
+    let new = missing_folders(folder)?;
     // Recorded until the end, in case this process is terminated meanwhile.
-    let known = |folder: &&Path| Living::making(|| Ok(()), |()| Temporary::Folder((*folder).to_owned()));
-    let _living = new.iter().map(known).collect::<Result<Vec<_>, _>>()?;
+    let _living = Living::making(|| Ok(()), |()| Temporary::Folders(folder.to_owned(), new.len()))?;
     let made = fs::create_dir_all(folder).map_err(|error| {
         match (error.kind(), folder.ancestors().find(|f| f.exists())) {
             (io::ErrorKind::NotFound, Some(there)) => super::missing(there),
@@ -164,6 +159,33 @@ pub fn in_folder<T, E: From<io::Error>>(folder: &Path, write: impl FnOnce() -> R
         // Only empty folders are removed.
         new.iter().for_each(|folder| drop(fs::remove_dir(folder)));
     })
+}
+
+/// The folders that must be made before something can be written into a folder, the innermost first.
+///
+/// # Errors
+/// Returns an error if they cannot be made: below a file, or with a name or a path too long for the system.
+pub(super) fn missing_folders(folder: &Path) -> io::Result<Vec<&Path>> {
+    let mut missing = Vec::new();
+    for at in folder.ancestors().take_while(|at| !at.as_os_str().is_empty()) {
+        match fs::metadata(at) {
+            Ok(there) if there.is_dir() => break,
+            Ok(_) => {
+                let message = format!("{} is not a folder", at.shown());
+                return Err(io::Error::new(io::ErrorKind::NotADirectory, message));
+            }
+            Err(error) if error.kind() == io::ErrorKind::InvalidFilename => return Err(error),
+            Err(_) => missing.push(at),
+        }
+    }
+    // The system looks at names only in folders that exist.
+    let there = missing.last().map_or(folder, |outermost| folder_of(outermost));
+    let refused = |name: &OsStr| {
+        let error = fs::symlink_metadata(there.join(name)).err();
+        error.filter(|error| error.kind() == io::ErrorKind::InvalidFilename)
+    };
+    let refused = missing.iter().filter_map(|at| at.file_name()).find_map(refused);
+    refused.map_or(Ok(missing), Err)
 }
 
 #[cfg(test)]
@@ -206,6 +228,25 @@ mod tests {
         FolderDraft::new(&place)?.add("x", b"", false)?;
         assert_eq!(names(around.path()), ["made"]);
         Ok(())
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn very_many_missing_folders_are_made_and_removed_at_once() {
+        let around = tempfile::tempdir().expect("a folder");
+        let begin = std::time::Instant::now();
+        let deep = |levels| around.path().join("z/".repeat(levels));
+        // The path of a file in it is shorter than 4096 bytes.
+        let said = in_folder(&deep(1500), || -> io::Result<()> {
+            assert!(deep(1500).is_dir());
+            Err(io::Error::other("no"))
+        });
+        assert_eq!(said.expect_err("it fails").to_string(), "no");
+        for path in [deep(3000), deep(2).join("z".repeat(300)).join("z")] {
+            let said = in_folder(&path, || -> Result<(), FileError> { panic!("made") });
+            assert_eq!(said.expect_err("too long").to_string(), "the name is too long");
+        }
+        assert!(names(around.path()).is_empty() && begin.elapsed().as_secs() < 10, "{:?}", begin.elapsed());
     }
 
     #[test]

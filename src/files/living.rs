@@ -27,8 +27,8 @@ pub(super) enum Temporary {
     File(PathBuf),
     /// A folder that stays if something is written into it.
     Draft(PathBuf),
-    /// A folder that stays if something is written into it.
-    Folder(PathBuf),
+    /// A folder and this many folders from it outwards, which stay if something is written into them.
+    Folders(PathBuf, usize),
 }
 
 /// A temporary item, registered until this is dropped.
@@ -82,17 +82,17 @@ pub fn give_up() {
         match temporary {
             Temporary::File(path) => drop(fs::remove_file(path)),
             Temporary::Draft(path) => litter::remove_draft(path),
-            Temporary::Folder(_) => {}
+            Temporary::Folders(..) => {}
         }
     }
-    let mut folders: Vec<_> = living
+    let mut folders: Vec<PathBuf> = living
         .drain(..)
-        .filter_map(|temporary| match temporary {
-            Temporary::Folder(path) => Some(path),
-            Temporary::File(_) | Temporary::Draft(_) => None,
+        .flat_map(|temporary| match temporary {
+            Temporary::Folders(path, count) => path.ancestors().take(count).map(PathBuf::from).collect(),
+            Temporary::File(_) | Temporary::Draft(_) => Vec::new(),
         })
         .collect();
-    folders.sort_by_key(|path| std::cmp::Reverse(path.components().count()));
+    folders.sort_by_cached_key(|path| std::cmp::Reverse(path.components().count()));
     // Only empty folders are removed.
     folders.iter().for_each(|path| drop(fs::remove_dir(path)));
     std::mem::forget(living);

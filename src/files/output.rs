@@ -10,7 +10,8 @@ use std::{
 
 use super::shown::Shown as _;
 use super::{
-    Draft, FileError, Kind, folder_of, in_folder, input::descriptor, kind, options, read_start, same,
+    Draft, FileError, Kind, folder::missing_folders, folder_of, in_folder, input::descriptor, kind, options,
+    read_start, same,
 };
 
 /// Maximum wait for a reader of a named pipe.
@@ -156,14 +157,9 @@ pub fn can_begin(path: &Path) -> Result<(), FileError> {
     if descriptor(path).is_some() || matches!(kind(path), Ok(Kind::Pipe | Kind::Device)) {
         return Ok(());
     }
-    let mut begun = false;
-    let outcome = in_folder(folder_of(path), || {
-        Draft::fleeting(path)?;
-        begun = true;
-        // As after a failure, new folders are removed again.
-        Err(FileError::Taken)
-    });
-    if begun { Ok(()) } else { outcome }
+    // Missing folders are not made: another process might count on one that is removed again.
+    let missing = missing_folders(folder_of(path))?;
+    Draft::fleeting(missing.last().unwrap_or(&path)).map(drop)
 }
 
 /// The destination of a result: a file, which appears complete or not at all, or standard output, a device or a pipe.

@@ -243,7 +243,8 @@ pub struct Exported {
 }
 
 /// Writes the built-in shaders below `shaders` in a folder, and the example models below `models`, for
-/// editing with `--assets FOLDER`. Existing files that differ are left unchanged.
+/// editing with `--assets FOLDER`. Existing files that differ are left unchanged. If one cannot be written, as on a full
+/// disk, those before it are removed again.
 ///
 /// # Errors
 /// Returns an error if a folder or a file could not be written.
@@ -251,29 +252,51 @@ pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError
     let shaders = folder.join("shaders");
     let sources = built_in_sources(registry).into_iter().map(|s| (shaders.join(s.path), s.text));
     let models = EXAMPLES.iter().map(|(name, text)| (folder.join("models").join(name), *text));
-    let mut exported = Exported::default();
-    for (path, text) in sources.chain(models) {
-        let mut there = files::read(&path, file::MAX_BYTES);
+    let all: Vec<_> = sources.chain(models).collect();
+    let is_new = |place: &&Path| *place != folder && !place.exists();
+    let new: BTreeSet<PathBuf> = all
+        .iter()
+        .flat_map(|(path, _)| path.ancestors().skip(1).take_while(is_new).map(Path::to_owned))
+        .collect();
+    let (mut exported, mut at) = (Exported::default(), folder.to_owned());
+    let written = files::in_folder(folder, || {
+        export_each(&all, &mut exported, &mut at).inspect_err(|_| {
+            exported.written.iter().for_each(|path| drop(fs::remove_file(path)));
+            // Only empty folders are removed, inner ones first.
+            new.iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
+        })
+    });
+    match written {
+        Ok(()) => Ok(exported),
+        Err(error) => Err(AssetError::Write { path: at, error }),
+    }
+}
+
+/// Writes each of these files, unless it exists; `at` is the one at which it fails.
+fn export_each(all: &[(PathBuf, &str)], exported: &mut Exported, at: &mut PathBuf) -> io::Result<()> {
+    for (path, text) in all {
+        path.clone_into(at);
+        let mut there = files::read(path, file::MAX_BYTES);
         if matches!(&there, Err(FileError::Io(e)) if e.kind() == io::ErrorKind::NotFound) {
-            match write_new(&path, text) {
+            match write_new(path, text) {
                 Ok(()) => {
-                    exported.written.push(path);
+                    exported.written.push(path.clone());
                     continue;
                 }
                 // Somebody else wrote it meanwhile, such as another export.
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
-                    there = files::read(&path, file::MAX_BYTES);
+                    there = files::read(path, file::MAX_BYTES);
                 }
-                Err(error) => return Err(AssetError::Write { path, error }),
+                Err(error) => return Err(error),
             }
         }
         match there {
             Ok(there) if there == text.as_bytes() => exported.same += 1,
-            Ok(_) | Err(FileError::TooLarge(_)) => exported.kept.push(path),
-            Err(error) => return Err(AssetError::Write { path, error: error.into() }),
+            Ok(_) | Err(FileError::TooLarge(_)) => exported.kept.push(path.clone()),
+            Err(error) => return Err(error.into()),
         }
     }
-    Ok(exported)
+    Ok(())
 }
 
 /// Writes a new file, all or nothing, creating its folder if necessary. On failure, the new folder is
@@ -345,6 +368,22 @@ mod tests {
             assert!(exported.kept.is_empty());
             assert_eq!(exported.written.len() + exported.same, count);
         }
+        Ok(())
+    }
+
+    #[test]
+    fn an_export_that_fails_leaves_what_was_there() -> io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let (place, registry) = (folder.path().join("new/er"), Registry::builtin());
+        // The models come last.
+        fs::create_dir_all(&place)?;
+        fs::write(place.join("models"), "mine")?;
+        let said = export(&place, &registry).expect_err("no folder").to_string();
+        assert!(said.ends_with("a part of its path is not a folder"), "{said}");
+        let names: Vec<_> = fs::read_dir(&place)?.flatten().map(|entry| entry.file_name()).collect();
+        assert_eq!(names, ["models"]);
+        fs::remove_file(place.join("models"))?;
+        assert!(export(&place, &registry).is_ok_and(|exported| exported.same == 0));
         Ok(())
     }
 

@@ -17,6 +17,9 @@ pub use read::{Limits, Pixels, read};
 /// Red, green, blue and white of Rec. 709 as OpenEXR has them by default, x and y.
 const REC_709: [[f32; 2]; 4] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
 
+/// Those of Radiance by default: G. Ward, *Radiance File Formats*. They count as the same.
+const RADIANCE_USUAL: [[f32; 2]; 4] = [[0.64, 0.33], [0.29, 0.60], [0.15, 0.06], [0.3333, 0.3333]];
+
 /// Maximum number of pixels of a picture that is written or compared.
 pub const MAX_PIXELS: usize = 1 << 26;
 

@@ -17,13 +17,16 @@ use exr::{
 use glam::DVec3;
 use image::{ImageDecoder as _, ImageError, codecs::hdr::HdrDecoder};
 
-use super::REC_709;
+use super::{RADIANCE_USUAL, REC_709};
 use crate::{
     caught, files,
     text::{plural, shortened},
 };
 
 const RADIANCE: [&[u8]; 2] = [b"#?RADIANCE", b"#?RGBE"];
+
+/// The key of the chromaticities in the header of a Radiance picture.
+const PRIMARIES: &str = "PRIMARIES";
 
 const MAX_LAYERS: usize = 64;
 const MAX_BLOCK_BYTES: usize = 16 << 20;
@@ -109,6 +112,11 @@ fn radiance<P: Pixels>(rest: &[u8], limits: &Limits) -> Result<P, String> {
         _ => bad_line(head),
     })?;
     let meta = decoder.metadata();
+    for (_, numbers) in meta.custom_attributes.iter().filter(|(key, _)| key == PRIMARIES) {
+        let numbers: Result<Vec<f32>, _> = numbers.split_whitespace().map(str::parse).collect();
+        let found = numbers.ok().filter(|all| all.len() == 8).ok_or_else(|| bad_line(head))?;
+        of_rec_709(found.as_chunks().0, PRIMARIES)?;
+    }
     let exposure = meta.exposure.unwrap_or(1.0);
     let factors = meta.color_correction.map_or([exposure; 3], |(r, g, b)| [r, g, b].map(|c| c * exposure));
     if factors.iter().any(|factor| !factor.is_normal() || *factor < 0.0) {
@@ -132,11 +140,22 @@ fn radiance<P: Pixels>(rest: &[u8], limits: &Limits) -> Result<P, String> {
     Ok(picture)
 }
 
+/// Fails if the chromaticities of red, green, blue and white are not nearly those of Rec. 709.
+fn of_rec_709(found: &[[f32; 2]], key: &str) -> Result<(), String> {
+    let near = |a: &[f32; 2], b: &[f32; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 2e-3);
+    let other = |known: &[[f32; 2]; 4]| found.iter().zip(known).position(|(a, b)| !near(a, b));
+    let Some(i) = other(&REC_709).filter(|_| other(&RADIANCE_USUAL).is_some()) else { return Ok(()) };
+    let ([x, y], [right_x, right_y], which) = (found[i], REC_709[i], ["red", "green", "blue", "white"][i]);
+    let differ = format!("its {key} differ ({which} at {x}, {y}, not {right_x}, {right_y})");
+    Err(format!("its colours must be linear Rec. 709, but {differ}"))
+}
+
 /// The first line of the header of a Radiance picture that has no numbers where it must.
 fn bad_line(head: &[u8]) -> String {
     let count = |key: &str| match key {
         "EXPOSURE" | "PIXASPECT" => Some((1, "a number")),
         "COLORCORR" => Some((3, "three numbers")),
+        PRIMARIES => Some((8, "eight numbers")),
         _ => None,
     };
     let head = String::from_utf8_lossy(head);
@@ -289,13 +308,7 @@ fn within_limits(layers: &[Header], limits: &Limits) -> Result<([usize; 2], DVec
     if let Some(primaries) = &shared.chromaticities {
         let found =
             [primaries.red, primaries.green, primaries.blue, primaries.white].map(|at| [at.x(), at.y()]);
-        let near = |(a, b): (&f32, &f32)| (a - b).abs() < 2e-3;
-        if !found.as_flattened().iter().zip(REC_709.as_flattened()).all(near) {
-            let [x, y] = found[0];
-            return Err(format!(
-                "its colours must be linear Rec. 709, but its chromaticities differ (red at {x}, {y}, not 0.64, 0.33)"
-            ));
-        }
+        of_rec_709(&found, "chromaticities")?;
     }
     let white = own.white_luminance.filter(|_| limits.surroundings).unwrap_or(1.0);
     if !white.is_normal() || white < 0.0 {

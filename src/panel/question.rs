@@ -155,9 +155,12 @@ fn recovery(session: &Session, offer: &Offer) -> Words {
     let mut details = Vec::new();
     if let Err(problem) = scene {
         text += " The recovery copy can't be read.";
-        // The file name is followed by line and column.
-        let at = problem.strip_prefix(&format!("{}:", file.shown()));
-        let problem = at.map_or_else(|| problem.clone(), |at| format!("line {at}"));
+        // The file name is followed by line and column, unless the problem is of the file itself.
+        let problem = match problem.strip_prefix(&format!("{}:", file.shown())) {
+            Some(at) if at.starts_with(|c: char| c.is_ascii_digit()) => format!("line {at}"),
+            Some(said) => said.trim_start().to_owned(),
+            None => problem.clone(),
+        };
         details.push(("Problem".to_owned(), problem));
         details.push(("Copy".to_owned(), file.display().to_string()));
         let answers = vec![("Keep the copy", Answer::Cancel), ("Delete it", Answer::Discard)];
@@ -209,6 +212,8 @@ mod tests {
             "{text}"
         );
         assert_eq!(answers[0].1, Answer::Cancel);
+        let (text, _) = all(offer(Err(format!("{copy}: it is a folder, but it must be a file"))));
+        assert!(text.contains("Problem: it is a folder, but it must be a file"), "{text}");
         let (text, _) = all(Offer { path: None, ..offer(Ok(Scene::default())) });
         assert!(text.contains("never saved"), "{text}");
     }

@@ -32,7 +32,9 @@ pub enum LoadError {
         hint: Option<String>,
     },
     /// The path leads to something other than a file or folder.
-    #[error("{name} is {kind}; a scene is a single file, or comes from standard input with -")]
+    #[error(
+        "{name} is {kind}; a scene is a single file, or what a program writes to a pipe or, with -, to standard input"
+    )]
     NoFile {
         /// The name given.
         name: String,

@@ -7,7 +7,7 @@ use std::fmt;
 pub struct ShaderProblem {
     /// Path below the folder of shaders; for custom models, `models/` and the file name.
     pub file: String,
-    /// Line in that file, from 1.
+    /// Line in that file, from 1; 0 for a problem of the whole file, or of a folder.
     pub line: usize,
     /// Column, from 1.
     pub column: usize,
@@ -18,6 +18,15 @@ pub struct ShaderProblem {
 }
 
 impl ShaderProblem {
+    /// The file, as it is called in a message, with line and column if the problem has a place in it.
+    #[must_use]
+    pub fn place(&self, file: impl fmt::Display) -> String {
+        match self.line {
+            0 => file.to_string(),
+            line => format!("{file}:{line}:{}", self.column),
+        }
+    }
+
     /// A problem at a byte of the text of a file.
     #[must_use]
     pub fn at(file: &str, text: &str, at: usize, message: String) -> Self {
@@ -39,7 +48,7 @@ impl ShaderProblem {
 
 impl fmt::Display for ShaderProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.message)
+        write!(f, "{}: {}", self.place(&self.file), self.message)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Shader problems for display: the message, file, line and column, the line itself and a caret below the
 //! character in question.
 
-use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use super::check::ShaderProblem;
 use crate::files::printable;
@@ -28,11 +28,15 @@ fn rendered(problem: &ShaderProblem, file: &str, renderer: &Renderer) -> String 
         )
     };
     let (source, message) = (fit(&problem.source), fit(&problem.message));
+    let file = printable(file);
+    if problem.line == 0 {
+        let whole = format!("{file}: {message}");
+        return renderer.render(&[Group::with_title(Level::ERROR.primary_title(&whole))]);
+    }
     let mut characters = source.char_indices().skip(problem.column.saturating_sub(1));
     let end = source.len();
     let start = characters.next().map_or(end, |(at, _)| at);
     let next = characters.next().map_or(end, |(at, _)| at);
-    let file = printable(file);
     let snippet = Snippet::source(&source)
         .line_start(problem.line)
         .path(&*file)
@@ -67,6 +71,10 @@ mod tests {
         assert!(annotated(&problem, "a").contains("there is no"));
         problem.source.clear();
         assert!(annotated(&problem, "a").contains("a:12:1"));
+        // A whole file has no line to show.
+        problem.line = 0;
+        assert_eq!(annotated(&problem, "a"), "error: a: there is no βx");
+        assert_eq!(problem.to_string(), "models/a.wgsl: there is no βx");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{
     super::{
-        Options, Outcome, outputs,
+        Options, Outcome, outputs, render,
         scenes::Source,
         view::{Arguments, meant_command},
         workshop::Places,
@@ -21,7 +21,7 @@ use crate::{
     program,
     registry::Registry,
     scene::{error::LoadError, load::Defaults},
-    text::{did_you_mean, listed, quoted},
+    text::{did_you_mean, listed, plural, quoted},
     window::ViewOptions,
 };
 
@@ -38,6 +38,7 @@ pub(super) fn open(
     let Arguments { exit_after, capture, no_scene, size, lesson, step, .. } = arguments;
     if let Some(capture) = &capture {
         outputs::picture(capture, &inputs(source.path(), [], &workshop.registry))?;
+        render::one_picture("--capture", capture)?;
         let _ = files::tidy(files::folder_of(capture));
     }
     let warnings = match &source {
@@ -56,7 +57,7 @@ pub(super) fn open(
     let mut view = ViewOptions {
         lesson: lesson
             .as_deref()
-            .map(|lesson| lesson_source(lesson, options, &workshop.registry))
+            .map(|lesson| lesson_source(lesson, step, options, &workshop.registry))
             .transpose()?,
         outside: options.outside().clone(),
         step: step.map(|step| step as usize - 1),
@@ -105,10 +106,22 @@ pub(super) fn open(
     crate::window::view(view, window)
 }
 
-/// The shipped lesson with this name, or else the file.
-fn lesson_source(lesson: &Path, options: Options, registry: &Registry) -> Result<LessonSource, Failure> {
-    let shipped = lesson.to_str().and_then(|name| LESSONS.iter().position(|lesson| lesson.id == name));
+/// The shipped lesson with this name, or else the file, if it has the step at which it begins.
+fn lesson_source(
+    lesson: &Path,
+    step: Option<u32>,
+    options: Options,
+    registry: &Registry,
+) -> Result<LessonSource, Failure> {
+    let beginning = |lesson: &Lesson| {
+        let count = lesson.steps.len();
+        let beyond = step.filter(|step| *step as usize > count);
+        let said = |step| format!("--step is {step}, but the lesson has {}", plural(count, "step"));
+        beyond.map_or(Ok(()), |step| Err(Failure::Usage(said(step))))
+    };
+    let shipped = LESSONS.iter().position(|known| lesson.to_str() == Some(known.id.as_str()));
     if let Some(i) = shipped {
+        beginning(&LESSONS[i])?;
         return Ok(LessonSource::Shipped(i));
     }
     let name = lesson.shown().to_string();
@@ -120,9 +133,10 @@ fn lesson_source(lesson: &Path, options: Options, registry: &Registry) -> Result
         let none = format!("there is no lesson {}, and no file of that name", quoted(&name));
         return Err(Failure::Invalid(format!("{none}{shipped}{near}")));
     }
-    Lesson::read(lesson, registry, options.outside()).map_err(|problems| {
+    let read = Lesson::read(lesson, registry, options.outside()).map_err(|problems| {
         let all: Vec<_> = problems.iter().map(|problem| problem.annotated(&name)).collect();
         Failure::Invalid(all.join("\n"))
     })?;
+    beginning(&read)?;
     Ok(LessonSource::File(lesson.to_owned()))
 }

@@ -280,6 +280,14 @@ fn both_formats_keep_their_pixels() {
     .concat();
     let picture = read(&file).expect("legal");
     assert_eq!(picture[picture.len() - 3..], [4.0, 2.0, 1.0]);
+    // The primaries that Radiance has by default are nearly those of Rec. 709.
+    for primaries in
+        ["0.640 0.330 0.290 0.600 0.150 0.060 0.333 0.333", "0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329"]
+    {
+        let head = format!("#?RADIANCE\nPRIMARIES= {primaries}\n\n-Y 1 +X 2\n");
+        let file = [head.as_bytes(), &[128; 8]].concat();
+        assert!(read(&file).is_ok(), "{primaries}");
+    }
     // OpenEXR states how much light 1 is.
     let own = LayerAttributes { white_luminance: Some(100.0), ..plain() };
     let picture = read(&exr([2, 1], Encoding::FAST_LOSSLESS, own, |_, _| [1.0, 0.5, 2.0])).expect("legal");
@@ -473,6 +481,14 @@ fn illegal_radiance_files_are_told_what_is_wrong() {
         (
             head("#?RADIANCE\nCOLORCORR=1 2\n\n-Y 1 +X 2\n\0\0\0\0\0\0\0\0"),
             "line 2 of its header is “COLORCORR=1 2”, but COLORCORR must be three numbers".to_owned(),
+        ),
+        (
+            head("#?RADIANCE\nPRIMARIES=0.64 0.33 0.3\n\n-Y 1 +X 2\n\0\0\0\0\0\0\0\0"),
+            "line 2 of its header is “PRIMARIES=0.64 0.33 0.3”, but PRIMARIES must be eight numbers".to_owned(),
+        ),
+        (
+            head("#?RADIANCE\nPRIMARIES= .64 .33 .21 .71 .15 .06 .3127 .329\n\n-Y 1 +X 2\n\0\0\0\0\0\0\0\0"),
+            "its colours must be linear Rec. 709, but its PRIMARIES differ (green at 0.21, 0.71, not 0.3, 0.6)".to_owned(),
         ),
         (
             [with("-Y 1 +X 2"), vec![9, 9, 9, 130, 200, 200, 200, 250]].concat(),

@@ -99,11 +99,11 @@ fn trouble(ui: &mut Ui, trouble: &Trouble, context: &mut PanelContext<'_>) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(path) = &trouble.path {
                 let open = ui.button("Open in editor").on_hover_text(path.shown().to_string());
-                context.on_click(&open, || open_in_editor(path, p.line));
+                context.on_click(&open, || open_in_editor(path, p.line.max(1)));
             }
             let button = ui.button("Copy").on_hover_text("Copy place, message and line");
             context.on_click(&button, || Action::Do(Effect::CopyText(report(trouble))));
-            let place = format!("{}:{}:{}", p.file, p.line, p.column);
+            let place = p.place(&p.file);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.add(Label::new(theme::strong(ui, place)).truncate());
             });

@@ -6,8 +6,8 @@ use crate::{
     parameter::read_all,
     registry::Registry,
     scene::{
-        Repetition, Scene, beyond_room, check,
-        error::{LoadError, Path, Problem},
+        Object, Repetition, Scene, beyond_room, check,
+        error::{LoadError, Path, Problem, Segment},
         problem::{MAX_PROBLEMS, MOST_LISTED},
         reading::{Defaults, Missing},
     },
@@ -104,9 +104,18 @@ pub(in crate::scene) fn checked(
     registry: &Registry,
     defaults: Defaults,
 ) -> Result<(Scene, Vec<Missing>), LoadError> {
-    let Parsed { scene, missing, problems, unread, mut unlisted, end, locate } = parsed;
+    let Parsed { mut scene, missing, problems, unread, mut unlisted, end, locate } = parsed;
     // Each with the place in whose order it is listed.
     let mut all: Vec<_> = Vec::with_capacity(problems.len());
+    // Without a place the copies of a row have none either.
+    for path in &unread {
+        let within = path.segments().get(2);
+        if matches!(within, Some(Segment::Key(key)) if key == Object::position.key)
+            && let Some(object) = path.index_in(Scene::objects.key).and_then(|i| scene.objects.get_mut(i))
+        {
+            object.repeat = Repetition::None;
+        }
+    }
     let has_rows = scene.objects.iter().any(|object| object.repeat != Repetition::None);
     let written = has_rows.then(|| scene.clone());
     let (scene, of_rows) = scene.expanded_as_far(registry);

@@ -1,13 +1,13 @@
 //! glTF 2.0 binary files (.glb): The Khronos Group (2021), *glTF 2.0 Specification*. Reads the triangles of
 //! the file's default scene, as placed by its nodes: positions, normals and the first texture coordinates.
 
-use glam::{Mat3, Mat4, Vec2, Vec3};
+use glam::{DMat3, DMat4, Mat4, Vec2, Vec3};
 use gltf::{
     Accessor, Document, Glb, Mesh, Semantic,
     accessor::{DataType, Dimensions},
     binary,
     buffer::Source,
-    json::validation::Error as Mistake,
+    json::{Root, validation::Error as Mistake},
     mesh::Mode,
 };
 
@@ -19,6 +19,9 @@ use crate::{parameter::FileProblem, text::shortened};
 
 /// First bytes of such a file.
 pub const BEGIN: &[u8] = b"glTF";
+
+/// An extension that places meshes.
+const INSTANCES: &str = "EXT_mesh_gpu_instancing";
 
 /// Reads the polygons of a file.
 pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
@@ -46,10 +49,44 @@ fn whole(bytes: &[u8], to: &mut Builder) -> Result<(), String> {
             ));
         }
     }
+    can_be_placed(&json)?;
     let document = Document::from_json(json).map_err(wrong)?;
     let blob = bin.unwrap_or_default();
     for (mesh, place) in placed(&document)? {
         polygons(&mesh, place, &blob, to).map_err(|what| format!("meshes[{}]: {what}", mesh.index()))?;
+    }
+    let mut modes = document.meshes().flat_map(|mesh| mesh.primitives()).map(|primitive| primitive.mode());
+    match modes.next() {
+        Some(first) if to.is_empty() && !is_surface(first) && !modes.any(is_surface) => {
+            Err("it has lines or points alone; only triangles have a surface".to_owned())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// True for triangles.
+fn is_surface(mode: Mode) -> bool {
+    matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)
+}
+
+/// Fails for nodes whose place is not known.
+fn can_be_placed(json: &Root) -> Result<(), String> {
+    let mut named = json.extensions_used.iter().chain(&json.extensions_required);
+    if named.any(|name| name == INSTANCES) {
+        let remedy = "export every copy as a node of its own";
+        return Err(format!("it repeats meshes by the extension {INSTANCES}, which is not read; {remedy}"));
+    }
+    for (i, node) in json.nodes.iter().enumerate() {
+        let has_parts = node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
+        if node.matrix.is_some() && has_parts {
+            let rule = "a node must have either the one or the others";
+            return Err(format!("nodes[{i}] has a matrix and a translation, rotation or scale; {rule}"));
+        }
+        // Other programs round.
+        let is_unit = |q: &[f32; 4]| (q.iter().map(|n| n * n).sum::<f32>().sqrt() - 1.0).abs() < 0.01;
+        if let Some(rotation) = node.rotation.map(|rotation| rotation.0).filter(|q| !is_unit(q)) {
+            return Err(format!("nodes[{i}].rotation is {rotation:?}, but its length must be 1"));
+        }
     }
     Ok(())
 }
@@ -79,33 +116,34 @@ fn mistake(error: &gltf::Error) -> String {
 }
 
 /// The meshes of the scene with their transformations: those of the nodes below its roots.
-fn placed(document: &Document) -> Result<Vec<(Mesh<'_>, Mat4)>, String> {
+fn placed(document: &Document) -> Result<Vec<(Mesh<'_>, DMat4)>, String> {
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let Some(scene) = scene else { return Err("it has no scene".to_owned()) };
     let mut seen = vec![false; document.nodes().len()];
-    let mut next: Vec<_> = scene.nodes().map(|node| (node, Mat4::IDENTITY)).collect();
+    let mut next: Vec<_> = scene.nodes().map(|node| (node, DMat4::IDENTITY)).collect();
     let mut meshes = Vec::new();
     while let Some((node, above)) = next.pop() {
         if std::mem::replace(&mut seen[node.index()], true) {
             return Err(format!("nodes[{}] has more than one parent, or is its own ancestor", node.index()));
         }
-        let place = above * Mat4::from_cols_array_2d(&node.transform().matrix());
+        let place = above * Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
         next.extend(node.children().map(|child| (child, place)));
         meshes.extend(node.mesh().map(|mesh| (mesh, place)));
     }
     Ok(meshes)
 }
 
-fn polygons(mesh: &Mesh, place: Mat4, blob: &[u8], to: &mut Builder) -> Result<(), String> {
+fn polygons(mesh: &Mesh, place: DMat4, blob: &[u8], to: &mut Builder) -> Result<(), String> {
     // Normals stay perpendicular to the stretched surface.
-    let turn = Mat3::from_mat4(place);
+    let turn = DMat3::from_mat4(place);
     let (turn_normals, mirrored) = (turn.inverse().transpose(), turn.determinant() < 0.0);
     for primitive in mesh.primitives() {
-        if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+        if !is_surface(primitive.mode()) {
             continue;
         }
         let Some(positions) = primitive.get(&Semantic::Positions) else { continue };
         let positions = floats::<3>(&positions, Dimensions::Vec3, "POSITION", blob)?;
+        to.note(positions.iter().map(|position| Vec3::from_array(*position)));
         let optional = |semantic, dimensions, what: &str| {
             primitive
                 .get(&semantic)
@@ -126,8 +164,9 @@ fn polygons(mesh: &Mesh, place: Mat4, blob: &[u8], to: &mut Builder) -> Result<(
             })?;
             let normal = normals.as_ref().and_then(|normals| normals.get(i));
             Ok::<_, String>(Corner {
-                position: place.transform_point3(Vec3::from_array(*position)),
-                normal: normal.map(|n| turn_normals * Vec3::from_array(*n)),
+                position: place.transform_point3(Vec3::from_array(*position).as_dvec3()),
+                normal: normal
+                    .map(|n| (turn_normals * Vec3::from_array(*n).as_dvec3()).normalize_or_zero().as_vec3()),
                 texture: textures.as_ref().and_then(|all| all.get(i)).map(|uv| Vec2::from_array(*uv)),
             })
         };
@@ -309,6 +348,9 @@ mod tests {
         let mesh = turned(json!({ "rotation": [0, 0, s, s], "scale": [2, 1, 1], "translation": [9, 9, 9] }));
         let extents = mesh.positions.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())) * 2.0;
         assert!((extents - Vec3::new(0.25, 1.0, 0.25)).length() < 1e-5, "{extents}");
+        // Far away, nothing of the shape is lost.
+        let far = turned(json!({ "translation": [4.6e6, 5.98e6, 3.22e6], "scale": [0.125, 0.125, 0.125] }));
+        assert_eq!(far.positions, after(|_| {}).expect("legal").positions);
         let plain = after(|_| {}).expect("legal").polygon_normals()[0];
         let mirrored = turned(json!({ "scale": [1, 1, -1] }));
         assert!((mirrored.polygon_normals()[0] - plain * Vec3::new(1.0, 1.0, -1.0)).length() < 1e-6);
@@ -327,7 +369,7 @@ mod tests {
         let strip = normals(5);
         assert!(strip.len() == 2 && strip[0] == Vec3::Z && strip[1].min_element() < 0.0, "{strip:?}");
         assert_eq!(normals(6), [Vec3::Z, Vec3::X]);
-        assert_eq!(of_mode(1), Err("it has no polygons with an area".to_owned()));
+        assert_eq!(of_mode(1), Err("it has lines or points alone; only triangles have a surface".to_owned()));
     }
 
     #[test]
@@ -373,6 +415,16 @@ mod tests {
             }),
             ("it has no scene", |json| {
                 json.as_object_mut().expect("an object").retain(|key, _| !key.starts_with("scene"));
+            }),
+            ("nodes[1] has a matrix and a translation, rotation or scale; a node must have either", |json| {
+                json["nodes"][1]["matrix"] = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+                json["nodes"][1]["scale"] = json!([2, 1, 1]);
+            }),
+            ("nodes[0].rotation is [0.0, 0.0, 0.0, 0.0], but its length must be 1", |json| {
+                json["nodes"][0]["rotation"] = json!([0, 0, 0, 0]);
+            }),
+            ("it repeats meshes by the extension EXT_mesh_gpu_instancing, which is not read", |json| {
+                json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
             }),
             ("it is not valid glTF: nodes[1].mesh is an index out of range", |json| {
                 json["nodes"][1]["mesh"] = json!(7)

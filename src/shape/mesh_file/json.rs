@@ -51,7 +51,10 @@ fn in_words(error: &Error) -> String {
             };
             format!("{} instead of {}", shortened(found), kind(expected))
         }
-        None => shortened(what),
+        None => match what.strip_prefix("missing field `").and_then(|rest| rest.strip_suffix('`')) {
+            Some(field) => format!("{} is missing", shortened(field)),
+            None => shortened(what),
+        },
     };
     format!("{what} (line {}, column {} of its JSON)", error.line(), error.column())
 }
@@ -110,7 +113,7 @@ mod tests {
             ("{\"nodes\": [{\"mesh\": \"one\"}]}", "string \"one\" instead of a whole number, 0 or more"),
             ("{\"scene\": -1}", "integer `-1` instead of a whole number, 0 or more"),
             ("{\"nodes\": [{\"scale\": [\"x\"]}]}", "string \"x\" instead of a number"),
-            ("{}", "missing field `asset` (line 1, column "),
+            ("{}", "asset is missing (line 1, column "),
             ("{", "EOF while parsing an object (line 1, column "),
         ] {
             let said = said(text);

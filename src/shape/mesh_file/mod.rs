@@ -144,6 +144,53 @@ mod tests {
         assert!(off > 0.01 && computed.positions == mesh.positions, "{off}");
     }
 
+    /// Maps and plans of buildings have their origin far away, where 32-bit floats are half a metre apart.
+    #[test]
+    fn models_far_from_their_origin_are_those_near_it() {
+        let text = |[x, y, z]: [f64; 3], ply: Option<&str>| {
+            let points =
+                (0..7_i32).flat_map(|i| (0..12_i32).map(move |j| (f64::from(i) - 3.0, f64::from(j))));
+            let mut lines: Vec<_> = points
+                .map(|(i, j)| ((i * 0.4).sin_cos(), (j * std::f64::consts::TAU / 12.0).sin_cos()))
+                .map(|((s, c), (sj, cj))| format!("{:.9} {:.9} {:.9}", x + c * cj, y + c * sj, z + s))
+                .collect();
+            let quads = (0..6).flat_map(|i| {
+                (0..12).map(move |j| {
+                    [i, i, i + 1, i + 1]
+                        .map(|i| i * 12)
+                        .into_iter()
+                        .zip([j, (j + 1) % 12, (j + 1) % 12, j])
+                        .map(|(i, j)| i + j)
+                })
+            });
+            let Some(number) = ply else {
+                lines.iter_mut().for_each(|line| line.insert_str(0, "v "));
+                lines.extend(quads.map(|q| q.fold("f".to_owned(), |face, i| format!("{face} {}", i + 1))));
+                return lines.join("\n");
+            };
+            lines.extend(quads.map(|q| q.fold("4".to_owned(), |face, i| format!("{face} {i}"))));
+            let numbers = ["x", "y", "z"].map(|axis| format!("property {number} {axis}\n")).concat();
+            format!(
+                "ply\nformat ascii 1.0\nelement vertex 84\n{numbers}element face 72\n\
+                 property list uchar int vertex_indices\nend_header\n{}\n",
+                lines.join("\n")
+            )
+        };
+        for ply in [None, Some("double"), Some("float")] {
+            let [near, far] = [[0.0; 3], [4.6e6, 5.98e6, 3.22e6]].map(|middle| {
+                let numbers = read(text(middle, ply).as_bytes()).expect("a model");
+                Model::new(&numbers).expect("a model").mesh(false)
+            });
+            assert_eq!((near.positions.len(), near.polygons.len()), (84, 72), "{ply:?}");
+            assert_eq!(near.polygons, far.polygons, "{ply:?}");
+            for (a, b) in near.positions.iter().zip(&far.positions) {
+                assert!((*a - *b).length() < 1e-6, "{ply:?}: {a} {b}");
+            }
+        }
+        let small = "v 1e6 1e6 1e6\nv 1000000.01 1e6 1e6\nv 1e6 1000000.01 1e6\nf 1 2 3\n";
+        assert!(read(small.as_bytes()).is_ok());
+    }
+
     #[test]
     fn formats_are_told_apart_by_their_content() {
         let said = |bytes: &[u8]| read(bytes).expect_err("no model").message;

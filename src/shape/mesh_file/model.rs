@@ -19,8 +19,8 @@ pub const MAX_CORNERS: usize = 128;
 /// A corner of a polygon.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Corner {
-    /// The position.
-    pub position: Vec3,
+    /// The position; 64 bits, because files may have their origin far away, such as those of maps.
+    pub position: DVec3,
     /// Surface normal, of any length, if the file has one.
     pub normal: Option<Vec3>,
     /// Texture coordinates, if the file has them.
@@ -36,6 +36,10 @@ pub struct Builder {
     corners: Vec<[u32; 2]>,
     /// Number of polygons that will be drawn.
     drawn: usize,
+    /// The first list of 32-bit positions that is too far from the origin for its extent: its distance and its extent.
+    coarse: Option<[f32; 2]>,
+    /// True if another list is not.
+    is_fine: bool,
 }
 
 /// A polygon that was read: the end of its corners, and the direction of increasing texture coordinates.
@@ -47,14 +51,14 @@ struct Read {
 /// Unique vectors.
 #[derive(Default)]
 struct Pool {
-    all: Vec<Vec3>,
-    known: HashMap<[u32; 3], u32, RandomState>,
+    all: Vec<DVec3>,
+    known: HashMap<[u64; 3], u32, RandomState>,
 }
 
 impl Pool {
-    fn index(&mut self, v: Vec3) -> u32 {
+    fn index(&mut self, v: DVec3) -> u32 {
         // Adding 0 gives −0 and 0 the same bits.
-        let key = (v + Vec3::ZERO).to_array().map(f32::to_bits);
+        let key = (v + DVec3::ZERO).to_array().map(f64::to_bits);
         *self.known.entry(key).or_insert_with(|| {
             self.all.push(v);
             self.all.len() as u32 - 1
@@ -62,6 +66,8 @@ impl Pool {
     }
 }
 
+/// Smallest extent as a fraction of the distance from the origin: 256 steps of 32-bit floats.
+const COARSEST: f32 = 1.0 / 65536.0;
 /// Index that stands for a corner without a normal.
 const NONE: u32 = u32::MAX;
 /// Number of values per polygon: the number of its corners, four positions, four normals, and a direction.
@@ -78,8 +84,8 @@ impl Builder {
             let n = corners.len();
             return Err(format!("polygon {nth} has {n} corners; at most {MAX_CORNERS} are read"));
         }
-        if let Some(corner) = corners.iter().find(|c| !c.position.is_finite()) {
-            let [x, y, z] = corner.position.to_array();
+        if let Some(nowhere) = corners.iter().map(|c| c.position.as_vec3()).find(|p| !p.is_finite()) {
+            let [x, y, z] = nowhere.to_array();
             return Err(format!(
                 "a corner of polygon {nth} is at ({x}, {y}, {z}), but positions must be finite"
             ));
@@ -91,7 +97,7 @@ impl Builder {
                 corner.normal.map(Vec3::normalize_or_zero).filter(|n| *n != Vec3::ZERO && n.is_finite());
             // A repeated vertex counts once.
             if self.corners[begin..].last().is_none_or(|[before, _]| *before != position) {
-                self.corners.push([position, unit.map_or(NONE, |n| self.normals.index(n))]);
+                self.corners.push([position, unit.map_or(NONE, |n| self.normals.index(n.as_dvec3()))]);
             }
         }
         let own = &self.corners[begin..];
@@ -113,6 +119,21 @@ impl Builder {
         Ok(())
     }
 
+    /// Notes positions that belong together and that the file has as 32-bit floats: far from the origin nothing is left of
+    /// their shape.
+    pub fn note(&mut self, positions: impl Iterator<Item = Vec3>) {
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for position in positions {
+            (low, high) = (low.min(position), high.max(position));
+        }
+        let (distance, extent) = (low.abs().max(high.abs()).max_element(), (high - low).max_element());
+        if extent > 0.0 && extent < distance * COARSEST {
+            self.coarse.get_or_insert([distance, extent]);
+        } else {
+            self.is_fine = true;
+        }
+    }
+
     /// True if there are no polygons.
     pub fn is_empty(&self) -> bool {
         self.polygons.is_empty()
@@ -122,9 +143,15 @@ impl Builder {
     /// Polygons without area are dropped.
     ///
     /// # Errors
-    /// Returns an error if there are no polygons.
+    /// Returns an error if there are no polygons, or if all positions are too coarse.
     pub fn numbers(self) -> Result<Vec<f32>, String> {
-        let Self { positions, normals, polygons, corners, .. } = self;
+        let Self { positions, normals, polygons, corners, coarse, is_fine, .. } = self;
+        if let Some([distance, extent]) = coarse.filter(|_| !is_fine) {
+            return Err(format!(
+                "it has an extent of {extent} at {distance} from its origin, where its 32-bit floats are too coarse; move it \
+                 to the origin before you export it, or save it as OBJ"
+            ));
+        }
         let mut faces: Vec<(&[[u32; 2]], Vec3)> = Vec::with_capacity(polygons.len());
         let mut begin = 0;
         for Read { end, brushed } in &polygons {
@@ -136,7 +163,7 @@ impl Builder {
         let (mut unit, mut corners) = (Vec::new(), Vec::new());
         for _ in 0..3 {
             let (middle, extent) = bounds(&faces, &positions.all);
-            let scaled = |p: &Vec3| ((p.as_dvec3() - middle) / extent).as_vec3();
+            let scaled = |p: &DVec3| ((*p - middle) / extent).as_vec3();
             unit = positions.all.iter().map(scaled).collect();
             let before = faces.len();
             faces.retain(|(face, _)| doubled_area(at(face, &unit, &mut corners)) > 0.0);
@@ -147,7 +174,8 @@ impl Builder {
         if faces.is_empty() {
             return Err("it has no polygons with an area".to_owned());
         }
-        Ok(written(&faces, &unit, &normals.all))
+        let normals: Vec<_> = normals.all.iter().map(|n| n.as_vec3()).collect();
+        Ok(written(&faces, &unit, &normals))
     }
 }
 
@@ -159,40 +187,46 @@ fn at<'r>(face: &[[u32; 2]], positions: &[Vec3], room: &'r mut Vec<Vec3>) -> &'r
 }
 
 /// The centre and the largest extent of some polygons.
-fn bounds(faces: &[(&[[u32; 2]], Vec3)], positions: &[Vec3]) -> (DVec3, f64) {
+fn bounds(faces: &[(&[[u32; 2]], Vec3)], positions: &[DVec3]) -> (DVec3, f64) {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for [p, _] in faces.iter().flat_map(|(face, _)| *face) {
-        let p = positions[*p as usize].as_dvec3();
+        let p = positions[*p as usize];
         (low, high) = (low.min(p), high.max(p));
     }
     ((low + high) * 0.5, (high - low).max_element())
 }
 
-/// The numbers: counts of positions, normals and polygons, then these. Only what polygons use is kept.
+/// The numbers: counts of positions, normals and polygons, then these. Only what polygons use is kept, and positions
+/// that 32-bit floats do not tell apart are one.
 fn written(faces: &[(&[[u32; 2]], Vec3)], positions: &[Vec3], normals: &[Vec3]) -> Vec<f32> {
     /// The used vectors, each with its new index.
     struct Used<'a> {
         all: &'a [Vec3],
         places: Vec<u32>,
-        kept: Vec<Vec3>,
+        kept: Pool,
     }
     impl<'a> Used<'a> {
         fn of(all: &'a [Vec3]) -> Self {
-            Self { all, places: vec![NONE; all.len()], kept: Vec::new() }
+            Self { all, places: vec![NONE; all.len()], kept: Pool::default() }
         }
         fn place(&mut self, i: u32) -> f32 {
             let Some(place) = self.places.get_mut(i as usize) else { return -1.0 };
             if *place == NONE {
-                *place = self.kept.len() as u32;
-                self.kept.push(self.all[i as usize]);
+                *place = self.kept.index(self.all[i as usize].as_dvec3());
             }
             *place as f32
         }
     }
     let (mut used, mut used_normals) = (Used::of(positions), Used::of(normals));
-    let (mut polygons, mut corners) = (Vec::with_capacity(STRIDE * faces.len()), Vec::new());
-    for (face, brushed) in faces {
-        pieces(at(face, positions, &mut corners), |piece| {
+    let mut polygons = Vec::with_capacity(STRIDE * faces.len());
+    let (mut face, mut corners) = (Vec::new(), Vec::new());
+    for (read, brushed) in faces {
+        let place = |corner: &[u32; 2]| positions[corner[0] as usize];
+        face.clear();
+        face.extend_from_slice(read);
+        face.dedup_by(|next, before| place(next) == place(before));
+        face.pop_if(|last| place(last) == place(&read[0]));
+        pieces(at(&face, positions, &mut corners), |piece| {
             polygons.push(piece.len() as f32);
             let corner = |k: usize| face[piece[k.min(piece.len() - 1)]];
             polygons.extend((0..4).map(|k| used.place(corner(k)[0])));
@@ -200,26 +234,27 @@ fn written(faces: &[(&[[u32; 2]], Vec3)], positions: &[Vec3], normals: &[Vec3]) 
             polygons.extend(brushed.to_array());
         });
     }
-    let counts = [used.kept.len(), used_normals.kept.len(), polygons.len() / STRIDE].map(|n| n as f32);
-    let vectors = used.kept.iter().chain(&used_normals.kept).flat_map(|v| v.to_array());
+    let counts =
+        [used.kept.all.len(), used_normals.kept.all.len(), polygons.len() / STRIDE].map(|n| n as f32);
+    let vectors = used.kept.all.iter().chain(&used_normals.kept.all).flat_map(|v| v.as_vec3().to_array());
     counts.into_iter().chain(vectors).chain(polygons).collect()
 }
 
 /// The direction in which the first texture coordinate grows along a polygon; zero without texture coordinates.
 fn texture_direction(corners: &[Corner]) -> Vec3 {
-    let mut sum = Vec3::ZERO;
+    let mut sum = DVec3::ZERO;
     let fan = corners.iter().skip(1).zip(corners.iter().skip(2));
     for (b, c) in fan {
         let a = &corners[0];
         let (Some(u), Some(v), Some(w)) = (a.texture, b.texture, c.texture) else { return Vec3::ZERO };
         let (along, across) = (b.position - a.position, c.position - a.position);
-        let (s, t) = (v - u, w - u);
+        let (s, t) = ((v - u).as_dvec2(), (w - u).as_dvec2());
         let area = s.perp_dot(t);
         // The gradient of u in the plane of the triangle is this over the area.
         let direction = (along * t.y - across * s.y) * area.signum();
         sum += direction.normalize_or_zero();
     }
-    if sum.is_finite() { sum.normalize_or_zero() } else { Vec3::ZERO }
+    if sum.is_finite() { sum.normalize_or_zero().as_vec3() } else { Vec3::ZERO }
 }
 
 /// The numbers of a file in use.
@@ -291,7 +326,7 @@ mod tests {
 
     /// A polygon through these points.
     fn add(builder: &mut Builder, points: &[[f32; 3]]) -> Result<(), String> {
-        let corner = |p: &[f32; 3]| Corner { position: (*p).into(), ..Corner::default() };
+        let corner = |p: &[f32; 3]| Corner { position: Vec3::from_array(*p).as_dvec3(), ..Corner::default() };
         builder.polygon(&points.iter().map(corner).collect::<Vec<_>>())
     }
 
@@ -354,7 +389,7 @@ mod tests {
             let mut builder = Builder::default();
             for (normal, tip) in [(Vec3::Z, Vec3::Y), (Vec3::NEG_Y * 7.0, Vec3::Z)] {
                 let tip = if normal.z > 0.0 { tip } else { -tip };
-                let corner = |position| Corner { position, normal: Some(normal), texture: None };
+                let corner = |p: Vec3| Corner { position: p.as_dvec3(), normal: Some(normal), texture: None };
                 builder.polygon(&[corner(Vec3::ZERO), corner(Vec3::X), corner(tip)]).expect("legal");
             }
             builder
@@ -371,9 +406,41 @@ mod tests {
     }
 
     #[test]
+    fn positions_of_32_bits_far_from_the_origin_are_refused() {
+        let refused = |lists: &[&[Vec3]]| {
+            let mut builder = Builder::default();
+            add(&mut builder, &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).expect("legal");
+            lists.iter().for_each(|list| builder.note(list.iter().copied()));
+            builder.numbers().err()
+        };
+        let at = |x: f32| [Vec3::X * x, Vec3::X * x + Vec3::ONE];
+        let said = refused(&[&at(4.6e6)]).expect("an error");
+        assert!(said.starts_with("it has an extent of 1 at 4600001 from its origin, where"), "{said}");
+        // Small parts of a large model may be coarse.
+        let (far, near, not_far, point) = (at(4.6e6), at(0.0), at(6e4), [Vec3::ONE * 1e9; 2]);
+        assert_eq!(refused(&[&far, &near]), None);
+        for fine in [&near[..], &not_far, &point, &[]] {
+            assert_eq!(refused(&[fine]), None, "{fine:?}");
+        }
+        assert_eq!(refused(&[]), None);
+    }
+
+    #[test]
+    fn points_that_the_mesh_cannot_tell_apart_are_one() {
+        let mut builder = Builder::default();
+        let corner = |p: DVec3| Corner { position: p, ..Corner::default() };
+        let off = DVec3::splat(1e-12);
+        builder.polygon(&[DVec3::ZERO, DVec3::X, DVec3::ONE].map(corner)).expect("legal");
+        builder.polygon(&[off, DVec3::ONE - off, DVec3::Y, DVec3::Y + off].map(corner)).expect("legal");
+        let mesh = mesh(builder, false);
+        assert_eq!((mesh.positions.len(), mesh.polygons.len()), (4, 2));
+        assert_eq!(mesh.polygons[1].corners(), [0, 2, 3]);
+    }
+
+    #[test]
     fn normals_that_are_none_give_way_to_those_of_the_polygons() {
         let mut builder = Builder::default();
-        let corner = |position, normal| Corner { position, normal: Some(normal), texture: None };
+        let corner = |p: Vec3, normal| Corner { position: p.as_dvec3(), normal: Some(normal), texture: None };
         let corners = [
             corner(Vec3::ZERO, Vec3::ZERO),
             corner(Vec3::X, Vec3::NAN),
@@ -390,7 +457,7 @@ mod tests {
             let mut builder = Builder::default();
             let positions = [Vec3::ZERO, Vec3::X * 3.0, Vec3::Y * 2.0];
             let corner = |(position, texture): (Vec3, [f32; 2])| Corner {
-                position,
+                position: position.as_dvec3(),
                 normal: None,
                 texture: Some(texture.into()),
             };

@@ -5,9 +5,9 @@
 //! The reader is our own so that every error has a line number, even in files of a million lines: a face may
 //! refer to vertices that follow it, so faces are resolved at the end, and each stores its line.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, str::FromStr};
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::model::{Builder, Corner, MAX_VERTICES};
 use crate::{
@@ -45,8 +45,10 @@ fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
 }
 
 /// The first numbers of a statement; `None` if one of them is not a number.
-fn numbers<'a, const N: usize>(words: &mut impl Iterator<Item = &'a str>) -> Option<[f32; N]> {
-    let mut numbers = [0.0; N];
+fn numbers<'a, T: FromStr + Copy + Default, const N: usize>(
+    words: &mut impl Iterator<Item = &'a str>,
+) -> Option<[T; N]> {
+    let mut numbers = [T::default(); N];
     for number in &mut numbers {
         *number = words.next()?.parse().ok()?;
     }
@@ -72,7 +74,7 @@ struct Named {
 /// The lists of a file: vertices, texture coordinates and normals, and the faces that refer to them.
 #[derive(Default)]
 struct Lists {
-    positions: Vec<Vec3>,
+    positions: Vec<DVec3>,
     textures: Vec<Vec2>,
     normals: Vec<Vec3>,
     named: Vec<Named>,
@@ -86,13 +88,13 @@ impl Lists {
         let mut words = statement.split_ascii_whitespace();
         match words.next() {
             Some("v") => {
-                let position: [f32; 3] = numbers(&mut words).ok_or("a vertex (v) must be three numbers")?;
-                let position = Vec3::from_array(position);
+                let position = numbers(&mut words).ok_or("a vertex (v) must be three numbers")?;
+                let position = DVec3::from_array(position);
                 // A weight, or a colour.
                 let more: Vec<_> = words.take(4).collect();
                 let position = match more[..] {
                     [] | [_, _, _] => position,
-                    [weight] => match weight.parse::<f32>() {
+                    [weight] => match weight.parse::<f64>() {
                         Ok(0.0) => return Err("the fourth number of a vertex (v) must not be 0".into()),
                         Ok(weight) => position / weight,
                         Err(_) => return Err("a vertex (v) must be three numbers".into()),

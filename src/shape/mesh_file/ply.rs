@@ -3,10 +3,10 @@
 
 use std::io::ErrorKind;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec2, DVec3};
 use ply_rs_bw::{
     parser::{ParseError, Parser, Reader},
-    ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult, PropertyType},
+    ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType},
 };
 
 use super::model::{Builder, Corner, MAX_POLYGONS, MAX_VERTICES};
@@ -24,9 +24,9 @@ const TEXTURES: [[&str; 2]; 4] =
 /// A vertex.
 #[derive(Clone, Copy, Default)]
 struct Vertex {
-    position: Vec3,
-    normal: Vec3,
-    texture: Vec2,
+    position: DVec3,
+    normal: DVec3,
+    texture: DVec2,
 }
 
 impl PropertyAccess for Vertex {
@@ -47,10 +47,15 @@ impl PropertyAccess for Vertex {
             _ if texture(1) => &mut self.texture.y,
             _ => return PropertyAccessResult::Ignored,
         };
-        match value.to_f32_lossy() {
-            Some(number) => *to = number,
-            None => return PropertyAccessResult::UnsupportedType,
-        }
+        *to = match value {
+            Property::Double(number) => number,
+            Property::Int(number) => f64::from(number),
+            Property::UInt(number) => f64::from(number),
+            small => match small.to_f32_lossy() {
+                Some(number) => f64::from(number),
+                None => return PropertyAccessResult::UnsupportedType,
+            },
+        };
         PropertyAccessResult::Set
     }
 }
@@ -85,9 +90,16 @@ impl PropertyAccess for Other {
 /// Reads the polygons of a file.
 pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
     let mut reader = Reader::new(bytes);
-    let header = Parser::<Other>::new().read_header(&mut reader).map_err(|e| in_header(&e, bytes))?;
+    let mut header = Parser::<Other>::new().read_header(&mut reader).map_err(|e| in_header(&e, bytes))?;
     let whole = |message: String| FileProblem { line: None, message };
     let is_text = header.encoding == Encoding::Ascii;
+    if is_text && let Some(vertex) = header.elements.get_mut("vertex") {
+        // Text may have more digits than the type in the header holds.
+        let float = PropertyType::Scalar(ScalarType::Float);
+        for property in vertex.properties.values_mut().filter(|p| p.data_type == float) {
+            property.data_type = PropertyType::Scalar(ScalarType::Double);
+        }
+    }
     let (vertex, face) = (header.elements.get("vertex"), header.elements.get("face"));
     let (vertex, face) = (declared(vertex, "vertex"), declared(face, "face"));
     let (vertex, face) = (vertex.map_err(whole)?, face.map_err(whole)?);
@@ -119,13 +131,17 @@ pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
         };
         read.map_err(|e| in_element(&e, element, is_text, bytes))?;
     }
+    let float = |axis: &str| vertex.properties[axis].data_type == PropertyType::Scalar(ScalarType::Float);
+    if ["x", "y", "z"].into_iter().any(float) {
+        to.note(vertices.iter().map(|vertex: &Vertex| vertex.position.as_vec3()));
+    }
     for (i, Face(face)) in faces.iter().enumerate() {
         let corner = |index: &u32| {
             let Vertex { position, normal, texture } = *vertices.get(*index as usize)?;
             Some(Corner {
                 position,
-                normal: has_normals.then_some(normal),
-                texture: has_texture.then_some(texture),
+                normal: has_normals.then_some(normal.as_vec3()),
+                texture: has_texture.then_some(texture.as_vec2()),
             })
         };
         let corners: Option<Vec<_>> = face.iter().flatten().map(corner).collect();
@@ -225,6 +241,8 @@ fn no_valid(error: &ParseError, is_text: bool, what: &str, bytes: &[u8]) -> File
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
     use crate::shape::{PolygonMesh, mesh_file::model::Model};
 
@@ -292,6 +310,22 @@ mod tests {
         // s grows along y.
         assert!((mesh.polygon_tangents()[0] - Vec3::Y).length() < 1e-6);
         assert_eq!(super::tests::mesh(text.as_bytes(), false).vertex_normals(), [Vec3::Z; 3]);
+    }
+
+    #[test]
+    fn binary_floats_far_away_are_refused_and_text_is_not() {
+        let far = |text: &str| {
+            text.replace("\n0 0 0 7\n2 0 0 7\n", "\n4600000 0 0 7\n4600002 0 0 7\n")
+                .replace("\n2 1 0 7\n0 1 0 7\n", "\n4600002 1 0 7\n4600000 1 0 7\n")
+        };
+        assert!(numbers(far(SQUARE).as_bytes()).is_ok());
+        let mut bytes = binary(true);
+        let start = bytes.len() - 17 - 4 * 17;
+        for (i, x) in [4.6e6_f32, 4.6e6 + 2.0, 4.6e6 + 2.0, 4.6e6].into_iter().enumerate() {
+            bytes[start + 17 * i..][..4].copy_from_slice(&x.to_le_bytes());
+        }
+        let said = numbers(&bytes).expect_err("too far");
+        assert!(said.starts_with("it has an extent of 2 at 4600002 from its origin"), "{said}");
     }
 
     #[test]

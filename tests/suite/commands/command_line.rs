@@ -55,6 +55,19 @@ fn wrong_usage_has_status_2() {
         (&["view", "--exit-after", "0"], "it must be a whole number from 1 to 4294967295"),
         (&["view", "--exit-after", "x"], "it must be a whole number from 1 to 4294967295"),
         (&["view", "--lesson", "x", "--step", "0"], "it must be a whole number from 1 to 4294967295"),
+        (
+            &["view", "--lesson", "01_reflection_models", "--step", "99"],
+            "--step is 99, but the lesson has 8 steps",
+        ),
+        (
+            &["view", "--lesson", "lessons/01_reflection_models.md", "--step", "9"],
+            "--step is 9, but the lesson has 8 steps",
+        ),
+        (
+            &["view", "--exit-after", "1", "--capture", "x.jpg"],
+            "--capture x.jpg: only PNG files can be written; did you mean x.png?",
+        ),
+        (&["view", "--exit-after", "1", "--capture", "x"], "--capture x: name a PNG file"),
         (&["--use-defaults", "--no-defaults", "check", "x"], "cannot be used with"),
         (&["room.json", "models"], "room.json must come after the command"),
         (&["rendr"], "did you mean lcm render?"),

@@ -95,10 +95,21 @@ fn where_a_result_cannot_be_written_its_command_says_so_before_it_draws() {
         assert!(start.elapsed().as_secs() < 10, "{arguments:?}: {:?}", start.elapsed());
     }
     let files = |place: &str| files::can_begin(&folder.path().join(place)).map_err(|error| error.to_string());
-    // New folders are made for the attempt, and removed.
+    // Nothing remains of the attempt.
     assert_eq!(files("new/er/a.png"), Ok(()));
     assert!(files("s.json/a.png").is_err_and(|error| error.ends_with("s.json is not a folder")));
     assert_eq!(names(folder.path()), ["s.json"]);
+}
+
+#[test]
+fn attempts_to_write_into_one_new_folder_do_not_disturb_each_other() {
+    let folder = folder();
+    let place = folder.path().join("new/er/a.png");
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| (0..200).for_each(|_| files::can_begin(&place).expect("it can be made")));
+        }
+    });
 }
 
 #[test]

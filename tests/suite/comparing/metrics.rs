@@ -719,6 +719,9 @@ fn linear_pictures_that_are_wrong_are_refused() {
     put("not_a.exr", b"{}");
     put("not_a.hdr", b"{}");
     put("huge.hdr", b"#?RADIANCE\n\n-Y 16384 +X 16384\naaaa");
+    let mut header = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x40\0\0\0\x40\0\x08\x02\0\0\0".to_vec();
+    header.extend(b"\x26\xaa\x87\xd3\0\0\0\x09IDATnothing__CRC!");
+    put("huge.png", &header);
     put("wide.hdr", b"#?RADIANCE\n\n-Y 1 +X 20000\naaaa");
     put("empty.hdr", b"#?RADIANCE\n\n-Y 8192 +X 8192\naaaa");
     put("endless.hdr", &[b"#?RADIANCE\n".to_vec(), b"# a\n".repeat(1 << 20)].concat());
@@ -742,6 +745,10 @@ fn linear_pictures_that_are_wrong_are_refused() {
         (
             "huge.hdr",
             "huge.hdr: the picture has 16384×16384 pixels, but each side must have 1 to 16384, and both",
+        ),
+        (
+            "huge.png",
+            "huge.png: the picture has 16384×16384 pixels, but each side must have 1 to 16384, and both",
         ),
         ("wide.hdr", "wide.hdr: the picture has 20000×1 pixels"),
         ("empty.hdr", "empty.hdr: the file ends before its last pixel"),

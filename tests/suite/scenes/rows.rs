@@ -257,6 +257,11 @@ fn mistakes_are_reported_with_their_place_and_the_remedy() {
             { "parameter": "size", "from": 1, "to": 2 }, { "parameter": "size", "from": 1, "to": 2 }] }),
         "vary[1].parameter is \"size\", but it varies already",
     );
+    // Copies of an object without a place are nowhere, which says nothing new.
+    let said = said(&with_objects(json!([
+        { "type": "sphere", "position": [2.6, 5], "repeat": { "columns": 3, "spacing": [1, 0, 0] } }
+    ])));
+    assert!(said.contains("objects[0].position is [2.6, 5], but") && said.lines().count() == 1, "{said}");
 }
 
 #[test]
