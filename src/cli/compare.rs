@@ -13,7 +13,7 @@ use super::{
     Options, Outcome, collected, finite, gauged,
     light_samples::{self, Sampling},
     one_of, outputs, pictures, print_json,
-    render::{self, cpu_can_draw, samples},
+    render::{cpu_can_draw, samples},
     scenes::Source,
     sides,
     views::{Choice, find},
@@ -296,7 +296,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         return Err(Failure::Usage("with two files, view A of each is compared; omit --with".to_owned()));
     }
     if let Some(output) = &arguments.output {
-        render::one_picture("-o", output)?;
+        outputs::one_picture("-o", output)?;
     }
     let mut read = collected(paths.iter().map(|path| Input::read(path, workshop, options)))?;
     // A linear picture beside a scene is shown like the scene.

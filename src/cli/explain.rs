@@ -7,8 +7,10 @@ use clap::Args;
 use super::{
     Options, Outcome, gauged,
     light_samples::{self, Sampling},
-    outputs, print_json, print_text,
-    render::{cpu_can_draw, one_picture, term},
+    outputs,
+    outputs::one_picture,
+    print_json, print_text,
+    render::{cpu_can_draw, term},
     scenes::Source,
     sides,
     views::{Plan, find},

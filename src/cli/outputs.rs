@@ -11,7 +11,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use super::{Outcome, complain};
 use crate::{
     failure::Failure,
-    files::{self, Shown as _, words},
+    files::{self, Kind, Shown as _, is_descriptor, kind, words},
     linear::{Channels, Format},
     picture::{
         linear,
@@ -85,4 +85,46 @@ pub(super) fn unwritten(output: &Path, error: &io::Error) -> Failure {
 /// Tidies the folder of a file to be written, and reports problems that need the user's attention.
 pub(super) fn tidy_beside(file: &Path) {
     files::tidy(files::folder_of(file)).iter().for_each(complain);
+}
+
+/// Fails unless an option is a single picture, next to the numbers on standard output.
+pub(super) fn one_picture(option: &str, path: &Path) -> Outcome {
+    let usage = |why: &str| Failure::Usage(format!("{option} {}: {why}", path.shown()));
+    let stdout = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
+    if stdout.iter().any(|name| path == Path::new(name)) {
+        return Err(usage("standard output is for the numbers; name a PNG file"));
+    }
+    if is_file(option, path, false)? { Ok(()) } else { Err(usage("name a PNG file")) }
+}
+
+/// True if an option is a file, and not a folder. A path that ends in `.png` is one, unless it is an existing folder, and so
+/// is one of a linear picture, where these are possible, and a device or a pipe. Other picture formats are refused;
+/// anything else is a folder.
+pub(super) fn is_file(option: &str, path: &Path, linear: bool) -> Result<bool, Failure> {
+    match kind(path) {
+        Ok(Kind::Folder) => return Ok(false),
+        Ok(Kind::Device | Kind::Pipe) => return Ok(true),
+        Ok(Kind::Socket | Kind::Unknown) => {
+            return Err(Failure::Write(format!("{option} {} is neither a file nor a folder", path.shown())));
+        }
+        Ok(Kind::File) if is_descriptor(path) => return Ok(true),
+        Ok(Kind::File) | Err(_) => {}
+    }
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    match extension.as_str() {
+        "png" => Ok(true),
+        _ if linear && Format::of(path).is_some() => Ok(true),
+        "jpg" | "jpeg" | "gif" | "bmp" | "tif" | "tiff" | "webp" | "exr" | "hdr" | "ppm" | "tga" | "svg"
+        | "pdf" => {
+            let (file, png) = (path.shown(), path.with_extension("png"));
+            let hint = format!("did you mean {}?", png.shown());
+            let formats = if linear { "PNG, OpenEXR and Radiance" } else { "PNG" };
+            Err(Failure::Usage(format!("{option} {file}: only {formats} files can be written; {hint}")))
+        }
+        _ if path.is_file() => Err(Failure::Write(format!(
+            "{option} {} is not a PNG file; name a PNG file or a folder",
+            path.shown()
+        ))),
+        _ => Ok(false),
+    }
 }

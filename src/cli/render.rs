@@ -32,7 +32,7 @@ use crate::{
     compare::{self, Cell, Shown, View, compose, metric, with_legends, with_row_labels},
     export::write::inputs,
     failure::Failure,
-    files::{Kind, PNG, is_descriptor, kind, printable},
+    files::{PNG, printable},
     linear::{Channels, Format, MAX_PIXELS},
     optics::TermSelection,
     picture::png::About,
@@ -756,7 +756,7 @@ fn cpu_can_draw_or(scene: &Scene, registry: &Registry, instead: &str) -> Outcome
 fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
     let folder = match output {
         None => Path::new(RENDERS_DIR),
-        Some(path) => match (is_file("-o", path, true)?, sources) {
+        Some(path) => match (outputs::is_file("-o", path, true)?, sources) {
             (true, [_]) => return Ok(vec![path.to_owned()]),
             (true, _) => {
                 let (file, count) = (path.shown(), sources.len());
@@ -777,48 +777,6 @@ fn files(sources: &[Source], output: Option<&Path>) -> Result<Vec<PathBuf>, Fail
         files.push(file);
     }
     Ok(files)
-}
-
-/// Fails unless an option is a single picture, next to the numbers on standard output.
-pub(super) fn one_picture(option: &str, path: &Path) -> Outcome {
-    let usage = |why: &str| Failure::Usage(format!("{option} {}: {why}", path.shown()));
-    let stdout = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
-    if stdout.iter().any(|name| path == Path::new(name)) {
-        return Err(usage("standard output is for the numbers; name a PNG file"));
-    }
-    if is_file(option, path, false)? { Ok(()) } else { Err(usage("name a PNG file")) }
-}
-
-/// True if an option is a file, and not a folder. A path that ends in `.png` is one, unless it is an existing folder, and so
-/// is one of a linear picture, where these are possible, and a device or a pipe. Other picture formats are refused;
-/// anything else is a folder.
-fn is_file(option: &str, path: &Path, linear: bool) -> Result<bool, Failure> {
-    match kind(path) {
-        Ok(Kind::Folder) => return Ok(false),
-        Ok(Kind::Device | Kind::Pipe) => return Ok(true),
-        Ok(Kind::Socket | Kind::Unknown) => {
-            return Err(Failure::Write(format!("{option} {} is neither a file nor a folder", path.shown())));
-        }
-        Ok(Kind::File) if is_descriptor(path) => return Ok(true),
-        Ok(Kind::File) | Err(_) => {}
-    }
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    match extension.as_str() {
-        "png" => Ok(true),
-        _ if linear && Format::of(path).is_some() => Ok(true),
-        "jpg" | "jpeg" | "gif" | "bmp" | "tif" | "tiff" | "webp" | "exr" | "hdr" | "ppm" | "tga" | "svg"
-        | "pdf" => {
-            let (file, png) = (path.shown(), path.with_extension("png"));
-            let hint = format!("did you mean {}?", png.shown());
-            let formats = if linear { "PNG, OpenEXR and Radiance" } else { "PNG" };
-            Err(Failure::Usage(format!("{option} {file}: only {formats} files can be written; {hint}")))
-        }
-        _ if path.is_file() => Err(Failure::Write(format!(
-            "{option} {} is not a PNG file; name a PNG file or a folder",
-            path.shown()
-        ))),
-        _ => Ok(false),
-    }
 }
 
 #[cfg(test)]
@@ -854,6 +812,9 @@ mod tests {
         assert!(said(&["a.json", "b.json"], Some("x.png")).contains("is one file, but there are 2 scenes"));
         assert!(said(&["a/x.json", "b/x.json"], None).contains("would both be written to renders/x.png"));
         assert!(said(&["a.json"], Some("x.jpg")).contains("did you mean x.png?"));
-        assert!(one_picture("-o", Path::new("x.exr")).is_err(), "numbers have no linear picture beside them");
+        assert!(
+            outputs::one_picture("-o", Path::new("x.exr")).is_err(),
+            "numbers have no linear picture beside them"
+        );
     }
 }

@@ -1,6 +1,7 @@
 //! Replaces folders, all or nothing.
 
 use std::{
+    collections::BTreeSet,
     ffi::OsStr,
     fs::{self, File},
     io,
@@ -186,6 +187,13 @@ pub(super) fn missing_folders(folder: &Path) -> io::Result<Vec<&Path>> {
     };
     let refused = missing.iter().filter_map(|at| at.file_name()).find_map(refused);
     refused.map_or(Ok(missing), Err)
+}
+
+/// Removes files that were just written, and those of these folders that are empty then.
+pub fn take_back(written: &[PathBuf], folders: &BTreeSet<PathBuf>) {
+    written.iter().for_each(|path| drop(fs::remove_file(path)));
+    // Inner ones first.
+    folders.iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
 }
 
 #[cfg(test)]

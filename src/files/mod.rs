@@ -66,7 +66,7 @@ mod words;
 
 pub use before::Before;
 pub use draft::{Draft, create, write, write_all};
-pub use folder::{FolderDraft, clear, in_folder};
+pub use folder::{FolderDraft, clear, in_folder, take_back};
 pub use input::{is_descriptor, is_stream, read_input};
 pub use inside::inside;
 pub use litter::{Unfinished, tidy};

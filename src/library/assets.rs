@@ -260,11 +260,7 @@ pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError
         .collect();
     let (mut exported, mut at) = (Exported::default(), folder.to_owned());
     let written = files::in_folder(folder, || {
-        export_each(&all, &mut exported, &mut at).inspect_err(|_| {
-            exported.written.iter().for_each(|path| drop(fs::remove_file(path)));
-            // Only empty folders are removed, inner ones first.
-            new.iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
-        })
+        export_each(&all, &mut exported, &mut at).inspect_err(|_| files::take_back(&exported.written, &new))
     });
     match written {
         Ok(()) => Ok(exported),

@@ -198,16 +198,18 @@ fn title(
     let left = badge.right_center() + vec2(8.0, 0.0) * scale;
     // With symbols as in the equation, if there is room. A presentation says the rest below.
     let dots = theme::elided(ui, ", …", FontId::proportional(size), ink, room);
-    let ends = |parts: &[Part], all: &[Part]| parts.len() < all.len() && !session.view.presenting;
-    let lines = |parts: Vec<Part>, all: &[Part]| {
-        let room = room - if ends(&parts, all) { dots.size().x } else { 0.0 };
+    let lines = |parts: Vec<Part>, all: &[Part], dotted: bool| {
+        let room = room - if dotted && parts.len() < all.len() { dots.size().x } else { 0.0 };
         let lines = Lines::within(ui, parts, size, ink, room, 1);
         (lines.size.y < 1.9 * size && lines.size.x <= room).then_some(lines)
     };
-    let rank = rank_that_fits(said, |parts, all| lines(parts, all).is_some());
-    let parts = up_to(&said[at], rank);
-    let cut = ends(&parts, &said[at]);
-    if let Some(lines) = lines(parts, &said[at]) {
+    let rank = |dotted: bool| rank_that_fits(said, |parts, all| lines(parts, all, dotted).is_some());
+    // A fact beside the first one is worth more than dots, for which there is no room then.
+    let (ranks, dots_too) = ([true, false].map(rank), !session.view.presenting);
+    let dotted = dots_too && (ranks[0] == ranks[1] || said.iter().any(|all| up_to(all, ranks[0]).len() > 1));
+    let parts = up_to(&said[at], ranks[usize::from(!dotted)]);
+    let cut = dotted && parts.len() < said[at].len();
+    if let Some(lines) = lines(parts, &said[at], dotted) {
         let place = Align2::LEFT_CENTER.anchor_size(left, lines.size);
         if cut {
             ui.painter().galley(place.right_top(), dots, ink);

@@ -36,9 +36,10 @@ pub const WINDOW_BUDGET: u64 = 384 << 20;
 /// Maximum size of meshes on the GPU at once when nobody waits for the next frame, in bytes. If exceeded,
 /// shapes are drawn in batches: the same picture, later.
 pub const BATCH: u64 = 32 << 20;
-/// Maximum number of triangles that a window draws in one frame: on software Vulkan, where two cores draw 20 million in a
-/// second, a window with more would not answer.
+/// Maximum number of triangles that a window draws in one frame.
 pub const WINDOW_TRIANGLES: u64 = 1 << 27;
+/// The same without a GPU: two cores draw 20 million in some seconds, and a window that takes longer does not answer.
+pub const SOFTWARE_TRIANGLES: u64 = 1 << 25;
 /// Maximum number and size of unused meshes kept in case they are needed again.
 const SPARE: usize = 16;
 const SPARE_BYTES: u64 = 64 << 20;
@@ -120,6 +121,11 @@ impl ShapeMeshes {
     /// [`MESH_BUDGET`], and no longer limits the triangles: whoever asks for one picture waits for it.
     pub fn limit(&mut self, together: u64, alone: u64) {
         (self.together, self.alone, self.most_triangles) = (together, alone, u64::MAX);
+    }
+
+    /// Limits the triangles to this many in one frame, instead of [`WINDOW_TRIANGLES`].
+    pub fn limit_triangles(&mut self, most: u64) {
+        self.most_triangles = most;
     }
 
     /// The size of all meshes, in bytes.

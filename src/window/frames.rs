@@ -10,7 +10,13 @@ use bevy::{
 };
 
 use super::{redraw::Settling, watching::complain};
-use crate::{panel::state::Session, render::view::Drawing};
+use crate::{
+    panel::state::Session,
+    render::{
+        meshes::{SOFTWARE_TRIANGLES, ShapeMeshes},
+        view::Drawing,
+    },
+};
 
 /// Maximum number of remembered frames of each kind.
 const REMEMBERED: usize = 1000;
@@ -50,9 +56,16 @@ impl FrameClock {
     }
 }
 
-/// Reports the GPU to the panels.
-pub(super) fn adapter_facts(adapter: Option<Res<RenderAdapterInfo>>, mut session: ResMut<Session>) {
+/// Reports the GPU to the panels, and limits what is drawn without one.
+pub(super) fn adapter_facts(
+    adapter: Option<Res<RenderAdapterInfo>>,
+    mut session: ResMut<Session>,
+    mut meshes: ResMut<ShapeMeshes>,
+) {
     if let Some(adapter) = adapter {
+        if adapter.device_type == wgpu::DeviceType::Cpu {
+            meshes.limit_triangles(SOFTWARE_TRIANGLES);
+        }
         let facts = &mut session.bypass_change_detection().facts;
         facts.backend = format!("{:?}", adapter.backend);
         facts.adapter.clone_from(&adapter.name);

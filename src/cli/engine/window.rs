@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{
     super::{
-        Options, Outcome, outputs, render,
+        Options, Outcome, outputs,
         scenes::Source,
         view::{Arguments, meant_command},
         workshop::Places,
@@ -38,7 +38,7 @@ pub(super) fn open(
     let Arguments { exit_after, capture, no_scene, size, lesson, step, .. } = arguments;
     if let Some(capture) = &capture {
         outputs::picture(capture, &inputs(source.path(), [], &workshop.registry))?;
-        render::one_picture("--capture", capture)?;
+        outputs::one_picture("--capture", capture)?;
         let _ = files::tidy(files::folder_of(capture));
     }
     let warnings = match &source {

@@ -2,6 +2,8 @@
 
 use std::{fs, process::Command};
 
+use lights_camera_models::program;
+
 use crate::helpers::{
     skipped::skip,
     support::{lcm, root},
@@ -31,8 +33,8 @@ fn the_desktop_opens_the_file_type_of_scenes_with_the_program() {
     assert_eq!(value(&entry, "Exec"), "lcm view %f");
     assert!(lcm(&["view", "--help"], "").out.contains("[SCENE]"));
     // The icon of a running window is found by the name of the window.
-    let window = format!("name: Some(\"{}\".to_owned())", value(&entry, "StartupWMClass"));
-    assert!(text("src/window/plugins.rs").contains(&window), "{window}");
+    assert_eq!(value(&entry, "StartupWMClass"), program::LAB);
+    assert!(text("src/window/plugins.rs").contains("name: Some(program::name().to_owned())"));
     let icon = format!("packaging/{}.svg", value(&entry, "Icon"));
     assert!(text(&icon).starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\""));
 }

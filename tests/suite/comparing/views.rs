@@ -601,7 +601,7 @@ fn the_bar_of_a_difference_stays_within_its_column() {
         bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
         bench.settle();
         let picture = bench.area.rect;
-        for label in ["Amplify automatically", "largest channel", "display codes"] {
+        for label in ["Amplify automatically", "largest", "display codes"] {
             let place = place(&bench, label);
             let here = format!("{width} at {scale} %: {label} at {place:?} of {picture:?}");
             assert!(place.left() >= picture.left() && place.right() <= picture.right() + 0.5, "{here}");

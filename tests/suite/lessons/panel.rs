@@ -1038,7 +1038,7 @@ fn the_line_that_a_task_asks_to_read_is_in_sight_for_every_point() {
         [(2, "° inside, n = "), (4, "the part of the light that is reflected here"), (7, "1: after ")]
     {
         go(&mut bench, LessonCommand::GoTo(step));
-        for at in [[0.02, 0.03], [0.05, 0.08], [-0.03, -0.06]] {
+        for at in [[0.02, 0.03], [0.05, 0.08], [0.04, 0.05]] {
             bench.apply(Action::View(ViewChange::Pin(Some(Pin { view: 0, at }))));
             (0..60).for_each(|_| drop(bench.frame(Vec::new())));
             let texts = bench.texts_in_sight();

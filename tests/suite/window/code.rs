@@ -7,6 +7,7 @@ use lights_camera_models::{
         theme::Palette,
     },
     recovery::texts::OF_SCENE,
+    scene::Scene,
 };
 
 use crate::window::panels::Bench;
@@ -190,7 +191,9 @@ fn top(bench: &mut Bench) -> f32 {
 
 #[test]
 fn a_text_opens_at_its_start_and_is_found_as_it_was_left() {
-    let mut bench = Bench::new(Session::default());
+    let mut scene = Scene::default();
+    scene.lights = vec![scene.lights[0].clone(); 20];
+    let mut bench = Bench::new(Session::new(scene));
     bench.apply(Action::Code(CodeCommand::Scene));
     let opened = top(&mut bench);
     bench.key(Key::End, CTRL);

@@ -402,8 +402,9 @@ fn shipped(file: &str, scale: u16) -> Bench {
     bench
 }
 
-/// Asserts that no plate lies over an object, in any of the pictures of a presentation.
-fn assert_that_nothing_is_hidden(bench: &mut Bench, what: &str) {
+/// The plates that lie over an object in one of the pictures of a presentation.
+fn hiding(bench: &mut Bench, what: &str) -> Vec<String> {
+    let mut found = Vec::new();
     let shapes = bench.shapes();
     let pictures: Vec<_> = match bench.area.cells.as_slice() {
         [] => vec![bench.area.frame],
@@ -419,10 +420,13 @@ fn assert_that_nothing_is_hidden(bench: &mut Bench, what: &str) {
             for shape in &shapes {
                 let Shape::Rect(r) = shape else { continue };
                 let hides = r.rect.clamp(at).distance(at) < edge.distance(at);
-                assert!(!hides || r.rect.contains_rect(picture), "{what}: {:?} hides it", r.rect);
+                if hides && !r.rect.contains_rect(picture) {
+                    found.push(format!("{what}: {:?}", r.rect));
+                }
             }
         }
     }
+    found
 }
 
 #[test]
@@ -435,6 +439,7 @@ fn badges_legends_banner_and_hint_of_a_presentation_hide_no_object() {
         source: "    return lobe(l, v);".to_owned(),
         message: "no definition in scope for identifier: `lobe`".to_owned(),
     };
+    let mut hidden = Vec::new();
     for file in [
         "superellipsoids.json",
         "default.json",
@@ -479,10 +484,11 @@ fn badges_legends_banner_and_hint_of_a_presentation_hide_no_object() {
                 if case == "hint" {
                     assert!(bench.texts().iter().any(|text| text.starts_with("Esc leaves")), "{what}");
                 }
-                assert_that_nothing_is_hidden(&mut bench, &what);
+                hidden.extend(hiding(&mut bench, &what));
             }
         }
     }
+    assert_eq!(hidden, [""; 0]);
 }
 
 #[test]
@@ -523,7 +529,8 @@ fn captions(bench: &mut Bench) -> [Vec<(String, egui::Rect)>; 2] {
     let numbers = said.iter().find(|(t, _)| t.starts_with("B compared with A")).expect("numbers").1;
     let within = |from: f32, to: f32| {
         let here = said.iter().filter(|(_, r)| r.top() > a.top() - 10.0 && r.bottom() < numbers.top() + 5.0);
-        here.filter(|(_, r)| r.left() > from - 1.0 && r.left() < to - 1.0).cloned().collect::<Vec<_>>()
+        // Letters have room at their left.
+        here.filter(|(_, r)| r.left() > from - 8.0 && r.left() < to - 8.0).cloned().collect::<Vec<_>>()
     };
     [within(a.left(), b.left()), within(b.left(), f32::INFINITY)]
 }
