@@ -276,7 +276,8 @@ impl ShapeMeshes {
         let count = self.refused.len();
         if count == 0 && self.crowded {
             return Some(format!(
-                "the objects of this scene have more than the {} million triangles that a window draws: {} {} not drawn; give                  objects a lower tessellation",
+                "the objects of this scene have more than the {} million triangles that a window draws: {} {} not drawn; \
+                 give objects a lower tessellation",
                 self.most_triangles / 1_000_000,
                 plural(self.omitted.len(), "object"),
                 if self.omitted.len() == 1 { "is" } else { "are" },
@@ -470,7 +471,7 @@ mod tests {
         assert!(put_on(&mut world, 1), "its triangles count once");
         let problem = world.resource::<ShapeMeshes>().problem().expect("it is full");
         assert!(
-            problem.contains("million triangles") && problem.contains("1 object is not drawn"),
+            problem.contains("million triangles") && problem.contains("1 object is not drawn; give objects"),
             "{problem}"
         );
 
