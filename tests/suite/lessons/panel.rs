@@ -1034,9 +1034,7 @@ fn straw() -> Bench {
 #[test]
 fn the_line_that_a_task_asks_to_read_is_in_sight_for_every_point() {
     let mut bench = straw();
-    for (step, line) in
-        [(2, "° inside, n = "), (4, "the part of the light that is reflected here"), (7, "1: after ")]
-    {
+    for (step, line) in [(2, "° inside, n = "), (4, "the part of the light that is reflected here")] {
         go(&mut bench, LessonCommand::GoTo(step));
         for at in [[0.02, 0.03], [0.05, 0.08], [0.04, 0.05]] {
             bench.apply(Action::View(ViewChange::Pin(Some(Pin { view: 0, at }))));
