@@ -3,7 +3,7 @@
 use bevy_egui::egui::{self, Color32, Event, Key, Modifiers, Shape, accesskit::Role};
 use lights_camera_models::{
     panel::{
-        state::{Action, CodeCommand, CodeOf, KeptCode, ModelCommand, OpenCode, Session, ViewChange},
+        state::{Action, CodeCommand, CodeOf, KeptCode, ModelCommand, OpenCode, Session},
         theme::Palette,
     },
     recovery::texts::OF_SCENE,
