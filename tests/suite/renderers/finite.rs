@@ -3,7 +3,7 @@
 
 use std::{f32::consts::PI, fs, path::Path, sync::atomic::AtomicBool};
 
-use bevy::app::PluginGroup as _;
+use bevy::app::{App, PluginGroup as _};
 use glam::{Vec2, Vec3};
 use lights_camera_models::{
     channel::{DebugChannel, Setting},
@@ -278,6 +278,18 @@ fn the_cpu_renderer_notes_it_and_pixels_lead_to_it() {
     }
 }
 
+/// The window with a scene and [`Torn`], after its first frames.
+fn window_with(file: &Path) -> App {
+    let plugins = LabPlugins::default().scene(file).size(120, 90).exit_after(100_000).headless();
+    let mut app = app(plugins.build(), |app| {
+        app.add_reflection_model::<Torn>();
+    });
+    for _ in 0..5 {
+        app.update();
+    }
+    app
+}
+
 #[test]
 fn the_window_knows_which_view_has_light_that_is_no_number() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -286,13 +298,7 @@ fn the_window_knows_which_view_has_light_that_is_no_number() {
     let scene =
         Scene { shading_model: "phong".to_owned(), variants: vec![override_of_b], ..Scene::default() };
     fs::write(&file, save::to_json(&scene, None, &registry())).expect("written");
-    let plugins = LabPlugins::default().scene(&file).size(120, 90).exit_after(100_000).headless();
-    let mut app = app(plugins.build(), |app| {
-        app.add_reflection_model::<Torn>();
-    });
-    for _ in 0..5 {
-        app.update();
-    }
+    let app = window_with(&file);
     let session = app.world().resource::<Session>();
     let odd = session.facts.not_finite.each_ref().map(Vec::len);
     assert_eq!(odd[..2], [0, 1], "{:?}", session.messages);
@@ -389,13 +395,7 @@ fn the_window_says_once_which_model_gives_no_number() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("s.json");
     fs::write(&file, save::to_json(&torn(), None, &registry())).expect("written");
-    let plugins = LabPlugins::default().scene(&file).size(120, 90).exit_after(100_000).headless();
-    let mut app = app(plugins.build(), |app| {
-        app.add_reflection_model::<Torn>();
-    });
-    for _ in 0..5 {
-        app.update();
-    }
+    let app = window_with(&file);
     let session = app.world().resource::<Session>();
     let said: Vec<_> = session.messages.iter().filter(|m| m.text.contains("must be finite")).collect();
     assert_eq!(said.len(), 1, "{:?}", session.messages);
