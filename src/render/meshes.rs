@@ -40,6 +40,9 @@ pub const BATCH: u64 = 32 << 20;
 pub const WINDOW_TRIANGLES: u64 = 1 << 27;
 /// The same without a GPU: two cores draw 20 million in some seconds, and a window that takes longer does not answer.
 pub const SOFTWARE_TRIANGLES: u64 = 1 << 25;
+/// Maximum number of triangles in a frame of a single picture without a GPU: the driver keeps those that it has prepared,
+/// about 360 bytes each with four samples, until its threads have drawn them, 2.3 GB of them if nobody waits.
+pub const PICTURE_TRIANGLES: u64 = 1 << 17;
 /// Maximum number and size of unused meshes kept in case they are needed again.
 const SPARE: usize = 16;
 const SPARE_BYTES: u64 = 64 << 20;
@@ -59,13 +62,12 @@ with_defaults! {
         /// The triangles of all objects in all views, and their maximum.
         triangles: u64 = 0,
         most_triangles: u64 = WINDOW_TRIANGLES,
-        /// True if objects were omitted because of that maximum.
-        crowded: bool = false,
         /// Meshes that did not fit, and the objects that are not drawn without them.
         refused: HashSet<(MeshKey, Vertices)> = HashSet::new(),
         /// The total size that the last rejected mesh would have reached, in bytes.
         reached: u64 = WINDOW_BUDGET,
-        omitted: Vec<Entity> = Vec::new(),
+        /// With their triangles if these did not fit, and otherwise with 0.
+        omitted: Vec<(Entity, u64)> = Vec::new(),
         /// True if there is more room than when they were refused.
         room: bool = false,
         /// True if meshes were added since unused ones were last dropped.
@@ -139,16 +141,37 @@ impl ShapeMeshes {
         self.known.is_empty()
     }
 
+    /// The number of omitted objects.
+    pub(super) fn omitted(&self) -> usize {
+        self.omitted.len()
+    }
+
+    /// True if objects were omitted because of their triangles.
+    pub(super) fn is_crowded(&self) -> bool {
+        self.omitted.iter().any(|(_, triangles)| *triangles > 0)
+    }
+
+    /// True if these meshes have more triangles than may be drawn at once.
+    pub(super) fn are_too_many(&self, keys: impl Iterator<Item = (MeshKey, Vertices)>) -> bool {
+        let triangles = keys.filter_map(|key| self.known.get(&key)).map(|known| known.triangles);
+        self.most_triangles < u64::MAX && triangles.sum::<u64>() > self.most_triangles
+    }
+
     /// Removes all meshes from objects and from the GPU. Objects that were omitted can be tried again once
     /// there is [room](Self::make_room).
     pub(super) fn clear(world: &mut World) {
+        Self::take_all_off(world);
+        let mut meshes = world.resource_mut::<Self>();
+        meshes.known.clear();
+        meshes.bytes = 0;
+    }
+
+    /// Removes all meshes from objects; they stay on the GPU.
+    pub(super) fn take_all_off(world: &mut World) {
         let mut drawn = world.query_filtered::<Entity, (With<Mesh3d>, With<Drawn>)>();
         for drawable in drawn.iter(world).collect::<Vec<_>>() {
             take_off(world, drawable);
         }
-        let mut meshes = world.resource_mut::<Self>();
-        meshes.known.clear();
-        meshes.bytes = 0;
     }
 
     /// Allows omitted objects to be tried again.
@@ -163,11 +186,10 @@ impl ShapeMeshes {
         let mut meshes = world.resource_mut::<Self>();
         meshes.refused.clear();
         meshes.omitted.clear();
-        meshes.crowded = false;
     }
 
-    /// Builds missing meshes of objects, as long as there is room: those with the highest priority first,
-    /// which `need` returns for the index of an object.
+    /// Builds missing meshes of objects, as long as there is room, and no more than are drawn at once: those with
+    /// the highest priority first, which `need` returns for the index of an object.
     pub(super) fn make<'a>(
         &mut self,
         objects: impl Iterator<Item = (&'a Object, Vertices)>,
@@ -201,8 +223,9 @@ impl ShapeMeshes {
         let missing: Vec<_> = missing.into_iter().map(|(_, shape)| shape).collect();
         self.grown |= !missing.is_empty();
         let mut missing = missing.into_iter();
+        let mut built = 0;
         while !missing.as_slice().is_empty() {
-            if !self.refused.is_empty() {
+            if !self.refused.is_empty() || built > self.most_triangles {
                 self.refused.extend(missing.by_ref().map(|(key, ..)| key));
                 return;
             }
@@ -228,53 +251,80 @@ impl ShapeMeshes {
                 } else {
                     self.bytes += bytes;
                     let triangles = mesh.indices().map_or(0, |indices| indices.len() as u64 / 3);
+                    built += triangles;
                     self.known.insert(key, Known { mesh: assets.add(mesh), bytes, triangles });
                 }
             }
         }
     }
 
-    /// The mesh of an object, if it was built, and if there is room for its triangles; they count from now on.
+    /// The mesh of an object, if it was built, and if there is room for its triangles; they count from now on. There is room for
+    /// those of one object alone, and for those of objects that no view shows.
+    ///
+    /// # Errors
+    /// Returns the number of triangles without room; 0 without a mesh.
     pub(super) fn put_on(
         world: &mut World,
         drawable: Entity,
         key: MeshKey,
         vertices: Vertices,
-    ) -> Option<Handle<Mesh>> {
+        is_seen: bool,
+    ) -> Result<Handle<Mesh>, u64> {
         let before = world.get::<Triangles>(drawable).map_or(0, |triangles| triangles.0);
-        let mut meshes = world.resource_mut::<Self>();
-        let known = meshes.known.get(&(key, vertices))?;
-        let (mesh, triangles) = (known.mesh.clone(), known.triangles);
-        if meshes.triangles - before + triangles > meshes.most_triangles {
-            meshes.crowded = true;
-            return None;
+        let meshes = world.resource::<Self>();
+        let known = meshes.known.get(&(key, vertices)).ok_or(0u64)?;
+        let (mesh, triangles) = (known.mesh.clone(), if is_seen { known.triangles } else { 0 });
+        let others = meshes.triangles - before;
+        if others > 0 && triangles > 0 && others + triangles > meshes.most_triangles {
+            return Err(triangles);
         }
         if triangles != before {
-            world.get_entity_mut(drawable).ok()?.insert(Triangles(triangles));
+            world.get_entity_mut(drawable).map_err(|_| 0u64)?.insert(Triangles(triangles));
         }
-        Some(mesh)
+        Ok(mesh)
     }
 
-    /// Omits an object without a mesh.
-    pub(super) fn leave_out(&mut self, object: Entity) {
-        self.omitted.push(object);
+    /// Omits an object without a mesh, or with so many triangles that they do not fit.
+    pub(super) fn leave_out(&mut self, object: Entity, triangles: u64) {
+        self.omitted.push((object, triangles));
     }
 
-    /// The omitted objects, to be tried again if the scene has changed or memory was freed.
+    /// The omitted objects, to be tried again: all if the scene has changed. If memory was freed, those whose triangles fit,
+    /// and if there are none, those without meshes.
     pub(super) fn try_again(&mut self, scene_changed: bool) -> Vec<Entity> {
         if !scene_changed && !self.room {
             return Vec::new();
         }
-        (self.room, self.crowded) = (false, false);
+        self.room = false;
+        let (mut triangles, most) = (self.triangles, self.most_triangles);
+        let fits = |own: u64| {
+            let fits = own > 0 && (triangles == 0 || triangles + own <= most);
+            triangles += if fits { own } else { 0 };
+            fits
+        };
+        if !scene_changed {
+            let next = self.take_out(fits);
+            if !next.is_empty() {
+                return next;
+            }
+        }
         self.refused.clear();
-        std::mem::take(&mut self.omitted)
+        self.take_out(|own| scene_changed || own == 0)
+    }
+
+    /// Those omitted objects whose triangles are chosen; the others stay omitted.
+    fn take_out(&mut self, mut is_chosen: impl FnMut(u64) -> bool) -> Vec<Entity> {
+        let (chosen, others): (Vec<_>, _) =
+            std::mem::take(&mut self.omitted).into_iter().partition(|(_, own)| is_chosen(*own));
+        self.omitted = others;
+        chosen.into_iter().map(|(object, _)| object).collect()
     }
 
     /// The reason why objects are missing in the picture, if any.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
         let count = self.refused.len();
-        if count == 0 && self.crowded {
+        if count == 0 && self.is_crowded() {
             return Some(format!(
                 "the objects of this scene have more than the {} million triangles that a window draws: {} {} not drawn; \
                  give objects a lower tessellation",
@@ -354,7 +404,7 @@ pub(super) fn forget_unused_meshes(world: &mut World) {
         meshes.known.retain(|_, known| used.contains(&known.mesh.id()));
         meshes.bytes -= bytes;
     }
-    meshes.room = full && count > 0;
+    meshes.room = full && count > 0 && !meshes.is_crowded();
 }
 
 #[cfg(test)]
@@ -437,7 +487,7 @@ mod tests {
         assert!(problem.contains("lower tessellation"), "{problem}");
 
         let object = Entity::from_raw_u32(7).expect("an entity");
-        meshes.leave_out(object);
+        meshes.leave_out(object, 0);
         assert_eq!(meshes.try_again(false), [], "nothing has changed");
         meshes.room = true;
         meshes.bytes = 4 * one;
@@ -461,11 +511,11 @@ mod tests {
         world.insert_resource(meshes);
         let objects = [(); 3].map(|()| world.spawn_empty().id());
         let put_on = |world: &mut World, i: usize| {
-            let is_there = ShapeMeshes::put_on(world, objects[i], key(), Vertices::Shared).is_some();
-            if !is_there {
-                world.resource_mut::<ShapeMeshes>().leave_out(objects[i]);
+            let put_on = ShapeMeshes::put_on(world, objects[i], key(), Vertices::Shared, true);
+            if let Err(triangles) = put_on {
+                world.resource_mut::<ShapeMeshes>().leave_out(objects[i], triangles);
             }
-            is_there
+            put_on.is_ok()
         };
         assert!(put_on(&mut world, 0) && put_on(&mut world, 1) && !put_on(&mut world, 2));
         assert!(put_on(&mut world, 1), "its triangles count once");
@@ -480,5 +530,30 @@ mod tests {
         assert_eq!(world.resource::<ShapeMeshes>().triangles, 0);
         assert_eq!(world.resource_mut::<ShapeMeshes>().try_again(true), [objects[2]]);
         assert!(put_on(&mut world, 2) && world.resource::<ShapeMeshes>().problem().is_none());
+
+        take_off(&mut world, objects[2]);
+        world.resource_mut::<ShapeMeshes>().limit_triangles(one - 1);
+        assert!(put_on(&mut world, 0) && !put_on(&mut world, 2), "one alone may have more");
+        let unseen = ShapeMeshes::put_on(&mut world, objects[2], key(), Vertices::Shared, false);
+        assert!(unseen.is_ok(), "what no view shows has none");
+    }
+
+    #[test]
+    fn of_the_objects_left_out_those_that_fit_come_next_and_those_without_meshes_last() {
+        let mut meshes = ShapeMeshes::default();
+        meshes.limit_triangles(100);
+        let objects: Vec<_> = (1..6).map(|i| Entity::from_raw_u32(i).expect("an entity")).collect();
+        for (object, triangles) in objects.iter().zip([60, 0, 30, 60, 300]) {
+            meshes.leave_out(*object, triangles);
+        }
+        let mut next = || {
+            meshes.make_room();
+            meshes.try_again(false)
+        };
+        assert_eq!(next(), [objects[0], objects[2]]);
+        assert_eq!(next(), [objects[3]]);
+        assert_eq!(next(), [objects[4]], "one alone may have more");
+        assert_eq!(next(), [objects[1]]);
+        assert_eq!(next(), []);
     }
 }

@@ -1,5 +1,5 @@
-//! The order in which shapes get their meshes if they do not all fit into memory: those in the windows'
-//! pictures first, the nearest before the others.
+//! The order in which shapes get their meshes if they do not all fit into memory, and in which objects are drawn if they are
+//! too many for one frame: those in the pictures first, the nearest before the others.
 
 use bevy::{
     camera::{
@@ -35,6 +35,15 @@ impl Eye {
 
 /// The cameras of windows. Cameras of single pictures, which draw everything eventually, do not count.
 pub(super) fn eyes(world: &mut World) -> Vec<Eye> {
+    eyes_of(world, |camera| camera.fits_width)
+}
+
+/// The cameras of windows and of single pictures.
+pub(super) fn all_eyes(world: &mut World) -> Vec<Eye> {
+    eyes_of(world, |_| true)
+}
+
+fn eyes_of(world: &mut World, counts: impl Fn(&PictureCamera) -> bool) -> Vec<Eye> {
     let observer = world.resource::<Shown>().observer;
     let keeps = world.resource::<CurrentScene>().0.view_angle().keeps;
     let angle = ViewAngle { degrees: observer.field_of_view, keeps };
@@ -49,7 +58,7 @@ pub(super) fn eyes(world: &mut World) -> Vec<Eye> {
         };
         let lens = PerspectiveProjection { fov: angle.vertical(lens.aspect_ratio), ..lens.clone() };
         let sees = || lens.compute_frustum(&place.into());
-        camera.fits_width.then(|| Eye { at: place.translation, sees: sees() })
+        counts(camera).then(|| Eye { at: place.translation, sees: sees() })
     };
     cameras.iter(world).filter_map(eye).collect()
 }
@@ -93,6 +102,7 @@ mod tests {
         let single = PictureCamera { follows_observer: true, fits_width: false };
         world.spawn((single, Transform::IDENTITY, Projection::default()));
         assert!(eyes(&mut world).is_empty(), "single pictures have everything");
+        assert_eq!(all_eyes(&mut world).len(), 1);
         let window = PictureCamera { follows_observer: true, fits_width: true };
         let camera = world.spawn((window, Transform::IDENTITY, Projection::default())).id();
         let Observer { position: eye, .. } = world.resource::<Shown>().observer;

@@ -8,13 +8,14 @@ use bevy::{mesh::MeshTag, prelude::*, render::storage::ShaderBuffer};
 use rayon::prelude::*;
 
 use super::{
+    camera::PictureCamera,
     drawn::{ByChance, Drawn},
     entities::{CurrentScene, SceneEntities},
     file_buffers::FileBuffers,
     illumination::{IlluminationBuffer, Lit, word_count},
     live::{LiveShaders, Parts},
     material::{MaterialInputs, Vertices, attach, forget},
-    meshes::{ShapeMeshes, forget_unused_meshes, take_off},
+    meshes::{Need, ShapeMeshes, forget_unused_meshes, take_off},
     nearest,
     overrides::Overrides,
     shown::{Shown, ShownObject},
@@ -30,6 +31,7 @@ use crate::{
     registry::Registry,
     scene::{MAX_OBJECTS, Object, Scene, shines_from_everywhere},
     shading,
+    shape::MeshKey,
 };
 
 /// An object whose new shader is still being tried, or about to be made: until then it stays unchanged.
@@ -46,6 +48,15 @@ struct Pending {
     /// The object as the view shows it.
     shown: Object,
     now: Drawn,
+}
+
+impl Pending {
+    /// The identity and the form of its mesh.
+    fn mesh(&self, registry: &Registry) -> Option<(MeshKey, Vertices)> {
+        let Self { shown, now, .. } = self;
+        let shape = registry.shape(&shown.object_type)?;
+        Some((shape.key(&shown.shape, shown.tessellation), vertices(&now.shading, registry)))
+    }
 }
 
 /// Drawables that have never been drawn, or that wait for their shader.
@@ -138,9 +149,21 @@ pub fn swap(
             meshes.make(objects, need, &registry, &mut assets);
         });
     });
-    for (pending, bytes) in pending.into_iter().zip(rows) {
+    let mut pending: Vec<_> =
+        pending.into_iter().zip(rows).map(|(pending, bytes)| (Need::default(), pending, bytes)).collect();
+    let keys = pending.iter().filter_map(|(_, pending, _)| pending.mesh(&registry));
+    if world.resource::<ShapeMeshes>().are_too_many(keys) {
+        let eyes = nearest::all_eyes(world);
+        for (need, Pending { object, shown, .. }, _) in &mut pending {
+            *need = nearest::need(&eyes, world, &registry, *object, shown);
+        }
+        pending.sort_by(|(a, ..), (b, ..)| a.order(b));
+    }
+    let shows_objects = shows_objects(world);
+    for (_, pending, bytes) in pending {
         if let Some(bytes) = bytes {
-            draw(world, &registry, pending, &bytes);
+            let is_seen = shows_objects || pending.view.is_some();
+            draw(world, &registry, pending, &bytes, is_seen);
         }
     }
     // An object that waits for its shader will use a mesh that is not drawn yet.
@@ -270,25 +293,36 @@ fn vertices(shading: &str, registry: &Registry) -> Vertices {
     }
 }
 
+/// False if all views show copies, not the objects themselves. Views of windows may show these at any time.
+fn shows_objects(world: &mut World) -> bool {
+    let mut cameras = world.query::<(&PictureCamera, Has<Overrides>)>();
+    let shows = |(camera, overrides): (&PictureCamera, bool)| camera.fits_width || !overrides;
+    let shows: Vec<_> = cameras.iter(world).map(shows).collect();
+    shows.is_empty() || shows.contains(&true)
+}
+
 /// Sets the mesh and the material of an object.
-fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8]) {
+fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8], is_seen: bool) {
+    let mesh = pending.mesh(registry);
     let Pending { view, object, drawable, shown, now } = pending;
     // The checker refuses scenes with unknown ids; should one come from elsewhere, the object stays
     // unchanged.
-    let (Some(model), Some(shading), Some(shape)) = (
+    let (Some(model), Some(shading), Some(shape), Some((key, vertices))) = (
         registry.model(&now.model),
         registry.shading_model(&now.shading),
         registry.shape(&shown.object_type),
+        mesh,
     ) else {
         return;
     };
-    let key = shape.key(&shown.shape, shown.tessellation);
-    let vertices = vertices(&now.shading, registry);
-    let Some(mesh) = ShapeMeshes::put_on(world, drawable, key, vertices) else {
-        take_off(world, drawable);
-        world.entity_mut(drawable).insert_if_new(now);
-        world.resource_mut::<ShapeMeshes>().leave_out(object);
-        return;
+    let mesh = match ShapeMeshes::put_on(world, drawable, key, vertices, is_seen) {
+        Ok(mesh) => mesh,
+        Err(triangles) => {
+            take_off(world, drawable);
+            world.entity_mut(drawable).insert_if_new(now);
+            world.resource_mut::<ShapeMeshes>().leave_out(object, triangles);
+            return;
+        }
     };
     let parts = (model, now.passage, shading, now.lights);
     let shader = if is_first_asked(world, drawable, parts) {

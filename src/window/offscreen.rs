@@ -101,6 +101,7 @@ impl OffScreen<'_> {
             app.insert_resource(registry.clone());
         });
         let mut renderer = renderer.map_err(Undrawn::of)?;
+        renderer.save_memory();
         renderer.set_scene(seen.clone());
         renderer.set_terms(terms);
         renderer.set_channel(channel);

@@ -70,7 +70,9 @@ impl Gpu {
                 try_apart(app, registry, self.trial_program.clone());
                 app.insert_resource(registry.clone());
             });
-            self.last = Some((key, renderer.map_err(|e| failed(order, e))?));
+            let mut renderer = renderer.map_err(|e| failed(order, e))?;
+            renderer.save_memory();
+            self.last = Some((key, renderer));
         }
         match &mut self.last {
             Some((_, renderer)) => {

@@ -16,7 +16,7 @@ use bevy::{
         pipelined_rendering::PipelinedRenderingPlugin,
         render_asset::RenderAssets,
         render_resource::*,
-        renderer::{RenderDevice, RenderQueue, initialize_renderer},
+        renderer::{RenderAdapterInfo, RenderDevice, RenderQueue, initialize_renderer},
         settings::{Backends, RenderCreation, RenderResources, WgpuSettings},
         texture::GpuImage,
     },
@@ -40,7 +40,7 @@ use crate::{
         entities::CurrentScene,
         illumination::ShownTerms,
         live::LiveShaders,
-        meshes::{BATCH, MESH_BUDGET, ShapeMeshes},
+        meshes::{BATCH, MESH_BUDGET, PICTURE_TRIANGLES, ShapeMeshes},
         overrides::Overrides,
         pass::buffer,
         plugin::ScenePlugin,
@@ -204,6 +204,8 @@ pub struct GpuRenderer {
     pub(super) by_parts: bool,
     /// True if frames draw only what changed.
     pub(super) on_demand: bool,
+    /// Maximum number of triangles in a frame of a picture that settles.
+    pub(super) most_triangles: u64,
     staging: Option<Buffer>,
     output: Output,
     width: u32,
@@ -284,6 +286,7 @@ impl GpuRenderer {
             channel: None,
             by_parts: false,
             on_demand: false,
+            most_triangles: u64::MAX,
             staging: None,
             output,
             width,
@@ -305,6 +308,20 @@ impl GpuRenderer {
     /// Shows another scene from the next frame on.
     pub fn set_scene(&mut self, scene: Scene) {
         self.app.world_mut().resource_mut::<CurrentScene>().set_if_neq(CurrentScene(scene));
+    }
+
+    /// Bounds the memory of pictures that [settle](Self::settle): without a GPU they are drawn in batches of at most
+    /// [`PICTURE_TRIANGLES`]. For programs that want pictures, not frames: later frames show nothing new.
+    pub fn save_memory(&mut self) {
+        let adapter = self.app.world().get_resource::<RenderAdapterInfo>();
+        if adapter.is_some_and(|adapter| adapter.device_type == wgpu::DeviceType::Cpu) {
+            self.limit_triangles(PICTURE_TRIANGLES);
+        }
+    }
+
+    /// Limits the triangles in a frame of a picture that [settles](Self::settle).
+    pub fn limit_triangles(&mut self, most: u64) {
+        self.most_triangles = most;
     }
 
     /// Sets the number of samples of lights with extent, at least 1, for the pictures of scenes set from now

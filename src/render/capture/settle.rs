@@ -45,8 +45,9 @@ const SLOW: Duration = Duration::from_millis(150);
 const PART: u32 = 8;
 
 impl GpuRenderer {
-    /// Draws frames until nothing is waiting to be loaded or compiled, and all shapes are in the picture: if
-    /// they take more than [`BATCH`](crate::render::meshes::BATCH), one batch after the other.
+    /// Draws frames until nothing is waiting to be loaded or compiled, and all objects are in the picture: if
+    /// their shapes take more than [`BATCH`](crate::render::meshes::BATCH), or they have more triangles than
+    /// [allowed](Self::limit_triangles), one batch after the other.
     ///
     /// # Errors
     /// Returns [`GpuError::TimedOut`] if this does not happen, e.g. because a shader cannot be compiled;
@@ -65,10 +66,29 @@ impl GpuRenderer {
     /// Returns the errors of [`settle`](Self::settle); [`GpuError::Memory`] also if a noise is requested, but the shapes need
     /// several batches.
     pub fn settle_until(&mut self, noise: Option<f32>, progress: &Progress) -> Result<Reached, GpuError> {
-        let until = Until { samples: self.app.world().resource::<Convergence>().target, noise };
-        let all = Reached { samples: until.samples, noise: None };
         let by_parts = self.takes_parts(noise.is_some());
         self.set_parts(by_parts);
+        // Means are of frames with all objects.
+        let most = if by_parts || self.on_demand { u64::MAX } else { self.most_triangles };
+        self.limit_frames(most);
+        let reached = self.settle_within(noise, by_parts, progress);
+        self.limit_frames(u64::MAX);
+        reached
+    }
+
+    fn limit_frames(&mut self, most: u64) {
+        self.app.world_mut().resource_mut::<ShapeMeshes>().limit_triangles(most);
+    }
+
+    /// Draws all objects, with the limits that are set.
+    fn settle_within(
+        &mut self,
+        noise: Option<f32>,
+        by_parts: bool,
+        progress: &Progress,
+    ) -> Result<Reached, GpuError> {
+        let until = Until { samples: self.app.world().resource::<Convergence>().target, noise };
+        let all = Reached { samples: until.samples, noise: None };
         if let Some((background, graph)) = self.batched.take() {
             self.edit_camera(|camera| {
                 set_background(camera, background);
@@ -84,7 +104,7 @@ impl GpuRenderer {
             }
             // Each batch would begin the mean anew.
             self.set_parts(false);
-            self.draw_batches()?;
+            self.draw_batches(progress)?;
         } else if by_parts {
             return self.converge(until, progress);
         }
@@ -162,9 +182,9 @@ impl GpuRenderer {
         }
     }
 
-    /// Draws the shapes batch by batch: each over the picture and the depths of those before, with meshes
-    /// that replace theirs in memory. Later frames leave the picture unchanged.
-    fn draw_batches(&mut self) -> Result<(), GpuError> {
+    /// Draws the objects batch by batch: each over the picture and the depths of those before, once the GPU is done with these,
+    /// and if memory is full, with meshes that replace theirs. Later frames leave the picture unchanged.
+    fn draw_batches(&mut self, progress: &Progress) -> Result<(), GpuError> {
         let mut before = None;
         let mut straight = false;
         self.edit_camera(|camera| {
@@ -180,21 +200,35 @@ impl GpuRenderer {
         self.batched.clone_from(&before);
         // The first batch has been drawn, but only as light.
         let mut drawn = straight;
+        let all = self.meshes().omitted();
+        let mut last = usize::MAX;
         loop {
             if !std::mem::take(&mut drawn) {
                 self.draw_frames()?;
             }
             let why = self.refused();
             if let Some(why) = &why
-                && self.app.world().resource::<ShapeMeshes>().is_empty()
+                && self.meshes().is_empty()
             {
                 return Err(GpuError::Memory(why.clone()));
             }
+            self.wait();
+            let left = self.meshes().omitted();
+            (progress.tell)(1.0 - left as f32 / all.max(1) as f32, "");
             self.edit_camera(|camera| set_background(camera, ClearColorConfig::None));
             if why.is_none() {
                 break;
             }
-            self.clear_meshes();
+            if self.meshes().is_crowded() {
+                ShapeMeshes::take_all_off(self.app.world_mut());
+                if last <= left {
+                    // An object that several views show may never fit in all of them.
+                    self.limit_frames(u64::MAX);
+                }
+            } else {
+                self.clear_meshes();
+            }
+            last = left;
             self.app.world_mut().resource_mut::<ShapeMeshes>().make_room();
         }
         // The display's passes run once, at the end: they would mistake their own output for light.
@@ -205,6 +239,10 @@ impl GpuRenderer {
         }
         self.clear_meshes();
         Ok(())
+    }
+
+    fn meshes(&self) -> &ShapeMeshes {
+        self.app.world().resource::<ShapeMeshes>()
     }
 
     fn clear_meshes(&mut self) {
@@ -223,10 +261,13 @@ impl GpuRenderer {
         while ready < 2 {
             let (before, begun) = (self.prepared(), Instant::now());
             self.step();
+            if self.meshes().is_crowded() {
+                self.wait();
+            }
             ready = if self.is_waiting()? { 0 } else { ready + 1 };
             if ready == 1 && before.is_some() && before == self.prepared() {
                 self.wait();
-                if begun.elapsed() > SLOW {
+                if self.batched.is_some() || begun.elapsed() > SLOW {
                     break;
                 }
             }
@@ -303,7 +344,7 @@ impl GpuRenderer {
 
     /// The reason why shapes are missing in the picture, if any.
     fn refused(&self) -> Option<String> {
-        self.app.world().get_resource::<ShapeMeshes>().and_then(ShapeMeshes::problem)
+        self.meshes().problem()
     }
 
     pub(super) fn edit_camera(&mut self, change: impl FnOnce(&mut EntityWorldMut)) {

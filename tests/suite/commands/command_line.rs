@@ -8,7 +8,7 @@ use std::{
 
 use serde_json::Value;
 
-use crate::helpers::support::{Run, changed, command_in, full_scene, lcm, lcm_in, root};
+use crate::helpers::support::{Run, changed, command_in, full_scene, lcm, lcm_in, peak, root};
 
 /// Asserts the status and one line on standard error that contains a text.
 fn refused(run: &Run, status: i32, expected: &str) {
@@ -425,6 +425,29 @@ fn a_picture_that_takes_long_says_so_on_a_terminal() {
     assert!(ended.expect("kill").success());
     let status = program.wait().expect("it ends");
     assert!(!status.success() && !folder.path().join("new").exists(), "{status}");
+}
+
+/// Without a GPU, the driver keeps the triangles that it has not drawn yet.
+#[test]
+#[cfg(target_os = "linux")]
+fn thousands_of_objects_take_little_more_memory_with_the_driver_than_without() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |i: usize| 0.1 + 9.8 * i as f32 / 49.0;
+    let spheres = (0..2500).map(|i| {
+        serde_json::json!({ "type": "sphere", "position": [place(i % 50), place(i / 50), 1], "size": 0.16 })
+    });
+    let text = fs::read_to_string(root().join("scenes/default.json")).expect("readable");
+    let mut scene: Value = serde_json::from_str(&text).expect("JSON");
+    scene["objects"] = spheres.collect::<Vec<_>>().into();
+    fs::write(folder.path().join("many.json"), scene.to_string()).expect("written");
+    let [cpu, gpu] = ["cpu", "gpu"].map(|renderer| {
+        let picture = format!("{renderer}.png");
+        peak(command_in(
+            folder.path(),
+            ["render", "many.json", "--renderer", renderer, "-o", picture.as_str()],
+        ))
+    });
+    assert!(gpu <= 3 * cpu + 150, "{gpu} MiB with the driver, {cpu} MiB without");
 }
 
 #[test]

@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 
 use crate::{
     helpers::pictures::close_up,
-    helpers::support::{Run, command_in, command_of, lcm_in, names, run},
+    helpers::support::{Run, command_in, command_of, lcm_in, names, peak, run},
     renderers::golden::read_png,
 };
 
@@ -432,34 +432,17 @@ fn a_long_picture_ends_cleanly() {
     }
 }
 
-/// The largest memory of a process that draws a picture on the GPU with this number of samples, in MiB.
-#[cfg(target_os = "linux")]
-fn peak(folder: &Path, samples: u32) -> u64 {
-    let samples = samples.to_string();
-    let arguments = ["render", "softbox.json", "--renderer", "gpu", "--size", "32x18", "--samples", "1"];
-    let mut command = command_in(folder, arguments);
-    command.args(["--light-samples", &samples, "-o", "p.png"]);
-    let mut child = command.stderr(Stdio::null()).spawn().expect("started");
-    let mut peak = 0;
-    loop {
-        let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
-        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap_or_default();
-        let kib: u64 = line.trim().trim_end_matches("kB").trim().parse().unwrap_or(0);
-        peak = peak.max(kib >> 10);
-        if let Some(status) = child.try_wait().expect("a child") {
-            assert!(status.success() && peak > 0, "{status}");
-            return peak;
-        }
-        thread::sleep(Duration::from_millis(5));
-    }
-}
-
 #[cfg(target_os = "linux")]
 #[test]
 fn the_frames_of_a_converging_picture_leave_no_memory_behind() {
     let folder = folder();
     // Eight samples a frame.
-    let [few, many] = [264, 1288].map(|samples| peak(folder.path(), samples));
+    let [few, many] = ["264", "1288"].map(|samples| {
+        let arguments = ["render", "softbox.json", "--renderer", "gpu", "--size", "32x18", "--samples", "1"];
+        let mut command = command_in(folder.path(), arguments);
+        command.args(["--light-samples", samples, "-o", "p.png"]);
+        peak(command)
+    });
     assert!(many < few + 64, "33 frames take {few} MiB, 161 take {many} MiB");
 }
 

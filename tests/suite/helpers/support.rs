@@ -185,6 +185,24 @@ pub fn lcm_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Run {
     run(command_in(folder, arguments), input)
 }
 
+/// The largest memory of a command that succeeds, in MiB.
+#[cfg(target_os = "linux")]
+pub fn peak(mut command: Command) -> u64 {
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts");
+    let mut peak = 0;
+    loop {
+        let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap_or_default();
+        let kib: u64 = line.trim().trim_end_matches("kB").trim().parse().unwrap_or(0);
+        peak = peak.max(kib >> 10);
+        if let Some(status) = child.try_wait().expect("a child") {
+            assert!(status.success() && peak > 0, "{status}");
+            return peak;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+}
+
 /// Runs a command with an input.
 pub fn run(mut command: Command, input: &[u8]) -> Run {
     let mut child = command

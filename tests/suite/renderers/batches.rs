@@ -1,10 +1,11 @@
-//! Pictures drawn in batches, because their shapes do not fit into memory at once.
+//! Pictures drawn in batches, because their shapes or their triangles do not fit into memory at once.
 
 use glam::Vec3;
 use lights_camera_models::{
     channel::{DebugChannel, Setting},
     optics::tone::ToneMapping,
     parameter::Value,
+    progress::Progress,
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
@@ -12,6 +13,8 @@ use lights_camera_models::{
     },
     scene::{Background, Light, Object, Scene},
 };
+
+use crate::helpers::pictures::close_up;
 
 /// Different shapes that intersect, so that each batch has parts in front of and behind those of others.
 fn crossing(count: usize, tone: ToneMapping, shading: &str) -> Scene {
@@ -93,21 +96,61 @@ fn a_picture_in_batches_is_the_same_bit_for_bit() {
     }
 }
 
+/// Without a GPU, the driver keeps the triangles that it has not drawn yet, also those of a shape that all objects share.
+#[test]
+fn a_picture_with_few_triangles_at_once_is_the_same_bit_for_bit() {
+    for (samples, output, tone, shading) in [
+        (1, Output::Display, ToneMapping::None, "phong"),
+        (4, Output::Display, ToneMapping::Reinhard, "gouraud"),
+        (1, Output::Linear, ToneMapping::None, "flat"),
+    ] {
+        let mut scene = crossing(11, tone, shading);
+        for object in &mut scene.objects[4..] {
+            object.shape.set("vertical_exponent", Value::Number(0.7));
+        }
+        scene.display.background = Background::Gradient;
+        let expected = picture(&mut renderer(samples, output, None), &scene);
+        for (triangles, most) in [(1, None), (700, None), (700, Some(20_000))] {
+            let case =
+                format!("{samples} samples, {output:?}, {shading}, {triangles} triangles, {most:?} bytes");
+            let mut batched = renderer(samples, output, most);
+            batched.limit_triangles(triangles);
+            assert!(picture(&mut batched, &scene) == expected, "{case}");
+            assert_eq!(meshes(&mut batched, |meshes| meshes.bytes()), 0, "{case}: in batches");
+            batched.step();
+            assert!(batched.read().expect("a picture") == expected, "{case}: a frame later");
+            assert!(picture(&mut batched, &scene) == expected, "{case}: again");
+        }
+    }
+}
+
+/// The mean of many samples is that of frames with all objects.
+#[test]
+fn a_picture_whose_noise_is_measured_is_not_drawn_in_batches() {
+    let mut scene = close_up("sphere", "rectangle");
+    scene.objects.push(Object { size: 0.5, ..scene.objects[0].clone() });
+    let mut renderer = renderer(1, Output::Display, None);
+    renderer.limit_triangles(1);
+    renderer.set_scene(scene);
+    let reached = renderer.settle_until(Some(0.1), &Progress::NONE).expect("the GPU draws");
+    assert!(reached.noise.is_some_and(|noise| noise <= 0.1), "{reached:?}");
+}
+
 #[test]
 fn a_channel_in_batches_is_the_same() {
     let scene = crossing(9, ToneMapping::None, "phong");
     let setting =
         Setting::new(DebugChannel::Normals, &scene, &Registry::builtin(), scene.observer.position, None);
-    let mut pictures = [None, Some(20_000)].map(|most| {
+    let pictures = [(None, u64::MAX), (Some(20_000), u64::MAX), (None, 700)].map(|(most, triangles)| {
         let mut renderer = renderer(1, Output::Display, most);
+        renderer.limit_triangles(triangles);
         let plain = picture(&mut renderer, &scene);
         renderer.set_channel(Some(setting));
         let normals = picture(&mut renderer, &scene);
         assert!(plain != normals);
         normals
     });
-    let [whole, batched] = &mut pictures;
-    assert!(whole == batched);
+    assert!(pictures.iter().all(|picture| *picture == pictures[0]));
 }
 
 /// A single shape that is too large is named, and the next picture can be drawn.
