@@ -62,6 +62,8 @@ with_defaults! {
         /// The triangles of all objects in all views, and their maximum.
         triangles: u64 = 0,
         most_triangles: u64 = WINDOW_TRIANGLES,
+        /// True if objects beyond that maximum are drawn later, with the meshes that are there.
+        in_batches: bool = false,
         /// Meshes that did not fit, and the objects that are not drawn without them.
         refused: HashSet<(MeshKey, Vertices)> = HashSet::new(),
         /// The total size that the last rejected mesh would have reached, in bytes.
@@ -128,6 +130,12 @@ impl ShapeMeshes {
     /// Limits the triangles to this many in one frame, instead of [`WINDOW_TRIANGLES`].
     pub fn limit_triangles(&mut self, most: u64) {
         self.most_triangles = most;
+    }
+
+    /// Limits the triangles to this many in one frame, and keeps the meshes of the objects beyond for later frames; without a
+    /// limit for [`u64::MAX`].
+    pub(super) fn draw_in_batches(&mut self, most: u64) {
+        (self.most_triangles, self.in_batches) = (most, most < u64::MAX);
     }
 
     /// The size of all meshes, in bytes.
@@ -391,7 +399,8 @@ fn attribute(says: Says) -> MeshVertexAttribute {
 /// Drops unused meshes: dragging the slider of a parameter makes hundreds. Some are kept in case they are
 /// needed again, unless others need the memory.
 pub(super) fn forget_unused_meshes(world: &mut World) {
-    if !std::mem::take(&mut world.resource_mut::<ShapeMeshes>().grown) {
+    let mut meshes = world.resource_mut::<ShapeMeshes>();
+    if meshes.in_batches && meshes.is_crowded() || !std::mem::take(&mut meshes.grown) {
         return;
     }
     let mut drawn = world.query::<&Mesh3d>();
@@ -404,7 +413,7 @@ pub(super) fn forget_unused_meshes(world: &mut World) {
         meshes.known.retain(|_, known| used.contains(&known.mesh.id()));
         meshes.bytes -= bytes;
     }
-    meshes.room = full && count > 0 && !meshes.is_crowded();
+    meshes.room = full && count > 0 && !meshes.in_batches;
 }
 
 #[cfg(test)]

@@ -77,7 +77,7 @@ impl GpuRenderer {
     }
 
     fn limit_frames(&mut self, most: u64) {
-        self.app.world_mut().resource_mut::<ShapeMeshes>().limit_triangles(most);
+        self.app.world_mut().resource_mut::<ShapeMeshes>().draw_in_batches(most);
     }
 
     /// Draws all objects, with the limits that are set.

@@ -185,8 +185,7 @@ pub fn lcm_in(folder: &Path, arguments: &[&str], input: &[u8]) -> Run {
     run(command_in(folder, arguments), input)
 }
 
-/// The largest memory of a command that succeeds, in MiB.
-#[cfg(target_os = "linux")]
+/// The largest memory of a command that succeeds, in MiB; on Linux.
 pub fn peak(mut command: Command) -> u64 {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts");
     let mut peak = 0;
