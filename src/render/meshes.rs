@@ -64,6 +64,8 @@ with_defaults! {
         most_triangles: u64 = WINDOW_TRIANGLES,
         /// True if objects beyond that maximum are drawn later, with the meshes that are there.
         in_batches: bool = false,
+        /// True if objects were not drawn because others hide them.
+        hidden: bool = false,
         /// Meshes that did not fit, and the objects that are not drawn without them.
         refused: HashSet<(MeshKey, Vertices)> = HashSet::new(),
         /// The total size that the last rejected mesh would have reached, in bytes.
@@ -97,6 +99,8 @@ struct Known {
     mesh: Handle<Mesh>,
     bytes: u64,
     triangles: u64,
+    /// The largest distance of a corner from the centre.
+    radius: f32,
 }
 
 /// The number of triangles of an object in a view, counted in [`ShapeMeshes`] as long as it is drawn.
@@ -165,6 +169,26 @@ impl ShapeMeshes {
         self.most_triangles < u64::MAX && triangles.sum::<u64>() > self.most_triangles
     }
 
+    /// The largest distance of a corner of a mesh from its centre, if the mesh is there.
+    pub(super) fn radius(&self, key: &(MeshKey, Vertices)) -> Option<f32> {
+        self.known.get(key).map(|known| known.radius)
+    }
+
+    /// True if objects beyond the triangles of a frame are drawn later.
+    pub(super) fn are_in_batches(&self) -> bool {
+        self.in_batches
+    }
+
+    /// Notes that objects are not drawn because others hide them from the camera where it is.
+    pub(super) fn note_hidden(&mut self) {
+        self.hidden = true;
+    }
+
+    /// True if objects were not drawn because others hide them, since all were [tried](Self::restart).
+    pub(super) fn hides(&self) -> bool {
+        self.hidden
+    }
+
     /// Removes all meshes from objects and from the GPU. Objects that were omitted can be tried again once
     /// there is [room](Self::make_room).
     pub(super) fn clear(world: &mut World) {
@@ -194,6 +218,7 @@ impl ShapeMeshes {
         let mut meshes = world.resource_mut::<Self>();
         meshes.refused.clear();
         meshes.omitted.clear();
+        meshes.hidden = false;
     }
 
     /// Builds missing meshes of objects, as long as there is room, and no more than are drawn at once: those with
@@ -247,10 +272,10 @@ impl ShapeMeshes {
                         Vertices::Apart => face_mesh(&mesh),
                     };
                     facing::tell(&mut drawn, &mesh, key.1);
-                    (key, drawn)
+                    (key, drawn, mesh.positions.iter().map(|corner| corner.length()).fold(0.0, f32::max))
                 })
                 .collect();
-            for (key, mesh) in made {
+            for (key, mesh, radius) in made {
                 let bytes = size(&mesh);
                 let most = if self.bytes == 0 { self.alone.max(self.together) } else { self.together };
                 if self.bytes + bytes > most {
@@ -260,7 +285,7 @@ impl ShapeMeshes {
                     self.bytes += bytes;
                     let triangles = mesh.indices().map_or(0, |indices| indices.len() as u64 / 3);
                     built += triangles;
-                    self.known.insert(key, Known { mesh: assets.add(mesh), bytes, triangles });
+                    self.known.insert(key, Known { mesh: assets.add(mesh), bytes, triangles, radius });
                 }
             }
         }

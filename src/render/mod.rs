@@ -11,6 +11,7 @@ pub mod entities;
 pub(crate) mod exchange;
 mod facing;
 mod file_buffers;
+mod hidden;
 pub mod illumination;
 pub mod live;
 pub mod material;

@@ -21,7 +21,7 @@ use crate::{
 /// The view of a window's camera.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Eye {
-    at: Vec3,
+    pub(super) place: Transform,
     sees: Frustum,
 }
 
@@ -29,7 +29,8 @@ impl Eye {
     /// The priority of a shape within a sphere.
     fn need(&self, centre: Vec3, radius: f32) -> Need {
         let sphere = Sphere { center: centre.into(), radius };
-        Need { hidden: !self.sees.intersects_sphere(&sphere, false), distance: centre.distance(self.at) }
+        let distance = centre.distance(self.place.translation);
+        Need { hidden: !self.sees.intersects_sphere(&sphere, false), distance }
     }
 }
 
@@ -58,7 +59,7 @@ fn eyes_of(world: &mut World, counts: impl Fn(&PictureCamera) -> bool) -> Vec<Ey
         };
         let lens = PerspectiveProjection { fov: angle.vertical(lens.aspect_ratio), ..lens.clone() };
         let sees = || lens.compute_frustum(&place.into());
-        counts(camera).then(|| Eye { at: place.translation, sees: sees() })
+        counts(camera).then(|| Eye { place, sees: sees() })
     };
     cameras.iter(world).filter_map(eye).collect()
 }

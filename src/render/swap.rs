@@ -12,11 +12,12 @@ use super::{
     drawn::{ByChance, Drawn},
     entities::{CurrentScene, SceneEntities},
     file_buffers::FileBuffers,
+    hidden::Shade,
     illumination::{IlluminationBuffer, Lit, word_count},
     live::{LiveShaders, Parts},
     material::{MaterialInputs, Vertices, attach, forget},
     meshes::{Need, ShapeMeshes, forget_unused_meshes, take_off},
-    nearest,
+    nearest::{self, Eye},
     overrides::Overrides,
     shown::{Shown, ShownObject},
     solids::Solids,
@@ -33,6 +34,9 @@ use crate::{
     shading,
     shape::MeshKey,
 };
+
+/// The number of objects behind which others may be hidden.
+const SHADES: usize = 8;
 
 /// An object whose new shader is still being tried, or about to be made: until then it stays unchanged.
 #[derive(Clone, Component, Copy, Debug, Default)]
@@ -158,6 +162,9 @@ pub fn swap(
             *need = nearest::need(&eyes, world, &registry, *object, shown);
         }
         pending.sort_by(|(a, ..), (b, ..)| a.order(b));
+        if world.resource::<ShapeMeshes>().are_in_batches() {
+            pending = without_hidden(world, &registry, &eyes, pending);
+        }
     }
     let shows_objects = shows_objects(world);
     for (_, pending, bytes) in pending {
@@ -291,6 +298,57 @@ fn vertices(shading: &str, registry: &Registry) -> Vertices {
         Some(model) if model.declaration.stage == shading::Stage::Polygon => Vertices::Apart,
         _ => Vertices::Shared,
     }
+}
+
+/// Takes objects that others hide from all cameras out of the picture, and returns the rest.
+fn without_hidden<T>(
+    world: &mut World,
+    registry: &Registry,
+    eyes: &[Eye],
+    pending: Vec<(Need, Pending, Option<T>)>,
+) -> Vec<(Need, Pending, Option<T>)> {
+    let meshes = world.resource::<ShapeMeshes>();
+    let sphere = |pending: &Pending| {
+        let place = *world.get::<Transform>(pending.object)?;
+        Some((place, meshes.radius(&pending.mesh(registry)?)? * place.scale.abs().max_element()))
+    };
+    let spheres: Vec<_> = pending.iter().map(|(_, pending, _)| sphere(pending)).collect();
+    let shades_of = |eye: &Eye| {
+        let could = |(_, pending, bytes): &(Need, Pending, Option<T>)| {
+            bytes.is_some() && pending.now.passage == Passage::NONE && pending.shown.visible
+        };
+        let mut large: Vec<_> = iter::zip(&pending, &spheres)
+            .filter_map(|(of, sphere)| {
+                let (place, radius) = sphere.filter(|_| could(of))?;
+                Some((radius / place.translation.distance(eye.place.translation), place, &of.1.shown))
+            })
+            .collect();
+        large.sort_by(|(a, ..), (b, ..)| b.total_cmp(a));
+        let shade = |(_, place, object): (f32, Transform, &Object)| {
+            let shape = registry.shape(&object.object_type)?;
+            let mesh = shape.mesh(&object.shape, shape.tessellation(object.tessellation));
+            Shade::new(&mesh, &place, &eye.place)
+        };
+        large.into_iter().take(SHADES).filter_map(shade).collect::<Vec<_>>()
+    };
+    let shades: Vec<_> = eyes.iter().map(shades_of).collect();
+    let is_hidden = |(place, radius): (Transform, f32)| {
+        let covered = |shades: &Vec<Shade>| shades.iter().any(|s| s.covers(place.translation, radius));
+        !shades.is_empty() && shades.iter().all(covered)
+    };
+    let hidden: Vec<_> = spheres.into_iter().map(|sphere| sphere.is_some_and(is_hidden)).collect();
+    let mut rest = Vec::with_capacity(pending.len());
+    for (of, is_hidden) in pending.into_iter().zip(hidden) {
+        if !is_hidden {
+            rest.push(of);
+            continue;
+        }
+        let Pending { drawable, now, .. } = of.1;
+        take_off(world, drawable);
+        world.entity_mut(drawable).insert_if_new(now);
+        world.resource_mut::<ShapeMeshes>().note_hidden();
+    }
+    rest
 }
 
 /// False if all views show copies, not the objects themselves. Views of windows may show these at any time.

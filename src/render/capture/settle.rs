@@ -95,6 +95,9 @@ impl GpuRenderer {
                 camera.insert(graph);
             });
             ShapeMeshes::restart(self.app.world_mut());
+        } else if self.meshes().hides() {
+            // The camera may be elsewhere.
+            ShapeMeshes::restart(self.app.world_mut());
         }
         self.draw_frames()?;
         if let Some(why) = self.refused() {

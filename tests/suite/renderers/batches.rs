@@ -11,7 +11,7 @@ use lights_camera_models::{
         capture::gpu::{GpuRenderer, Output},
         meshes::ShapeMeshes,
     },
-    scene::{Background, Light, Object, Scene},
+    scene::{Background, Light, Object, Observer, Scene},
 };
 
 use crate::helpers::pictures::close_up;
@@ -122,6 +122,37 @@ fn a_picture_with_few_triangles_at_once_is_the_same_bit_for_bit() {
             assert!(picture(&mut batched, &scene) == expected, "{case}: again");
         }
     }
+}
+
+/// Forty spheres behind a cube, and one before it.
+#[test]
+fn objects_behind_a_large_one_are_not_drawn_in_batches() {
+    let mut scene = crossing(0, ToneMapping::Aces, "phong");
+    let sphere = |i: usize| {
+        let position = Vec3::new(4.0 + 0.2 * (i % 10) as f32, 4.2 + 0.4 * (i / 10) as f32, 2.0);
+        Object { position, size: 0.2, tessellation: Some(8), ..Object::default() }
+    };
+    let at = |z: f32, size: f32| Object { position: Vec3::new(5.0, 5.0, z), size, ..sphere(0) };
+    scene.objects = (0..40).map(sphere).collect();
+    scene.objects.push(Object { object_type: "cube".to_owned(), tessellation: Some(16), ..at(6.0, 4.0) });
+    scene.objects.push(at(8.5, 0.3));
+    scene.observer = Observer::at(Vec3::new(5.0, 5.0, 9.5), Vec3::NEG_Z);
+    let mut whole = renderer(4, Output::Display, None);
+    let expected = picture(&mut whole, &scene);
+    let mut batched = renderer(4, Output::Display, None);
+    // Enough for the cube and a sphere.
+    batched.limit_triangles(4000);
+    assert!(picture(&mut batched, &scene) == expected);
+    assert!(meshes(&mut batched, |meshes| meshes.bytes()) > 0, "the rest is drawn in one frame");
+    // They come back if the camera sees them.
+    scene.observer = Observer::at(Vec3::new(5.0, 5.0, 0.5), Vec3::Z);
+    let expected = picture(&mut whole, &scene);
+    assert!(picture(&mut batched, &scene) == expected, "from behind");
+    // What is invisible hides nothing.
+    scene.observer = Observer::at(Vec3::new(5.0, 5.0, 9.5), Vec3::NEG_Z);
+    scene.objects[40].visible = false;
+    let expected = picture(&mut whole, &scene);
+    assert!(picture(&mut batched, &scene) == expected, "without the cube");
 }
 
 /// The mean of many samples is that of frames with all objects.
