@@ -140,7 +140,7 @@ mod tests {
         let eye = Transform::from_xyz(1.0, 2.0, 9.0).looking_at(Vec3::new(4.0, 4.0, 4.0), Vec3::Y);
         let place = Transform::from_xyz(4.0, 4.0, 4.0)
             .with_scale(Vec3::splat(3.0))
-            .with_rotation(Quat::from_euler(EulerRot::XYZ, 0.4, 1.1, 2.0));
+            .with_rotation(Quat::from_rotation_x(0.4) * Quat::from_rotation_y(1.1));
         let mesh = mesh("cube");
         let shade = Shade::new(&mesh, &place, &eye).expect("a body");
         let triangles: Vec<[Vec3; 3]> = mesh
