@@ -472,6 +472,20 @@ fn knobs_that_a_page_cannot_follow_are_told_at_export_once() {
     for id in ["openpbr", "microfacet", "phong"] {
         assert_eq!(about(&notes_of(id)), 0, "{id}");
     }
+    let opaque = |id: &str| -> Vec<_> {
+        notes_of(id)
+            .into_iter()
+            .filter(|note| note.contains("opaque on the page, without knobs for"))
+            .collect()
+    };
+    let left_out = opaque("openpbr");
+    assert_eq!(left_out.len(), 1, "{left_out:?}");
+    let model = registry.model("openpbr").expect("built in");
+    let group = model.groups.iter().find(|group| group.name == "Transmission").expect("a group");
+    for p in model.parameters.iter().filter(|p| group.parameters.contains(&p.name)) {
+        assert!(left_out[0].contains(p.label), "{}: {left_out:?}", p.name);
+    }
+    assert!(opaque("phong").is_empty());
 }
 
 #[test]
