@@ -523,6 +523,20 @@ fn files_that_are_no_lessons_are_refused_in_words() {
 }
 
 #[test]
+fn scenes_of_many_parts_may_change_in_few_steps_only() {
+    let object = r#"{ "type": "sphere", "position": [5, 5, 5] }"#;
+    let step = |change: &str| format!("## S\n\nt\n\n```scene\n{change}\n```\n\n");
+    let first = step(&format!("objects = [{}]", vec![object; 9_000].join(",")));
+    let change = step("display.exposure = 1");
+    let found = problems(&with(&(first.clone() + &change.repeat(40))));
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].contains("objects and lights together; at most 250000 are allowed"), "{found:?}");
+    // The 28th step, of eight lines each.
+    assert!(found[0].starts_with(&format!("{}:1: ", 6 + 8 * 27)), "{found:?}");
+    assert!(read(&with(&(first + &change.repeat(3)))).is_ok());
+}
+
+#[test]
 fn the_scene_of_a_step_takes_values_of_all_kinds() {
     let text = with(
         "## S\n\n```scene\nopen: shapes_and_lights.json\nlights[0].enabled = false\nvariants[0] = {\n  \"name\": \"B\",\n  \"exposure\": 1\n}\ndisplay.exposure = -1\n```\n\n```view\nactive: B\n```\n",

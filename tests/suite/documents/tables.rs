@@ -588,7 +588,7 @@ fn limits() -> String {
 fn lesson_limits() -> String {
     use lesson::limits::{
         DEEPEST_CONDITION, LONGEST_CONDITION, LONGEST_STEP, LONGEST_TITLE, MAX_COMPARISONS, MAX_FILE_BYTES,
-        MAX_LINES, MAX_PROBLEMS, MAX_STEPS,
+        MAX_LINES, MAX_PARTS, MAX_PROBLEMS, MAX_STEPS,
     };
     let rows = [
         ("the file", format!("{} MiB", MAX_FILE_BYTES >> 20)),
@@ -599,6 +599,7 @@ fn lesson_limits() -> String {
         ("brackets within brackets of an equation", mathematics::MAX_DEPTH.to_string()),
         ("values that a `scene` block sets, lines of `view` and `point`", MAX_LINES.to_string()),
         ("steps of a path in a `scene` block, lists within lists of a value", load::MAX_DEPTH.to_string()),
+        ("objects and lights in the scenes of all steps that change theirs, together", MAX_PARTS.to_string()),
         ("a condition", format!("{LONGEST_CONDITION} characters, {MAX_COMPARISONS} comparisons")),
         ("brackets and negations within each other in a condition", DEEPEST_CONDITION.to_string()),
         ("problems that the check prints", MAX_PROBLEMS.to_string()),
