@@ -484,6 +484,23 @@ fn all_mistakes_are_said_at_once_and_with_their_lines() {
 }
 
 #[test]
+fn mistakes_in_long_lines_have_their_column() {
+    let equation =
+        |line: &str| read(&with(&format!("## S\n\nt\n\n```equation\n{line}\n```\n"))).expect_err("long");
+    let found = equation(&"x + ".repeat(600));
+    assert!(found[0].message.contains("more than 2000 characters"), "{found:#?}");
+    let shown = found[0].annotated("l.md");
+    assert!(shown.contains("l.md:11:2001") && shown.contains('^'), "{shown}");
+    let far = Problem {
+        place: Some(crate::text::place::Place { line: 3, column: 90_000 }),
+        source: "x".repeat(4000),
+        ..found[0].clone()
+    };
+    let shown = far.annotated("l.md");
+    assert!(shown.contains("l.md:3:90000") && !shown.contains('^') && shown.contains("error: "), "{shown}");
+}
+
+#[test]
 fn files_that_are_no_lessons_are_refused_in_words() {
     let folder = tempfile::tempdir().expect("writable");
     let at = |name: &str| folder.path().join(name);
