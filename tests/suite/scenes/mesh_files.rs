@@ -216,7 +216,7 @@ fn both_renderers_show_the_file_with_every_shading_model_and_follow_it() {
 fn files_that_cannot_be_used_are_told_with_place_and_mistake() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = folder.path().join("model.obj").display().to_string();
-    let about = "objects[0].path is \"model.obj\", but the model file must be the name of a glTF binary, OBJ or PLY file: ";
+    let about = "objects[0].path is \"model.obj\", but the model file must be the name of a glTF binary, OBJ or PLY file that can be used: ";
     for (content, expected) in [
         ("", ": the file is empty"),
         (
@@ -250,7 +250,7 @@ fn files_that_cannot_be_used_are_told_with_place_and_mistake() {
     for (name, expected) in [
         ("missing.obj", "missing.obj: there is no such file"),
         ("folder.obj", "folder.obj: it is a folder, but it must be a file"),
-        ("huge.obj", "huge.obj: it is larger than 32 MiB"),
+        ("huge.obj", "huge.obj: it is larger than 32 MiB: it has 34603008 bytes"),
         ("nothing.glb", "nothing.glb: the file is empty"),
         ("", "the name is empty"),
         ("a\0b", "a\u{fffd}b"),
