@@ -20,6 +20,7 @@ use crate::{
     shader::{
         check::ShaderProblem,
         compose::{Sources, imports_of},
+        limits,
     },
     watch::Print,
 };
@@ -131,6 +132,16 @@ fn is_empty(text: &str) -> bool {
 fn empty(path: &Path, text: &str) -> ShaderProblem {
     let message = "the file is empty; a model begins with a comment /* lcm … */ and defines fn response";
     problem(path, text, (0, message.to_owned()))
+}
+
+/// The problem with a file that declares nothing: neither a model nor anything that models could share. Notes in comments
+/// are none.
+fn useless(path: &Path, text: &str) -> Option<ShaderProblem> {
+    const DECLARE: [&str; 7] = ["fn", "const", "struct", "alias", "var", "define", "import"];
+    let declares = text.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| DECLARE.contains(&word));
+    let message = "this file is no model: it neither begins with a comment /* lcm … */ nor defines fn response; it has no \
+                   functions that models could share either";
+    (!declares && !limits::is_empty(text)).then(|| problem(path, text, (0, message.to_owned())))
 }
 
 /// The file of a problem that was found in a model's file: that one, or one that it shares with others, beside it.
@@ -254,6 +265,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
         registry.note_seen(&path, print);
         let wrong = match found {
             Found::Shared(text) => {
+                problems.extend(useless(&path, &text).map(|problem| (path.clone(), problem)));
                 if let Some(id) = id_of(&path).filter(|id| registry.custom_file(id) == Some(&path)) {
                     registry.remove_model(id);
                 }

@@ -3,7 +3,7 @@
 
 use super::{
     Block, Situation, Task, WindowFacts, blocks, condition::Knowledge, controls, draft::Draft,
-    problem::Problems,
+    limits::MAX_PARTS, problem::Problems,
 };
 use crate::{registry::Registry, scene::Scene, scene::variant::LETTERS, text::plural};
 
@@ -12,6 +12,7 @@ pub(super) fn steps(start: &Scene, drafts: &[Draft], registry: &Registry, proble
     let mut scene = start.clone();
     let mut window = WindowFacts::default();
     let mut known = Knowledge::at_the_beginning();
+    let mut parts = 0;
     for draft in drafts {
         // Without the intended scene, everything after it would seem wrong.
         if draft.is_lost {
@@ -21,6 +22,14 @@ pub(super) fn steps(start: &Scene, drafts: &[Draft], registry: &Registry, proble
             match change.applied(&scene, registry) {
                 Ok(changed) => scene = changed,
                 Err(found) => return found.into_iter().for_each(|(at, what)| problems.at(at, what)),
+            }
+            parts += scene.objects.len() + scene.lights.len();
+            if parts > MAX_PARTS {
+                let what = format!(
+                    "the scenes of the steps up to here have {parts} objects and lights together; at most {MAX_PARTS} are \
+                     allowed: use smaller scenes, or change them in fewer steps"
+                );
+                return problems.at(draft.at, what);
             }
             if change.opens() {
                 known.scene_opened();

@@ -21,5 +21,8 @@ pub const MAX_COMPARISONS: usize = 16;
 pub const DEEPEST_CONDITION: usize = 24;
 /// Maximum number of lines in a `view` or `point` block, and of values set by a `scene` block.
 pub const MAX_LINES: usize = 100;
+/// Maximum number of objects and lights in the scenes of all steps that change theirs, together: each of these scenes is
+/// checked as a whole.
+pub const MAX_PARTS: usize = 250_000;
 /// Maximum number of problems reported; the rest of the lesson is not read.
 pub const MAX_PROBLEMS: usize = crate::scene::error::MOST_LISTED;

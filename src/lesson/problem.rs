@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
 
 use super::{limits::MAX_PROBLEMS, words::Piece};
@@ -23,7 +23,7 @@ pub struct Problem {
     pub place: Option<Place>,
     /// The mistake and the remedy.
     pub message: String,
-    /// The line at that position.
+    /// The line at that position, as far as it is shown.
     #[serde(skip)]
     pub source: String,
 }
@@ -44,7 +44,11 @@ impl Problem {
         let Some(place) = self.place else {
             return format!("error: {file}: {}", printable(&self.message));
         };
-        let source = fit(&self.source);
+        let (source, title) = (fit(&self.source), Level::ERROR.primary_title(&message));
+        if place.column > source.chars().count() + 1 {
+            let origin = Origin::path(&*file).line(place.line).char_column(place.column);
+            return Renderer::plain().render(&[title.element(origin)]);
+        }
         let mut characters = source.char_indices().skip(place.column.saturating_sub(1));
         let end = source.len();
         let start = characters.next().map_or(end, |(at, _)| at);
@@ -53,7 +57,7 @@ impl Problem {
             .line_start(place.line)
             .path(&*file)
             .annotation(AnnotationKind::Primary.span(start..next));
-        Renderer::plain().render(&[Level::ERROR.primary_title(&message).element(snippet)])
+        Renderer::plain().render(&[title.element(snippet)])
     }
 }
 
@@ -134,8 +138,8 @@ impl<'a> Problems<'a> {
             let at = at.min(self.text.len());
             let start = self.text[..at].rfind('\n').map_or(0, |i| i + 1);
             let line = self.text[start..].lines().next().unwrap_or_default();
-            // A line may be as long as the file.
-            line.chars().take(400).collect()
+            // A line may be as long as the file; mistakes beyond this have no line to show.
+            line.chars().take(4000).collect()
         };
         self.found
             .into_iter()

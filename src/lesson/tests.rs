@@ -484,6 +484,23 @@ fn all_mistakes_are_said_at_once_and_with_their_lines() {
 }
 
 #[test]
+fn mistakes_in_long_lines_have_their_column() {
+    let equation =
+        |line: &str| read(&with(&format!("## S\n\nt\n\n```equation\n{line}\n```\n"))).expect_err("long");
+    let found = equation(&"x + ".repeat(600));
+    assert!(found[0].message.contains("more than 2000 characters"), "{found:#?}");
+    let shown = found[0].annotated("l.md");
+    assert!(shown.contains("l.md:11:2001") && shown.contains('^'), "{shown}");
+    let far = Problem {
+        place: Some(crate::text::place::Place { line: 3, column: 90_000 }),
+        source: "x".repeat(4000),
+        ..found[0].clone()
+    };
+    let shown = far.annotated("l.md");
+    assert!(shown.contains("l.md:3:90000") && !shown.contains('^') && shown.contains("error: "), "{shown}");
+}
+
+#[test]
 fn files_that_are_no_lessons_are_refused_in_words() {
     let folder = tempfile::tempdir().expect("writable");
     let at = |name: &str| folder.path().join(name);
@@ -520,6 +537,20 @@ fn files_that_are_no_lessons_are_refused_in_words() {
     assert_eq!(Some(lesson.id.as_str()), folder.path().file_name().and_then(|name| name.to_str()));
     fs::write(at("default.json"), "{").expect("writable");
     assert!(said(folder.path()).starts_with("4:8: "), "{}", said(folder.path()));
+}
+
+#[test]
+fn scenes_of_many_parts_may_change_in_few_steps_only() {
+    let object = r#"{ "type": "sphere", "position": [5, 5, 5] }"#;
+    let step = |change: &str| format!("## S\n\nt\n\n```scene\n{change}\n```\n\n");
+    let first = step(&format!("objects = [{}]", vec![object; 9_000].join(",")));
+    let change = step("display.exposure = 1");
+    let found = problems(&with(&(first.clone() + &change.repeat(40))));
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].contains("objects and lights together; at most 250000 are allowed"), "{found:?}");
+    // The 28th step, of eight lines each.
+    assert!(found[0].starts_with(&format!("{}:1: ", 6 + 8 * 27)), "{found:?}");
+    assert!(read(&with(&(first + &change.repeat(3)))).is_ok());
 }
 
 #[test]

@@ -31,10 +31,9 @@ parameters! {
 }
 
 impl Spot {
-    /// The profile of the cone towards a point, and the cosine between the axis and the ray to it.
-    fn profile(&self, light: &LightRecord, l: Vec3) -> (f32, f32) {
-        let cos_angle = light.direction.dot(-l);
-        (cone(cos_angle, self.cone_angle, self.penumbra), cos_angle)
+    /// The profile of the cone towards a point; `l` is the direction from there to the light.
+    fn profile(&self, light: &LightRecord, l: Vec3) -> f32 {
+        cone(light.direction, -l, self.cone_angle, self.penumbra)
     }
 }
 
@@ -51,20 +50,26 @@ impl LightType for Spot {
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         let to_light = light.position - p;
         let l = to_light.normalize_or_zero();
-        let (profile, _) = self.profile(light, l);
+        let profile = self.profile(light, l);
         Incident::From { l, intensity: Vec3::splat(light.intensity * profile * inverse_square(to_light)) }
     }
 
     fn factors(&self, light: &LightRecord, p: Vec3) -> Vec<Factor> {
         let to_light = light.position - p;
-        let (profile, cos_angle) = self.profile(light, to_light.normalize_or_zero());
+        let l = to_light.normalize_or_zero();
+        // By the chord, since cosines near 1 have too few bits.
+        let angle = 2.0 * (0.5 * (l + light.direction).length()).min(1.0).asin();
         vec![
             Factor::intensity(light, Self::DECLARATION.unit),
-            Factor::new("cone(θ, θ_c, s)", "1 inside the cone, 0 outside, smooth in its soft edge", profile)
-                .given("θ", cos_angle.clamp(-1.0, 1.0).acos().to_degrees(), "°")
-                .given("θ_c", self.cone_angle, "°")
-                .given("s", self.penumbra, "")
-                .equation("x^2 (3 − 2 x), x = clamp((cos θ − cos θ_c)/(cos((1 − s) θ_c) − cos θ_c), 0, 1)"),
+            Factor::new(
+                "cone(θ, θ_c, s)",
+                "1 inside the cone, 0 outside, smooth in its soft edge",
+                self.profile(light, l),
+            )
+            .given("θ", angle.to_degrees(), "°")
+            .given("θ_c", self.cone_angle, "°")
+            .given("s", self.penumbra, "")
+            .equation("x^2 (3 − 2 x), x = clamp((cos θ − cos θ_c)/(cos((1 − s) θ_c) − cos θ_c), 0, 1)"),
             Factor::inverse_square(inverse_square(to_light), to_light.length()),
         ]
     }

@@ -17,18 +17,20 @@ pub fn inverse_square(to_light: Vec3) -> f32 {
 
 /// The profile of a spotlight: 1 inside, 0 outside, and smooth in between.
 ///
-/// `cos_angle` is the cosine between the axis and the ray, `cone_angle` the half angle of the cone in
+/// `axis` and `ray` are unit vectors away from the light, `cone_angle` is the half angle of the cone in
 /// degrees (0 < a ≤ 90) and `penumbra` (0–1) the fraction of the half angle over which the light
 /// fades; 0 is a hard edge. The fade is Hermite's cubic `t²(3 − 2t)` of the **angle's cosine**, the
-/// convention of OpenGL and glTF spots.
+/// convention of OpenGL and glTF spots. Cosines near 1 have too few bits for narrow cones, so it is calculated from
+/// `1 − cos θ`: of the ray this is half the square of the chord, of an angle `2 sin²(θ/2)`.
 #[must_use]
-pub fn cone(cos_angle: f32, cone_angle: f32, penumbra: f32) -> f32 {
-    let cos_outer = cone_angle.to_radians().cos();
-    let cos_inner = (cone_angle * (1.0 - penumbra)).to_radians().cos();
-    if cos_inner <= cos_outer {
-        return if cos_angle >= cos_outer { 1.0 } else { 0.0 };
+pub fn cone(axis: Vec3, ray: Vec3, cone_angle: f32, penumbra: f32) -> f32 {
+    let rise = 0.5 * (ray - axis).length_squared();
+    let of_angle = |degrees: f32| 2.0 * (0.5 * degrees.to_radians()).sin().powi(2);
+    let (outer, inner) = (of_angle(cone_angle), of_angle(cone_angle * (1.0 - penumbra)));
+    if inner >= outer {
+        return if rise <= outer { 1.0 } else { 0.0 };
     }
-    let t = ((cos_angle - cos_outer) / (cos_inner - cos_outer)).clamp(0.0, 1.0);
+    let t = ((outer - rise) / (outer - inner)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
@@ -48,10 +50,6 @@ pub fn cone_solid_angle(cone_angle: f32, penumbra: f32) -> f64 {
     let sin_squared = |degrees: f64| (0.5 * degrees.to_radians()).sin().powi(2);
     let outer = sin_squared(f64::from(cone_angle));
     let inner = sin_squared(f64::from(cone_angle) * (1.0 - f64::from(penumbra)));
-    // As in `cone`, where the edge is too narrow to be soft.
-    if 2.0 * (outer - inner) < 1e-6 {
-        return SPHERE * outer;
-    }
     2.0 * PI * (inner + outer)
 }
 
@@ -68,16 +66,39 @@ pub struct Arriving {
 mod tests {
     use super::*;
 
+    /// A ray with this `1 − cos θ` to the z-axis.
+    fn by_rise(rise: f64) -> Vec3 {
+        Vec3::new((rise * (2.0 - rise)).sqrt() as f32, 0.0, (1.0 - rise) as f32)
+    }
+
+    fn at(degrees: f64, cone_angle: f32, penumbra: f32) -> f32 {
+        cone(Vec3::Z, by_rise(2.0 * (0.5 * degrees.to_radians()).sin().powi(2)), cone_angle, penumbra)
+    }
+
+    #[test]
+    fn narrow_cones_fade_as_evenly_as_wide_ones() {
+        for cone_angle in [1e-3, 0.02, 0.1, 0.5, 5.0] {
+            for part in [0.905, 0.95, 0.99] {
+                let degrees = f64::from(cone_angle as f32) * part;
+                let rise = |degrees: f64| (0.5 * degrees.to_radians()).sin().powi(2);
+                let [outer, inner] = [cone_angle, 0.9 * cone_angle].map(rise);
+                let t = ((outer - rise(degrees)) / (outer - inner)).clamp(0.0, 1.0);
+                let error = f64::from(at(degrees, cone_angle as f32, 0.1)) - t * t * (3.0 - 2.0 * t);
+                assert!(error.abs() < 1e-4, "{cone_angle}° {part}: {error}");
+            }
+        }
+    }
+
     #[test]
     fn the_flux_of_a_cone_is_the_integral_of_its_profile() {
-        for cone_angle in [1.0, 15.0, 30.0, 60.0, 90.0] {
+        for cone_angle in [0.01, 1.0, 15.0, 30.0, 60.0, 90.0] {
             for penumbra in [0.0, 0.1, 0.5, 1.0] {
                 // Midpoint rule over the cosine, from the edge to the axis.
                 let n = 200_000;
                 let depth = 2.0 * (0.5 * f64::from(cone_angle).to_radians()).sin().powi(2);
                 let sum: f64 = (0..n)
-                    .map(|i| 1.0 - depth * (f64::from(i) + 0.5) / f64::from(n))
-                    .map(|c| f64::from(cone(c as f32, cone_angle, penumbra)))
+                    .map(|i| depth * (f64::from(i) + 0.5) / f64::from(n))
+                    .map(|rise| f64::from(cone(Vec3::Z, by_rise(rise), cone_angle, penumbra)))
                     .sum();
                 let integral = 2.0 * PI * depth * sum / f64::from(n);
                 let error = |solid_angle: f64| (solid_angle / integral - 1.0).abs();
@@ -116,7 +137,7 @@ mod tests {
 
     #[test]
     fn cones_are_full_inside_empty_outside_and_fade_between() {
-        let at = |degrees: f32| cone(degrees.to_radians().cos(), 30.0, 0.5);
+        let at = |degrees| at(degrees, 30.0, 0.5);
         assert_eq!(at(0.0), 1.0);
         assert_eq!(at(14.9), 1.0);
         assert_eq!(at(30.1), 0.0);
@@ -125,7 +146,6 @@ mod tests {
 
     #[test]
     fn a_penumbra_of_zero_is_a_hard_edge() {
-        assert_eq!(cone(29.9f32.to_radians().cos(), 30.0, 0.0), 1.0);
-        assert_eq!(cone(30.1f32.to_radians().cos(), 30.0, 0.0), 0.0);
+        assert_eq!([at(29.9, 30.0, 0.0), at(30.1, 30.0, 0.0)], [1.0, 0.0]);
     }
 }

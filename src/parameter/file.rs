@@ -448,9 +448,16 @@ impl Content {
             Err(Shipped::Numbers(calculate)) => Ok(calculate()),
             Ok(path) => {
                 let bytes = self.place(path).and_then(|place| {
-                    key = self.identity_at(&place).map(|(key, _)| key);
-                    let bytes =
-                        files::read(&place, self.format.max_bytes).map_err(|error| error.to_string())?;
+                    let length;
+                    (key, length) = self.identity_at(&place).unzip();
+                    let bytes = files::read(&place, self.format.max_bytes).map_err(|error| {
+                        match (&error, length) {
+                            (files::FileError::TooLarge(_), Some(length)) => {
+                                format!("{error}: it has {length} bytes")
+                            }
+                            _ => error.to_string(),
+                        }
+                    })?;
                     if bytes.is_empty() { Err(files::EMPTY.to_owned()) } else { Ok(bytes) }
                 });
                 bytes.map_err(|error| format!("{}: {error}", path.shown())).and_then(|bytes| {

@@ -1,10 +1,11 @@
 //! The meshes of a scene, each built once while it is needed.
 
 use std::{
-    collections::HashMap,
+    collections::{HashMap, HashSet},
     sync::{Arc, OnceLock},
 };
 
+use bevy_platform::hash::RandomState;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -35,6 +36,8 @@ pub(crate) struct Prepared {
     tangents: OnceLock<[Vec<Vec3>; 2]>,
     /// The triangles of a closed mesh, for rays inside; only solid bodies need them.
     body: OnceLock<Result<Hierarchy, NotSolid>>,
+    /// Triangles that an earlier one with the same corners hides, by their place among all.
+    repeated: Vec<usize>,
     /// Largest distance of a vertex from the origin.
     pub(super) radius: f32,
 }
@@ -47,9 +50,17 @@ impl Prepared {
             vertex_normals: mesh.vertex_normals(),
             tangents: OnceLock::new(),
             body: OnceLock::new(),
+            repeated: repeated(&mesh),
             radius: mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max),
             mesh,
         }
+    }
+
+    /// The triangles that can be seen: a file may have thousands in one place, each of which would be drawn.
+    pub(super) fn triangles(&self) -> impl Iterator<Item = (usize, [u32; 3])> {
+        let mut repeated = self.repeated.iter().copied().peekable();
+        let all = self.mesh.triangles().enumerate();
+        all.filter(move |(i, _)| repeated.next_if_eq(i).is_none()).map(|(_, triangle)| triangle)
     }
 
     /// The triangles, or the reason why the mesh is not a solid.
@@ -64,6 +75,13 @@ impl Prepared {
     pub(super) fn tangents(&self) -> &[Vec<Vec3>; 2] {
         self.tangents.get_or_init(|| [self.mesh.polygon_tangents(), self.mesh.vertex_tangents()])
     }
+}
+
+/// The triangles with the corners of an earlier one, in the same order.
+fn repeated(mesh: &PolygonMesh) -> Vec<usize> {
+    let mut known = HashSet::with_capacity_and_hasher(mesh.polygons.len(), RandomState::default());
+    let repeated = mesh.triangles().enumerate().filter(|(_, (_, corners))| !known.insert(*corners));
+    repeated.map(|(i, _)| i).collect()
 }
 
 /// Meshes kept from one picture to the next.
@@ -149,7 +167,24 @@ impl<'a> Meshes<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameter::Value;
+    use crate::{parameter::Value, shape::mesh::Polygon};
+
+    #[test]
+    fn of_triangles_in_one_place_the_first_is_drawn() {
+        let registry = Registry::builtin();
+        let shape = registry.shape("sphere").expect("built in");
+        let mesh = shape.mesh(&Default::default(), 8);
+        let whole: Vec<_> = mesh.triangles().collect();
+        assert_eq!(Prepared::new(mesh.clone()).triangles().collect::<Vec<_>>(), whole);
+        let mut twice = mesh.clone();
+        twice.polygons.extend(mesh.polygons.clone());
+        assert_eq!(Prepared::new(twice).triangles().collect::<Vec<_>>(), whole);
+        // From behind, another side is seen.
+        let mut turned = mesh.clone();
+        let (_, [a, b, c]) = whole[0];
+        turned.polygons.extend([Polygon::triangle(c, b, a), Polygon::triangle(c, b, a)]);
+        assert_eq!(Prepared::new(turned).triangles().count(), whole.len() + 1);
+    }
 
     #[test]
     fn each_mesh_is_made_once_and_few_are_held() {

@@ -125,7 +125,8 @@ impl<'a> Draw<'a> {
         let positions: Vec<Vec3> = mesh.positions.iter().map(|&p| room(p)).collect();
         let placed: Vec<Placed> =
             positions.iter().map(|p| Placed::new(*clip_from_room * p.extend(1.0), screen)).collect();
-        let visible = mesh
+        let visible = self
+            .shape
             .triangles()
             .filter(|(_, t)| Placed::may_be_seen(t.map(|c| &placed[c as usize]), screen))
             .map(|(polygon, t)| (polygon as u32, t))

@@ -42,7 +42,7 @@ pub(super) enum Kind {
 }
 
 /// Maximum length of a name, in bytes.
-const LONGEST_WORD: usize = 256;
+pub const LONGEST_WORD: usize = 256;
 
 /// A problem at a byte.
 pub(super) type Finding = (usize, String);

@@ -27,6 +27,7 @@ use crate::{
     scene::{Scene, variant::LETTERS},
     shading::ShadingEntry,
     shape::{MeshKey, PolygonMesh},
+    text::listed,
 };
 
 /// The scene, and its meshes.
@@ -176,11 +177,7 @@ fn view(
         shared.scripts.extend(inside.map(|script| (("INTERIORS", of_model.model.declaration.id), script)));
         let fixed = fixed(of_model, registry);
         shared.note(fixed.map(|why| format!("{}: {why}.", of_model.model.declaration.name)));
-        if of_model.passage != Passage::NONE && !deciding(of_model, scene).is_empty() {
-            let name = of_model.model.declaration.name;
-            let walls = if of_model.passage.solid { "bodies stay solid" } else { "walls stay thin" };
-            shared.note([format!("{name}: its {walls} on the page, as anything else takes another shader.")]);
-        }
+        shared.note(without_knobs_note(of_model, scene));
     }
 
     step(0.8, "packing its meshes")?;
@@ -409,6 +406,26 @@ fn deciding(of_model: &Program, scene: &Scene) -> Vec<&'static str> {
         names.extend(others);
     }
     names
+}
+
+/// A sentence about the knobs that `deciding` takes from the page, if any.
+fn without_knobs_note(of_model: &Program, scene: &Scene) -> Option<String> {
+    let entry = of_model.model;
+    let names = deciding(of_model, scene);
+    let labels: Vec<_> =
+        entry.parameters.iter().filter(|p| names.contains(&p.name)).map(|p| p.label).collect();
+    let name = entry.declaration.name;
+    match labels.as_slice() {
+        [] => None,
+        labels if of_model.passage == Passage::NONE => Some(format!(
+            "{name}: opaque on the page, without knobs for {}, as light that passes takes another shader.",
+            listed(labels, "and"),
+        )),
+        _ => {
+            let walls = if of_model.passage.solid { "bodies stay solid" } else { "walls stay thin" };
+            Some(format!("{name}: its {walls} on the page, as anything else takes another shader."))
+        }
+    }
 }
 
 /// Parameters, those with these names without a knob.

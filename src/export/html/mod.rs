@@ -3,10 +3,11 @@
 //! The page draws with WebGPU and the scene's own WGSL, or with WebGL 2 and the WGSL translated to GLSL. The
 //! texts of the page are `page.html`, `page.css` and `js/`; this module inserts the scene.
 
-use std::io::Write as _;
+use std::{cmp::Reverse, io::Write as _};
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use flate2::{Compression, write::ZlibEncoder};
+use serde_json::Value as Json;
 
 use self::equation::escaped;
 use super::{Export, ExportError, Form, Makes, Progress, Request};
@@ -85,10 +86,12 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
         ],
     );
     if page.len() > LIMIT {
+        let names = scene.len().saturating_sub(packed(nameless(data.scene).to_string().as_bytes())?.len());
         let words = 3 * escaped(name).len() + escaped(description).len();
-        let values = scene.len() + explained.data.len();
+        let values = scene.len() - names + explained.data.len();
         let several = !request.scene.variants.is_empty();
-        return Err(ExportError::refused(too_large(page.len(), [values, meshes.len(), words], several)));
+        let sizes = [meshes.len(), values, words, names];
+        return Err(ExportError::refused(too_large(page.len(), sizes, several)));
     }
     Ok(Export { notes: data.notes, ..Export::file(page) })
 }
@@ -98,20 +101,43 @@ fn uncommented(script: &str) -> String {
     script.split_inclusive('\n').filter(|line| !line.trim_start().starts_with("//")).collect()
 }
 
-/// The sizes of the page, of its shaders and values, of its meshes, and of the scene's name and description.
-fn too_large(page: usize, [scene, meshes, words]: [usize; 3], several_views: bool) -> String {
-    let kb = |bytes: usize| bytes.div_ceil(1000);
-    let remedy = if words > scene.max(meshes) {
-        "a shorter name or description makes it smaller"
-    } else if several_views {
+/// The scene without the names of its objects and views, which may be of any length.
+fn nameless(mut scene: Json) -> Json {
+    for view in scene["views"].as_array_mut().into_iter().flatten() {
+        view["name"] = Json::Null;
+        for object in view["objects"].as_array_mut().into_iter().flatten() {
+            object["name"] = Json::Null;
+        }
+    }
+    scene
+}
+
+/// The size of a page, those of its meshes, of its shaders and values, of the scene's name and description, and of the
+/// other names, the largest first, and what makes that one smaller.
+fn too_large(page: usize, [meshes, values, words, names]: [usize; 4], several_views: bool) -> String {
+    let drawn = if several_views {
         "one view alone (--view A), or lower tessellations, make it smaller"
     } else {
         "lower tessellations, or fewer different reflection models, make it smaller"
     };
-    let [page, most, meshes, scene, words] = [page, LIMIT, meshes, scene, words].map(kb);
-    let all = format!("the page would have {page} kB, and {most} kB is the limit: {meshes} kB are meshes");
-    let named = format!("{words} kB the name and the description of the scene");
-    format!("{all}, {scene} kB shaders and values, {named}; {remedy}")
+    let mut parts = [
+        (meshes, "meshes", drawn),
+        (values, "shaders and values", drawn),
+        (
+            words,
+            "the name and the description of the scene",
+            "a shorter name or description makes it smaller",
+        ),
+        (names, "the names of objects and views", "shorter names make it smaller"),
+    ];
+    parts.sort_by_key(|part| Reverse(part.0));
+    let kb = |bytes: usize| bytes.div_ceil(1000);
+    let [(largest, what, remedy), others @ ..] = parts;
+    let others = others.map(|(bytes, what, _)| format!("{} kB {what}", kb(bytes))).join(", ");
+    let (page, most, largest) = (kb(page), kb(LIMIT), kb(largest));
+    format!(
+        "the page would have {page} kB, and {most} kB is the limit: {largest} kB are {what}, {others}; {remedy}"
+    )
 }
 
 /// Bytes as text, compressed in zlib format.
@@ -148,11 +174,14 @@ mod tests {
 
     #[test]
     fn a_page_that_is_too_large_is_refused_with_its_sizes() {
-        let said = too_large(512_345, [90_000, 380_000, 100], false);
+        let said = too_large(512_345, [380_000, 90_000, 100, 50], false);
         assert!(said.contains("513 kB") && said.contains("300 kB is the limit"), "{said}");
         assert!(said.contains("380 kB are meshes") && said.contains("90 kB shaders"), "{said}");
         assert!(said.contains("lower tessellations"), "{said}");
-        let said = too_large(512_345, [90_000, 10_000, 400_000], false);
+        let said = too_large(512_345, [10_000, 90_000, 400_000, 50], false);
         assert!(said.contains("a shorter name or description") && !said.contains("lower"), "{said}");
+        let said = too_large(512_345, [10_000, 90_000, 100, 400_000], true);
+        assert!(said.contains(": 400 kB are the names of objects and views, 90 kB shaders"), "{said}");
+        assert!(said.ends_with("; shorter names make it smaller"), "{said}");
     }
 }

@@ -254,8 +254,8 @@ fn profile(angle: f32, penumbra: f32) -> Vec<u8> {
     let at = |i: usize| ((i as f32 + 0.5) / side as f32 * 2.0 - 1.0) * edge;
     for row in 0..side {
         for column in 0..side {
-            let cosine = 1.0 / (1.0 + at(row).powi(2) + at(column).powi(2)).sqrt();
-            bytes.extend(cone(cosine, angle, penumbra).to_le_bytes());
+            let ray = Vec3::new(at(column), at(row), 1.0).normalize();
+            bytes.extend(cone(Vec3::Z, ray, angle, penumbra).to_le_bytes());
         }
     }
     bytes

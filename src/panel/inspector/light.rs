@@ -165,7 +165,8 @@ fn light_colour(ui: &mut Ui, part: Part, light: &Light) -> Option<Edit> {
         let chosen = usize::from(light.colour_temperature.is_some());
         let tip = |ui: &mut Ui, i: usize| {
             ui.label(if i == 0 {
-                "Red, green and blue, as on a display. Like a filter, a colour takes away from white light."
+                "Red, green and blue, as on a display. Like a filter, a colour takes away from white light: a light with a \
+                 temperature keeps the colour that it shows and becomes darker."
             } else {
                 "The temperature of a black body that glows in this colour. It is as bright as white light."
             });

@@ -88,7 +88,7 @@ impl Kind for File {
         if file.name().is_empty() {
             return ": the name is empty".to_owned();
         }
-        file.problem().map_or_else(String::new, |problem| format!(": {problem}"))
+        file.problem().map_or_else(String::new, |problem| format!(" that can be used: {problem}"))
     }
 
     fn wgsl(&self) -> &'static str {

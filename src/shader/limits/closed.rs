@@ -51,9 +51,15 @@ fn open_import(text: &str) -> Option<Finding> {
 
 /// Finds a bracket that is not closed.
 fn open_bracket(text: &str, tokens: &[Token]) -> Option<Finding> {
+    // The start and the indentation of each line, once: a line may be as long as the text.
+    let mut lines = Vec::new();
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        lines.push((start, line.len() - line.trim_start().len()));
+        start += line.len();
+    }
     let indentation = |at: usize| {
-        let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
-        (start, text[start..].find(|c: char| !c.is_whitespace()).unwrap_or_default())
+        lines[..lines.partition_point(|(start, _)| *start <= at)].last().copied().unwrap_or_default()
     };
     let mut open: Vec<Token> = Vec::new();
     // Blocks closed further to the left than they begin: probably by the bracket of the enclosing block.
@@ -110,7 +116,19 @@ fn missing(opening: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::time::{Duration, Instant};
+
     use super::*;
+
+    #[test]
+    fn a_long_line_takes_time_proportional_to_its_length() {
+        // As many tokens as are allowed.
+        let text = format!("fn f() {{ {} }}", "if a { }  ".repeat(35_000));
+        let padded = text.replacen(' ', &" ".repeat(900_000), 1);
+        let begin = Instant::now();
+        assert_eq!(unfinished(&padded), None);
+        assert!(begin.elapsed() < Duration::from_secs(2), "{:?}", begin.elapsed());
+    }
 
     /// Line, column and message of the unfinished part of a text.
     fn said(text: &str) -> Option<(usize, usize, String)> {

@@ -29,6 +29,8 @@ mod text;
 pub use closed::{is_empty, unfinished};
 pub use numbers::{LIMITS, Limits};
 
+pub use super::token::LONGEST_WORD;
+
 /// The reason for refusing a text.
 #[derive(Debug)]
 enum Refusal {

@@ -34,7 +34,7 @@ pub struct Builder {
     normals: Pool,
     polygons: Vec<Read>,
     corners: Vec<[u32; 2]>,
-    /// Number of polygons that will be drawn.
+    /// Number of polygons that will be drawn, or would be if that were allowed.
     drawn: usize,
     /// The first list of 32-bit positions that is too far from the origin for its extent: its distance and its extent.
     coarse: Option<[f32; 2]>,
@@ -77,7 +77,7 @@ impl Builder {
     /// Adds a polygon whose corners run counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// Returns an error if a corner is not finite, or if a limit is exceeded.
+    /// Returns an error if a corner is not finite, or if there are too many corners.
     pub fn polygon(&mut self, corners: &[Corner]) -> Result<(), String> {
         let nth = self.polygons.len() + 1;
         if corners.len() > MAX_CORNERS {
@@ -112,8 +112,10 @@ impl Builder {
             3 | 4 => self.drawn += 1,
             n => self.drawn += n - 2,
         }
+        // Counted to the end, for the message.
         if self.drawn > MAX_POLYGONS {
-            return Err(format!("it has more than {MAX_POLYGONS} polygons, the most allowed"));
+            self.corners.truncate(begin);
+            return Ok(());
         }
         self.polygons.push(Read { end: self.corners.len(), brushed: texture_direction(corners) });
         Ok(())
@@ -143,9 +145,15 @@ impl Builder {
     /// Polygons without area are dropped.
     ///
     /// # Errors
-    /// Returns an error if there are no polygons, or if all positions are too coarse.
+    /// Returns an error if there are no polygons or too many, or if all positions are too coarse.
     pub fn numbers(self) -> Result<Vec<f32>, String> {
-        let Self { positions, normals, polygons, corners, coarse, is_fine, .. } = self;
+        let Self { positions, normals, polygons, corners, drawn, coarse, is_fine } = self;
+        if drawn > MAX_POLYGONS {
+            return Err(format!(
+                "it has {drawn} polygons, counting the triangles of those with five corners and more; at most {MAX_POLYGONS} \
+                 are allowed"
+            ));
+        }
         if let Some([distance, extent]) = coarse.filter(|_| !is_fine) {
             return Err(format!(
                 "it has an extent of {extent} at {distance} from its origin, where its 32-bit floats are too coarse; move it \
@@ -160,23 +168,38 @@ impl Builder {
         }
         // Dropped polygons may have been the outermost; twice is enough except for models that consist of
         // them.
-        let (mut unit, mut corners) = (Vec::new(), Vec::new());
+        let (mut unit, mut room) = (Vec::new(), Vec::new());
         for _ in 0..3 {
             let (middle, extent) = bounds(&faces, &positions.all);
             let scaled = |p: &DVec3| ((*p - middle) / extent).as_vec3();
             unit = positions.all.iter().map(scaled).collect();
             let before = faces.len();
-            faces.retain(|(face, _)| doubled_area(at(face, &unit, &mut corners)) > 0.0);
+            faces.retain(|(face, _)| doubled_area(at(face, &unit, &mut room)) > 0.0);
             if faces.len() == before {
                 break;
             }
         }
         if faces.is_empty() {
-            return Err("it has no polygons with an area".to_owned());
+            let mut begin = 0;
+            let crossed = polygons.iter().any(|Read { end, .. }| {
+                let face = &corners[std::mem::replace(&mut begin, *end)..*end];
+                crosses(face, &positions.all)
+            });
+            let hint = if crossed { "; those that cross themselves, like a bow tie, have none" } else { "" };
+            return Err(format!("it has no polygons with an area{hint}"));
         }
         let normals: Vec<_> = normals.all.iter().map(|n| n.as_vec3()).collect();
         Ok(written(&faces, &unit, &normals))
     }
+}
+
+/// True if a polygon without area is no line: its parts on both sides of a crossing cancel each other.
+fn crosses(face: &[[u32; 2]], positions: &[DVec3]) -> bool {
+    let place = |corner: &[u32; 2]| positions[corner[0] as usize];
+    let [first, rest @ ..] = face else { return false };
+    let from_first: Vec<_> =
+        rest.iter().map(|corner| (place(corner) - place(first)).normalize_or_zero()).collect();
+    from_first.len() > 2 && from_first.windows(2).any(|pair| pair[0].cross(pair[1]).length() > 1e-6)
 }
 
 /// The positions of corners, stored in `room`.
@@ -362,6 +385,12 @@ mod tests {
         let mut nothing = Builder::default();
         add(&mut nothing, &[[0.0; 3], [1.0; 3], [2.0; 3]]).expect("a line");
         assert_eq!(nothing.numbers(), Err("it has no polygons with an area".to_owned()));
+        let mut bow = Builder::default();
+        add(&mut bow, &[[0.0; 3], [1.0; 3], [2.0; 3]]).expect("a line");
+        add(&mut bow, &[[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+            .expect("a bow tie");
+        let said = bow.numbers().expect_err("no area");
+        assert!(said.ends_with("; those that cross themselves, like a bow tie, have none"), "{said}");
     }
 
     #[test]
@@ -378,8 +407,13 @@ mod tests {
         let mut many = Builder { drawn: MAX_POLYGONS - 2, ..Builder::default() };
         add(&mut many, &[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]]).expect("one");
         let five = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [1.0, 3.0, 0.0], [0.0, 2.0, 0.0]];
-        let full = add(&mut many, &five).expect_err("three triangles");
-        assert_eq!(full, "it has more than 500000 polygons, the most allowed");
+        add(&mut many, &five).expect("three triangles");
+        add(&mut many, &five).expect("three more");
+        let full = many.numbers().expect_err("too many");
+        assert!(
+            full.starts_with("it has 500005 polygons, ") && full.ends_with("at most 500000 are allowed"),
+            "{full}"
+        );
     }
 
     /// Two triangles that meet at a right angle, with normals of each at both ends of the edge.

@@ -30,7 +30,10 @@ use lights_camera_models::{
         load::{self, Defaults},
         save, schema,
     },
-    shader::{compose::Sources, limits::LIMITS},
+    shader::{
+        compose::Sources,
+        limits::{LIMITS, LONGEST_WORD},
+    },
     shape::mesh_file,
     text::mathematics,
 };
@@ -559,8 +562,12 @@ fn limits() -> String {
     let kib = |bytes: u64| format!("{} KiB", bytes >> 10);
     let rows = [
         ("composed text, imports included", format!("{} MiB", l.bytes >> 20)),
+        ("words and symbols of that text", l.tokens.to_string()),
+        ("a name or a number", format!("{LONGEST_WORD} bytes")),
         ("statements", l.statements.to_string()),
         ("functions, constants, types and module variables", l.declarations.to_string()),
+        ("a chain of these, each of which uses the next", l.chain.to_string()),
+        ("words of one of these, with the constants and types in it written out", l.expansion.to_string()),
         ("brackets within brackets", l.nesting.to_string()),
         ("operators and calls on one path through an expression", l.depth.to_string()),
         ("blocks within blocks (each `else if` counts as one)", l.blocks.to_string()),
@@ -569,6 +576,9 @@ fn limits() -> String {
         ("elements of an array", l.elements.to_string()),
         ("a value", kib(l.value_bytes.into())),
         ("all variables of a function and the functions that it calls", kib(l.variable_bytes)),
+        ("all module variables; all constants", kib(l.variable_bytes)),
+        ("expressions of a function", l.expressions.to_string()),
+        ("a chain of values, each calculated from the one before", l.values.to_string()),
         ("steps of a function, with all calls inlined", l.steps.to_string()),
     ];
     table(&["limit of", "at most"], rows.into_iter().map(|(what, most)| vec![what.to_owned(), most]))
@@ -578,7 +588,7 @@ fn limits() -> String {
 fn lesson_limits() -> String {
     use lesson::limits::{
         DEEPEST_CONDITION, LONGEST_CONDITION, LONGEST_STEP, LONGEST_TITLE, MAX_COMPARISONS, MAX_FILE_BYTES,
-        MAX_LINES, MAX_PROBLEMS, MAX_STEPS,
+        MAX_LINES, MAX_PARTS, MAX_PROBLEMS, MAX_STEPS,
     };
     let rows = [
         ("the file", format!("{} MiB", MAX_FILE_BYTES >> 20)),
@@ -589,6 +599,7 @@ fn lesson_limits() -> String {
         ("brackets within brackets of an equation", mathematics::MAX_DEPTH.to_string()),
         ("values that a `scene` block sets, lines of `view` and `point`", MAX_LINES.to_string()),
         ("steps of a path in a `scene` block, lists within lists of a value", load::MAX_DEPTH.to_string()),
+        ("objects and lights in the scenes of all steps that change theirs, together", MAX_PARTS.to_string()),
         ("a condition", format!("{LONGEST_CONDITION} characters, {MAX_COMPARISONS} comparisons")),
         ("brackets and negations within each other in a condition", DEEPEST_CONDITION.to_string()),
         ("problems that the check prints", MAX_PROBLEMS.to_string()),

@@ -133,6 +133,19 @@ fn scenes_that_no_page_can_hold_are_refused_with_the_reason() {
         }
     });
     assert!(large.contains("and 300 kB is the limit") && large.contains("kB are meshes"), "{large}");
+    let named = refused(&|scene| {
+        // Letters that hardly compress.
+        let mut state = 1_u32;
+        let mut letter = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            char::from(b'a' + (state >> 24) as u8 % 26)
+        };
+        scene["objects"][0]["name"] = (0..400_000).map(|_| letter()).collect::<String>().into();
+    });
+    assert!(
+        named.contains("kB are the names of objects and views") && named.contains("shorter names"),
+        "{named}"
+    );
     let hidden = refused(&|scene| {
         for object in scene["objects"].as_array_mut().expect("objects") {
             object["visible"] = false.into();
@@ -459,6 +472,20 @@ fn knobs_that_a_page_cannot_follow_are_told_at_export_once() {
     for id in ["openpbr", "microfacet", "phong"] {
         assert_eq!(about(&notes_of(id)), 0, "{id}");
     }
+    let opaque = |id: &str| -> Vec<_> {
+        notes_of(id)
+            .into_iter()
+            .filter(|note| note.contains("opaque on the page, without knobs for"))
+            .collect()
+    };
+    let left_out = opaque("openpbr");
+    assert_eq!(left_out.len(), 1, "{left_out:?}");
+    let model = registry.model("openpbr").expect("built in");
+    let group = model.groups.iter().find(|group| group.name == "Transmission").expect("a group");
+    for p in model.parameters.iter().filter(|p| group.parameters.contains(&p.name)) {
+        assert!(left_out[0].contains(p.label), "{}: {left_out:?}", p.name);
+    }
+    assert!(opaque("phong").is_empty());
 }
 
 #[test]

@@ -334,6 +334,8 @@ fn the_list_has_all_declarations_and_tells_which_are_wrong() {
         "larger than 1 MiB",
         "nothing.wgsl:1:1",
         "the file is empty",
+        "huge.wgsl:1:1",
+        "this file is no model",
         "folder.wgsl:1:1",
         "this is a folder, not a regular file",
         #[cfg(unix)]
@@ -343,11 +345,31 @@ fn the_list_has_all_declarations_and_tells_which_are_wrong() {
     ] {
         assert!(listed.err.contains(expected), "{expected} is not in {}", listed.err);
     }
-    for unexpected in ["bad.wgsl", "huge.wgsl", "fuzz_"] {
+    for unexpected in ["bad.wgsl", "fuzz_"] {
         assert!(!listed.err.contains(unexpected), "{unexpected} is in {}", listed.err);
     }
     let schema = bench.run("schema", "");
     assert!(schema.out.contains("\"fuzz_499\"") && schema.out.contains("\"depth_499\""));
+}
+
+#[test]
+fn files_that_are_of_no_use_to_models_are_reported_and_others_are_not() {
+    let bench = Bench::new();
+    bench.put("model.wgsl", &model("depth"));
+    bench.put("shared.wgsl", "const HALF = 0.5;\nfn half() -> f32 { return HALF; }\n");
+    bench.put("notes.wgsl", "// To do.\n");
+    assert_eq!(bench.run("models", "").status, Some(0));
+    bench.put("noise.wgsl", "3f2a 99c1, \"and so on\n");
+    let listed = bench.run("models", "");
+    assert_eq!(listed.status, Some(1), "{}", listed.err);
+    assert!(
+        listed.err.contains("noise.wgsl:1:1") && listed.err.contains("this file is no model"),
+        "{}",
+        listed.err
+    );
+    for other in ["shared.wgsl", "notes.wgsl", "model.wgsl"] {
+        assert!(!listed.err.contains(other), "{other}: {}", listed.err);
+    }
 }
 
 #[test]

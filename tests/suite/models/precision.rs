@@ -2,6 +2,16 @@
 
 use std::{fs, path::Path};
 
+use glam::Vec3;
+use lights_camera_models::{
+    optics::radiometry,
+    shader::{
+        check::validate,
+        compose::{Composed, OPTICS},
+        interpret::Program,
+    },
+};
+
 use crate::helpers::support::root;
 
 /// The lines that take a driver's trigonometric function of an angle in degrees. Angles in degrees are
@@ -37,18 +47,35 @@ fn no_shader_takes_a_drivers_cosine_of_a_parameter() {
     assert_eq!(inexact("let a = 1;\nlet b = cos(radians(m.cone_angle));").len(), 1);
 }
 
-/// `cos_degrees` and `tan_degrees` as the CPU interprets them, in the precision of shaders.
-#[test]
-fn the_series_of_shaders_are_exact_to_six_digits() {
-    use lights_camera_models::shader::{
-        check::validate,
-        compose::{Composed, OPTICS},
-        interpret::Program,
-    };
+/// A function of the shaders' first file as the CPU interprets it, in the precision of shaders.
+fn shader_function(name: &str) -> Program {
     let text: String = OPTICS[..1].iter().map(|source| source.text).collect();
     let module = validate(&Composed { text, ..Composed::default() }).expect("valid");
-    let (cos, tan) =
-        ["cos_degrees", "tan_degrees"].map(|f| Program::new(&module, f).expect("it runs")).into();
+    Program::new(&module, name).expect("it runs")
+}
+
+#[test]
+fn narrow_cones_of_shaders_fade_as_those_of_the_cpu_renderer_do() {
+    let cone = shader_function("cone");
+    let axis = Vec3::new(0.3, -0.8, 0.52).normalize();
+    let across = axis.any_orthonormal_vector();
+    for cone_angle in [0.01_f32, 0.1, 0.5, 5.0, 30.0, 90.0] {
+        for step in 0..=100 {
+            let angle = (cone_angle * (0.85 + 0.002 * step as f32)).to_radians();
+            let ray = axis * angle.cos() + across * angle.sin();
+            let arguments = [axis.to_array(), ray.to_array()].concat();
+            let words: Vec<_> = arguments.iter().chain(&[cone_angle, 0.1]).map(|v| v.to_bits()).collect();
+            let mut result = [0];
+            cone.run(&words, &mut result).expect("no loops");
+            let (found, expected) = (f32::from_bits(result[0]), radiometry::cone(axis, ray, cone_angle, 0.1));
+            assert!((found - expected).abs() < 1e-4, "{cone_angle}°, step {step}: {found} and {expected}");
+        }
+    }
+}
+
+#[test]
+fn the_series_of_shaders_are_exact_to_six_digits() {
+    let (cos, tan) = ["cos_degrees", "tan_degrees"].map(shader_function).into();
     for step in 0..=9000 {
         let angle = step as f32 / 100.0;
         let expected = f64::from(angle).to_radians();

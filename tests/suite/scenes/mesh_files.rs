@@ -216,7 +216,7 @@ fn both_renderers_show_the_file_with_every_shading_model_and_follow_it() {
 fn files_that_cannot_be_used_are_told_with_place_and_mistake() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = folder.path().join("model.obj").display().to_string();
-    let about = "objects[0].path is \"model.obj\", but the model file must be the name of a glTF binary, OBJ or PLY file: ";
+    let about = "objects[0].path is \"model.obj\", but the model file must be the name of a glTF binary, OBJ or PLY file that can be used: ";
     for (content, expected) in [
         ("", ": the file is empty"),
         (
@@ -250,7 +250,7 @@ fn files_that_cannot_be_used_are_told_with_place_and_mistake() {
     for (name, expected) in [
         ("missing.obj", "missing.obj: there is no such file"),
         ("folder.obj", "folder.obj: it is a folder, but it must be a file"),
-        ("huge.obj", "huge.obj: it is larger than 32 MiB"),
+        ("huge.obj", "huge.obj: it is larger than 32 MiB: it has 34603008 bytes"),
         ("nothing.glb", "nothing.glb: the file is empty"),
         ("", "the name is empty"),
         ("a\0b", "a\u{fffd}b"),
@@ -362,7 +362,7 @@ fn hostile_files_are_refused_at_once_and_pipes_do_not_block() {
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
     let begin = Instant::now();
     for (name, content, expected) in [
-        ("many.obj", format!("{square}{}", "f 1 2 3\n".repeat(500_001)), Some("more than 500000 polygons")),
+        ("many.obj", format!("{square}{}", "f 1 2 3\n".repeat(500_001)), Some("it has 500001 polygons")),
         ("round.obj", format!("{square}f {}\n", "1 2 3 4 ".repeat(33)), Some("polygon 1 has 132 corners")),
         ("wide.obj", format!("{square}f {}\n", "9".repeat(1 << 20)), Some("a file has at most 2000000 vertices")),
         ("same.obj", format!("{square}{}f 1 2 3\n", "f 1 1 1\n".repeat(100_000)), None),
@@ -392,6 +392,24 @@ fn hostile_files_are_refused_at_once_and_pipes_do_not_block() {
         assert!(said.contains("it is a named pipe, but it must be a file"), "{said}");
     }
     assert!(begin.elapsed() < Duration::from_secs(120), "{:?}", begin.elapsed());
+}
+
+#[test]
+fn thousands_of_triangles_in_one_place_take_no_longer_than_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let drawn = |count: usize| {
+        let text = format!("v -1 -1 0\nv 1 -1 0\nv 0 1 0\n{}", "f 1 2 3\n".repeat(count));
+        fs::write(folder.path().join("flat.obj"), text).expect("written");
+        let scene = read(folder.path(), "flat.obj").expect("legal");
+        let settings = reference::Settings { width: 64, height: 48, ..Default::default() };
+        let begin = Instant::now();
+        (reference::render(&scene, &Registry::builtin(), &settings), begin.elapsed())
+    };
+    let (once, _) = drawn(1);
+    let (often, time) = drawn(400_000);
+    assert!(once.pixels.iter().any(|pixel| pixel.w > 0.0), "it is in sight");
+    assert_eq!(once, often);
+    assert!(time < Duration::from_secs(5), "{time:?}");
 }
 
 #[test]

@@ -142,7 +142,7 @@ fn files_that_cannot_be_used_are_told_with_line_and_mistake() {
         (&*ies("900 bright 3"), format!("{lamp}:7: candela value 2 of 3")),
     ] {
         let error = read(folder.path(), "lamp.ies", content).expect_err("it cannot be used");
-        let about = "lights[0].file is \"lamp.ies\", but the photometric file must be the name of an IES photometric file: ";
+        let about = "lights[0].file is \"lamp.ies\", but the photometric file must be the name of an IES photometric file that can be used: ";
         assert!(error.contains(about) && error.contains(&expected), "{error}\n{expected}");
     }
     let error = read(folder.path(), "lamb.ies", &ies("1 1 1")).expect_err("there is none");

@@ -1037,6 +1037,10 @@ fn a_light_is_coloured_by_temperature_and_back() {
     bench.type_into("colour temperature", "900");
     assert!(bench.says("between 1000 and 40000"));
     let shown = light(&bench).rgb8();
+    let rgb = bench.find("Colour by: RGB").expect("a choice").rect.center();
+    bench.hover(rgb);
+    let warned = |text: &String| text.contains("keeps the colour that it shows and becomes darker");
+    assert!(bench.texts().iter().any(warned), "{:?}", bench.texts());
     bench.click("Colour by: RGB");
     assert_eq!((light(&bench).colour_temperature, light(&bench).colour), (None, shown));
 }
