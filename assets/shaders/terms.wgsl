@@ -98,6 +98,7 @@ fn rise_degrees(angles: vec2<f32>) -> vec2<f32> {
     return s * (0.499999323 - s * (0.0416639896 - s * (0.00138559281 - s * 0.0000231944086)));
 }
 
+// Cosines of angles from 0° to 90°, with the same error.
 fn cos_degrees(angles: vec2<f32>) -> vec2<f32> {
     return 1.0 - rise_degrees(angles);
 }

@@ -274,7 +274,9 @@ impl Scene {
         match drawn {
             Ok((shown, _)) => Ok(shown),
             Err(Undrawn::Cancelled) => Err(crate::bug("cancelled without a signal")),
-            Err(error @ Undrawn::TooLarge(_)) => Err(PyMemoryError::new_err(error.to_string())),
+            Err(error @ (Undrawn::TooLarge(_) | Undrawn::NoRoom(..))) => {
+                Err(PyMemoryError::new_err(error.to_string()))
+            }
         }
     }
 }

@@ -7,9 +7,7 @@ use clap::Args;
 use super::{
     Options, Outcome, gauged,
     light_samples::{self, Sampling},
-    outputs,
-    outputs::one_picture,
-    print_json, print_text,
+    outputs, print_json, print_text,
     render::{cpu_can_draw, term},
     scenes::Source,
     sides,
@@ -90,7 +88,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let scene = source.open(workshop, options)?;
     let registry = &workshop.registry;
     if let Some(file) = &arguments.hemisphere {
-        one_picture("--hemisphere", file)?;
+        outputs::one_picture("--hemisphere", file)?;
         outputs::picture(file, arguments.scene.as_slice())?;
     }
     // Many samples of light take a while.

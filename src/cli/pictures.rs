@@ -10,7 +10,7 @@ use png::{ColorType, Decoder, DecodingError, Transformations};
 
 use crate::files::Shown as _;
 use crate::{
-    compare::Shown,
+    compare::{Shown, Undrawn},
     failure::Failure,
     files,
     linear::{self, Format, Limits, MAX_PIXELS, Pixels},
@@ -65,7 +65,10 @@ struct Light {
 
 impl Pixels for Light {
     fn check(width: usize, height: usize) -> Result<(), String> {
-        can_be_compared(width, height)
+        can_be_compared(width, height)?;
+        // A short file may claim any size.
+        let size = [width, height].map(|side| side as u32);
+        Undrawn::check_light(size, 0).map_err(|error| format!("the picture cannot be read: {error}"))
     }
 
     fn new(width: usize, height: usize, scale: DVec3) -> Self {

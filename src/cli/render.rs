@@ -626,6 +626,9 @@ fn layers_on_cpu(
     can_draw(job, part, registry)?;
     let Cell { width, height, .. } = part.cell;
     let settings = reference::Settings { width, height, samples: job.arguments.samples, terms: part.terms };
+    // Each layer has a channel for each of its colours.
+    compare::Undrawn::check_light([width, height], 12 * layers.len())
+        .map_err(|undrawn| Failure::Invalid(undrawn.to_string()))?;
     let odd = AtomicBool::new(false);
     let until = job.arguments.sampling.until();
     let (channels, end) =

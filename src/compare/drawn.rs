@@ -45,6 +45,37 @@ pub enum Undrawn {
          at most {} are possible", .0[0], .0[1], MAX_PIXELS
     )]
     TooLarge([u32; 2]),
+    /// The system does not give so much memory, MiB; without it, the process would end.
+    #[error("{}×{} pixels need {} MiB of memory, which are not free; choose a smaller size", .0[0], .0[1], .1)]
+    NoRoom([u32; 2], usize),
+}
+
+/// Bytes for each pixel of display codes, and of a picture whose light is calculated.
+const CODES: usize = 3;
+const LIGHT: usize = 40;
+/// Bytes beside the pixels, at most: parts of the picture at work, and the file.
+const BESIDE: usize = 256 << 20;
+
+impl Undrawn {
+    /// Finds out whether there is memory for a picture with its light, and more bytes for each of its pixels.
+    ///
+    /// # Errors
+    /// Returns [`NoRoom`](Self::NoRoom) if not.
+    pub fn check_light(size: [u32; 2], more: usize) -> Result<(), Self> {
+        Self::check_room(size, LIGHT + more)
+    }
+
+    fn check_room(size: [u32; 2], each: usize) -> Result<(), Self> {
+        let [width, height] = size.map(|side| side as usize);
+        let pixels = width.saturating_mul(height).saturating_mul(each);
+        let bytes = pixels.saturating_add(pixels.min(BESIDE));
+        // Memory that is not written to is not taken.
+        let mut room = Vec::<u8>::new();
+        let reserved = room.try_reserve_exact(bytes);
+        // The compiler must not leave out what is never used.
+        std::hint::black_box(&room);
+        reserved.map_err(|_| Self::NoRoom(size, bytes.div_ceil(1 << 20)))
+    }
 }
 
 impl From<Cancelled> for Undrawn {
@@ -60,7 +91,7 @@ impl View<'_> {
     /// Display codes alone take 3 bytes of memory for each pixel, light up to 40, so that there is a limit.
     ///
     /// # Errors
-    /// Returns an error if the user cancels, or if the view is too large.
+    /// Returns an error if the user cancels, if the view is too large, or if there is no memory for it.
     pub fn draw(&self, odd: &AtomicBool, progress: &Progress) -> Result<(Shown, Option<Reached>), Undrawn> {
         let Self { registry, settings, until, .. } = *self;
         let (scene, channel) = self.shown();
@@ -68,6 +99,7 @@ impl View<'_> {
         let converged = || {
             let fits = width as usize * height as usize <= MAX_PIXELS;
             let fits = fits.then_some(()).ok_or(Undrawn::TooLarge([width, height]));
+            let fits = fits.and_then(|()| Undrawn::check_room([width, height], LIGHT));
             fits.and_then(|()| Ok(render_until(&scene, registry, &settings, until, odd, progress)?))
         };
         let converges =
@@ -81,6 +113,7 @@ impl View<'_> {
             };
             let samples =
                 reached.map_or_else(LightSamples::default, |reached| LightSamples::of(reached.samples));
+            Undrawn::check_room([width, height], CODES)?;
             let rgb8 = render_channel_by(&scene, registry, &settings, &setting, samples);
             return Ok((Shown::with_codes([width, height], rgb8), reached));
         }
@@ -89,6 +122,7 @@ impl View<'_> {
             let reached = Some(reached).filter(|reached| reached.samples > 0);
             return Ok((Shown::of_light(light, &scene.display), reached));
         }
+        Undrawn::check_room([width, height], CODES)?;
         let rgb8 = render_rgb8_noting(&scene, registry, &settings, odd);
         Ok((Shown::with_codes([width, height], rgb8), None))
     }
@@ -163,6 +197,9 @@ mod tests {
         };
         let said = view.draw(&AtomicBool::default(), &Progress::NONE).expect_err("10 GiB");
         assert!(said.to_string().starts_with("16384×16384 are too many pixels"), "{said}");
+        let endless = Undrawn::check_light([u32::MAX; 2], 0).expect_err("more than there is").to_string();
+        assert!(endless.contains("MiB of memory, which are not free; choose a smaller size"), "{endless}");
+        assert_eq!(Undrawn::check_light([48, 32], 100), Ok(()));
         let cancelled = Progress { tell: &|_, _| (), cancelled: &|| true };
         let lamp = lamp(&registry);
         let view = View { scene: &lamp, settings: SMALL, ..view };

@@ -41,7 +41,7 @@ pub(super) enum Kind {
     Directive,
 }
 
-/// Maximum length of a name, in bytes.
+/// Maximum length of a name or a number, in bytes.
 pub const LONGEST_WORD: usize = 256;
 
 /// A problem at a byte.

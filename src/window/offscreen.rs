@@ -39,7 +39,7 @@ impl From<compare::Undrawn> for Undrawn {
     fn from(undrawn: compare::Undrawn) -> Self {
         match undrawn {
             compare::Undrawn::Cancelled => Self::Cancelled,
-            compare::Undrawn::TooLarge(_) => Self::of(undrawn),
+            compare::Undrawn::TooLarge(_) | compare::Undrawn::NoRoom(..) => Self::of(undrawn),
         }
     }
 }

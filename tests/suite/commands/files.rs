@@ -794,6 +794,20 @@ fn rows_without_end_take_no_memory_without_end() {
     assert!(last.starts_with("10,20,30,40,0."), "{last}");
 }
 
+#[test]
+fn a_picture_for_which_there_is_no_memory_is_refused() {
+    let folder = folder();
+    let at = folder.path();
+    let limited = |script: &str| run(&mut shell(at, &format!("ulimit -v 1000000; {script}")));
+    let ran = limited("\"$LCM\" render --renderer cpu --size 16384x16384 -o large.png");
+    refused(&ran, 1, "16384×16384 pixels need 1024 MiB of memory, which are not free; choose a smaller size");
+    assert!(!at.join("large.png").exists());
+    let ran = limited("\"$LCM\" render --renderer cpu --size 8192x8192 -o large.exr");
+    refused(&ran, 1, "8192×8192 pixels need");
+    let ran = limited("\"$LCM\" render --renderer cpu --size 64x64 -o small.png");
+    assert_eq!(ran.status, Some(0), "{}", ran.err);
+}
+
 /// Characters that a terminal acts on: colours, a bell, the beginning of the line, the other direction of writing.
 const ODD: &str = "a\u{1b}[31m\u{7}\r\u{9b}2J\u{202e}b";
 /// The characters made printable.

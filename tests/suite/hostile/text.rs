@@ -42,7 +42,7 @@ use lights_camera_models::{
 
 use rayon::prelude::*;
 
-use crate::helpers::support::root;
+use crate::helpers::support::{command_in, root};
 
 /// The stack size of a Bevy thread.
 const STACK: usize = 2 << 20;
@@ -370,6 +370,20 @@ fn readers() -> Vec<Reader> {
             read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
         },
         Reader {
+            name: "primaries of a picture of surroundings",
+            around: ["#?RADIANCE\nPRIMARIES=".into(), "\n\n-Y 1 +X 2\n12341234".into()],
+            pairs: &[],
+            phrases: &[".64 .33 .3 .6 .15 .06 .3127 .329 ", "1e999 ", "nan ", "inf ", "-1 ", "0 "],
+            read: |bytes| (panorama::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "primaries of a linear picture to compare",
+            around: ["#?RADIANCE\nPRIMARIES=".into(), "\n\n-Y 1 +X 2\n12341234".into()],
+            pairs: &[],
+            phrases: &[".64 .33 .3 .6 .15 .06 .3127 .329 ", "1e999 ", "nan ", "inf ", "-1 ", "0 "],
+            read: linear_picture,
+        },
+        Reader {
             name: "size of a picture of surroundings",
             around: ["#?RADIANCE\n\n-Y 1 ".into(), "+X 2\n12341234".into()],
             pairs: &[],
@@ -441,6 +455,13 @@ fn readers() -> Vec<Reader> {
             around: ["v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n".into(), "\n".into()],
             pairs: &[],
             phrases: &["v 0 0 0\n", "f 1 2 3\n", "\\\n", "g a\n", "usemtl a\n", "f ", "1 ", "f 9 9 9\n", "f 1/1/1 2/1/1 3/1/1\n"],
+            read: |bytes| (mesh_file::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
+        },
+        Reader {
+            name: "vertex of an OBJ file",
+            around: ["v 0 0 0\nv 1 0 0\nv 0 ".into(), "\nf 1 2 3\n".into()],
+            pairs: &[],
+            phrases: &["1e30 ", "-1e-30 ", "1e308 ", "1e-320 ", "nan ", "inf "],
             read: |bytes| (mesh_file::FORMAT.read)(bytes).map(drop).map_err(|p| p.message),
         },
         Reader {
@@ -639,6 +660,10 @@ fn what_is_put_around_hostile_text_is_read() {
             | "size of a picture of surroundings"
             | "material"
             | "values of a material" => "",
+            "primaries of a picture of surroundings" | "primaries of a linear picture to compare" => {
+                ".64 .33 .3 .6 .15 .06 .3127 .329"
+            }
+            "vertex of an OBJ file" => "1 0",
             "condition" => "not ",
             "table" => "object,d,sphere,1,2 2 2\n",
             "list in a scene" => "{\"type\": \"point\", \"position\": [1, 1, 1]}, ",
@@ -655,6 +680,78 @@ fn what_is_put_around_hostile_text_is_read() {
             Ok(()) => {}
             Err(what) => assert!(!expected.is_empty() && what.contains(expected), "{}: {what}", reader.name),
         }
+    }
+}
+
+#[test]
+fn meshes_that_are_far_away_huge_or_tiny_are_finite_or_refused() {
+    const PLACES: [&str; 12] =
+        ["0", "1", "-1", "1e30", "-1e30", "1e-30", "-1e-30", "1e38", "-3.4e38", "1e-45", "1e300", "1e-310"];
+    let (mut state, mut drawn) = (1_u32, 0);
+    let mut place = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        PLACES[(state >> 16) as usize % PLACES.len()]
+    };
+    let vertices = |text: [&str; 12]| -> String {
+        text.chunks(3).map(|corner| format!("v {}\n", corner.join(" "))).collect()
+    };
+    for _ in 0..2000 {
+        let text =
+            vertices(std::array::from_fn(|_| place())) + "f 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\nf 1 2 3 4\n";
+        match (mesh_file::FORMAT.read)(text.as_bytes()) {
+            Ok(numbers) => {
+                assert!(numbers.iter().all(|number| number.is_finite()), "{text}");
+                drawn += 1;
+            }
+            Err(problem) => assert!(!problem.message.is_empty(), "{text}"),
+        }
+    }
+    assert!(drawn > 100, "{drawn}");
+    // Shapes of such sizes are the same shape.
+    let tent = |unit: &str| {
+        let text = format!(
+            "v 0 0 0\nv {unit} 0 0\nv 0 {unit} 0\nv 0 0 {unit}\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+        );
+        (mesh_file::FORMAT.read)(text.as_bytes()).map_err(|problem| problem.message)
+    };
+    for unit in ["1e30", "1e-30", "3e38", "1e-45"] {
+        assert_eq!(tent(unit), tent("1"), "{unit}");
+    }
+}
+
+/// Files that claim more than there is memory for, and pictures that need more.
+#[cfg(target_os = "linux")]
+#[test]
+fn no_command_dies_of_a_lack_of_memory() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("written");
+    write("a.hdr", "#?RADIANCE\n\n-Y 8192 +X 8192\n");
+    write(
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 2000000\nproperty float x\nproperty float y\nproperty float z\n\
+         element face 500000\nproperty list uchar int vertex_indices\nend_header\n",
+    );
+    let text = fs::read_to_string(root().join("scenes/default.json")).expect("readable");
+    let mut room: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    room["objects"] = serde_json::json!([{ "type": "mesh", "path": "a.ply", "position": [5, 5, 5] }]);
+    write("mesh.json", &room.to_string());
+    for (arguments, expected) in [
+        ("compare a.hdr a.hdr", "MiB of memory, which are not free"),
+        ("check mesh.json", "the file ends before all 2000000"),
+        ("render --renderer cpu --size 16384x16384 -o a.png", "MiB of memory, which are not free"),
+        ("render --renderer cpu --size 8192x8192 -o a.exr", "MiB of memory, which are not free"),
+    ] {
+        let lcm = command_in(folder.path(), arguments.split(' '));
+        let mut shell = std::process::Command::new("sh");
+        shell
+            .args(["-c", "ulimit -v 600000; exec \"$@\"", "sh"])
+            .arg(lcm.get_program())
+            .args(lcm.get_args())
+            .current_dir(folder.path())
+            .env("LCM_DATA_DIR", folder.path().join("none"));
+        let ended = shell.output().expect("it runs");
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert!(ended.status.code() == Some(1) && said.contains(expected), "{arguments}: {said}");
     }
 }
 

@@ -130,12 +130,17 @@ fn its_help_and_its_errors_have_its_name() {
     }
 }
 
+/// What the program says on a screen, with one of its variables if that has a name.
+fn said_on_a_screen(arguments: &str, folder: &Path, variable: Option<&str>) -> String {
+    let screen = Screen::new(800, 600);
+    let mut open = program(arguments, folder);
+    said(open.env("DISPLAY", screen.display()).envs(variable.map(|name| (name, "1")))).1
+}
+
 #[test]
 fn its_window_has_its_name() {
-    let screen = Screen::new(800, 600);
     let folder = tempfile::tempdir().expect("a folder");
-    let mut open = program("view --exit-after 5", folder.path());
-    let (_, err) = said(open.env("DISPLAY", screen.display()).env(TITLE, "1"));
+    let err = said_on_a_screen("view --exit-after 5", folder.path(), Some(TITLE));
     let title = err.lines().find_map(|line| line.split_once("the title is ")).expect(&err).1;
     // The tests themselves are such a program, and have the name of the same file.
     assert!(title.ends_with(program::name()) && !title.contains("Lights, Camera"), "{title}");
@@ -181,10 +186,8 @@ fn what_the_window_registers_is_known_to_the_scene_that_it_opens() {
 
 #[test]
 fn a_panic_in_a_system_is_located_and_unsaved_work_is_kept_for_this_program_alone() {
-    let screen = Screen::new(800, 600);
     let folder = tempfile::tempdir().expect("a folder");
-    let mut breaks = program("view", folder.path());
-    let (_, err) = said(breaks.env("DISPLAY", screen.display()).env(BREAKS, "1"));
+    let err = said_on_a_screen("view", folder.path(), Some(BREAKS));
     let line = err.lines().find(|line| line.contains("the window was closed: the system")).expect(&err);
     assert!(line.contains("programs.rs:") && line.contains("the forty frames are over"), "{line}");
     assert!(err.contains("the panel is fragile") && !line.contains("fragile"), "it was caught: {err}");
@@ -200,8 +203,7 @@ fn a_panic_in_a_system_is_located_and_unsaved_work_is_kept_for_this_program_alon
     assert!(scene.contains("\"Unsaved\""), "{scene}");
     drop(left);
     // It is offered at the next start.
-    let mut next = program("view --exit-after 3", folder.path());
-    let (_, err) = said(next.env("DISPLAY", screen.display()));
+    let err = said_on_a_screen("view --exit-after 3", folder.path(), None);
     assert!(err.contains("unsaved"), "{err}");
 }
 

@@ -408,7 +408,9 @@ fn thousands_of_triangles_in_one_place_take_no_longer_than_one() {
     let (once, _) = drawn(1);
     let (often, time) = drawn(400_000);
     assert!(once.pixels.iter().any(|pixel| pixel.w > 0.0), "it is in sight");
-    assert_eq!(once, often);
+    let differs = once.pixels.iter().zip(&often.pixels).map(|(a, b)| (*a - *b).abs().max_element());
+    // The mean of many equal normals is rounded.
+    assert!(differs.fold(0.0, f32::max) < 1e-5);
     assert!(time < Duration::from_secs(5), "{time:?}");
 }
 

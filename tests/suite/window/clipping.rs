@@ -9,12 +9,18 @@ use lights_camera_models::{
 
 use crate::{helpers::screen::Picture, window::panels::Bench};
 
-#[test]
-fn the_sign_tells_the_share_and_the_view_shows_where() {
+/// A window that does not have a badge yet.
+fn bench_without(badge: &str) -> Bench {
     let mut bench = Bench::new(Session::default());
     bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
     bench.settle();
-    assert!(!bench.says("Clipped"));
+    assert!(!bench.says(badge));
+    bench
+}
+
+#[test]
+fn the_sign_tells_the_share_and_the_view_shows_where() {
+    let mut bench = bench_without("Clipped");
     // The fields of a quarter of the picture, at the upper left.
     let rect = bench.area.rect;
     let [across, down] = Clipping::GRID;
@@ -48,10 +54,7 @@ fn the_sign_tells_the_share_and_the_view_shows_where() {
 
 #[test]
 fn what_gives_no_number_has_a_badge_that_shows_where() {
-    let mut bench = Bench::new(Session::default());
-    bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
-    bench.settle();
-    assert!(!bench.says("Not a number:"));
+    let mut bench = bench_without("Not a number:");
     let odd = |part| NoNumber { part, what: "has the reflection model torn, which gives NaN".to_owned() };
     bench.session.facts.not_finite[0] = vec![odd(Selection::Object(0))];
     bench.settle();
