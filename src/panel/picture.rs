@@ -213,12 +213,6 @@ impl<'a> Overlaid<'_, 'a> {
             let mut placer = Placer::column(cell.rect, Align2::LEFT_TOP, cell.rect.top() + placer::EDGE);
             (cell.view, ui.scope(|ui| self.stale(ui, cell.rect, &mut placer)).inner)
         });
-        if let Some((map, reason)) = arrangement.map.zip(session.no_difference()) {
-            // Objects are in the middle.
-            let (font, low) = (TextStyle::Body.resolve(ui.style()), map.center_bottom() - vec2(0.0, 16.0));
-            let put = |size| Align2::CENTER_BOTTOM.anchor_size(low, size);
-            self.written.push(plate(ui, map, put, &reason, font, 0.0));
-        }
         ui.scope(|ui| self.badges_in_views(ui, cells, covered.filter(|(_, place)| place.is_positive())));
     }
 
@@ -262,6 +256,7 @@ impl<'a> Overlaid<'_, 'a> {
         let scale = theme::scale_here(ui);
         let mut next = None;
         let mut disk = of_disk(session);
+        let mut missing = no_map(session);
         // The badges of a difference are those of both views.
         for cell in cells.iter().filter(|cell| cell.part.is_positive() || comparison.layout.is_map()) {
             let free = stale.filter(|(view, _)| *view == cell.view || !apart);
@@ -283,7 +278,8 @@ impl<'a> Overlaid<'_, 'a> {
             };
             let mut placer = Placer::column(cell.rect, from.0, from.1);
             self.channel(ui, &mut placer, cell.view);
-            let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
+            let mut signs = std::mem::take(&mut missing);
+            signs.extend(badges_of(cell.view, cell.rect, ui, session, registry));
             signs.extend(disk.take());
             // Keeps badges on their own side of the edge of a wipe, if there is room.
             let beside = cell.part.is_positive() && cell.part.width() >= NARROWEST * scale;
@@ -471,6 +467,19 @@ fn plate(ui: &Ui, rect: Rect, put: impl FnOnce(Vec2) -> Rect, text: &str, font: 
 /// The badge for a scene file that has changed on disk.
 fn of_disk(session: &Session) -> Option<Sign> {
     session.disk_badge().map(|badge| (badge, Vec::new()))
+}
+
+/// The badges in the place of a difference map that is missing: why, and what is shown until then.
+fn no_map(session: &Session) -> Vec<Sign> {
+    let Some((reason, shown)) = session.no_difference().zip(session.shown_for_map()) else {
+        return Vec::new();
+    };
+    let help = "This is the picture of view A. The map replaces it as soon as it belongs to both pictures.";
+    let badge = |text: &str, help: &str| {
+        let badge = Badge { severity: Severity::Info, text: text.to_owned(), help: help.to_owned() };
+        (badge, Vec::new())
+    };
+    vec![badge(&reason, ""), badge(shown, help)]
 }
 
 /// A badge, and the actions of a click on it.

@@ -1,7 +1,9 @@
 //! The pixels that objects cover, and the outlines of objects: the borders between pixels that show different objects
 //! or the background.
 
-use super::{Settings, render};
+use std::sync::atomic::AtomicBool;
+
+use super::{LightSamples, Settings, render, render_samples};
 use crate::{
     optics::TermSelection,
     parameter::Value,
@@ -27,7 +29,10 @@ fn plain(scene: &Scene) -> Scene {
 /// model of the scene has to run on the CPU.
 #[must_use]
 pub fn covered(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<bool> {
-    render(&plain(scene), registry, settings).pixels.iter().map(|pixel| pixel.w > 0.0).collect()
+    // The light does not matter.
+    let light =
+        render_samples(&plain(scene), registry, settings, LightSamples::of(1), &AtomicBool::default());
+    light.pixels.iter().map(|pixel| pixel.w > 0.0).collect()
 }
 
 /// True if the objects, and the lights that are seen, [cover](covered) the same pixels in two scenes, whatever the

@@ -33,7 +33,7 @@ use crate::{
 pub(super) struct OtherView(pub(super) usize);
 
 /// The map of the difference between two views, and its size.
-#[derive(Resource, Clone, Debug, Default)]
+#[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub(super) struct DifferenceMap(pub(super) Option<(Handle<Image>, UVec2)>);
 
 /// Debug channels of the views, view A first, and the light selected for them.
@@ -209,7 +209,7 @@ pub(super) fn show_views(
     if let Some(rect) = area.map {
         let place = place(rect);
         let map = map.and_then(|map| map.0.clone()).filter(|(_, size)| *size == place.size);
-        // Until there is a map of this size, view A is shown.
+        // Until there is a map of these pictures, view A is shown, and the panels say so.
         let image = map.map(|(image, _)| image).or_else(|| texture(own));
         pictures.extend(image.map(|image| ShownPicture { image, at: place.at, part: None }));
     }

@@ -146,8 +146,7 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
     // Once, in place of the main statistics.
     if let Some(reason) = session.no_difference() {
         if wanted("RMSE") {
-            let later =
-                "The difference is calculated once both pictures have all samples of light with extent.";
+            let later = "The difference is calculated once both pictures rest, with all samples of light with extent.";
             let help = if session.incomparable().is_some() { &reason } else { later };
             // In small letters, the row has room for two lines.
             let whole = theme::elided(ui, &reason, TextStyle::Body, palette.weak, f32::INFINITY);
@@ -161,12 +160,11 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
         return;
     }
     let Some(numbers) = session.facts.comparison.as_ref() else { return };
-    let ink = if numbers.outdated { palette.weak } else { palette.text };
     let mut left = room;
     let entries = numbers.entries().filter(|(name, ..)| wanted(name));
     let laid_out = entries.map(|(name, value, help)| {
         let text = format!("{name} {value}").trim_end().to_owned();
-        (theme::elided(ui, &text, TextStyle::Body, ink, f32::INFINITY), text, help)
+        (theme::elided(ui, &text, TextStyle::Body, palette.text, f32::INFINITY), text, help)
     });
     let mut fits = |(galley, ..): &(std::sync::Arc<Galley>, String, &str)| {
         left -= galley.size().x + SPACE;
@@ -176,14 +174,9 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
     // From right to left.
     for (galley, text, help) in shown.into_iter().rev() {
         let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
-        ui.painter().galley(rect.min, galley, ink);
+        ui.painter().galley(rect.min, galley, palette.text);
         theme::says(&response, WidgetType::Label, text);
-        theme::tip(response, 320.0, |ui| {
-            if numbers.outdated {
-                ui.label("The views have changed; these numbers are of the pictures before.");
-            }
-            ui.label(help);
-        });
+        theme::tip(response, 320.0, |ui| _ = ui.label(help));
         ui.add_space(SPACE - ui.spacing().item_spacing.x);
     }
 }

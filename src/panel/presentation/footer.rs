@@ -12,6 +12,7 @@ use crate::{
         prelude::*,
     },
     scene::comparison::Layout,
+    text::sentence,
 };
 
 /// Maximum height of all equations, as a fraction of the screen; larger ones become smaller, and end early.
@@ -265,20 +266,22 @@ fn block(ui: &Ui, equation: &[Definition], width: f32) -> Block {
 fn numbers(ui: &Ui, session: &Session, size: f32, room: f32) -> String {
     let with = LETTERS.get(session.compared_with()).copied().unwrap_or("B");
     let mut line = format!("{with} compared with A:");
-    if let Some(reason) = session.no_difference() {
-        return reason;
-    }
-    let Some(numbers) = &session.facts.comparison else { return line + " …" };
-    let end = if numbers.outdated { " …" } else { "" };
+    let reason = session.incomparable().or_else(|| session.unconverged());
+    let Some(numbers) = session.facts.comparison.as_ref().filter(|_| reason.is_none()) else {
+        let said = reason.unwrap_or_else(|| line + " …");
+        return match session.shown_for_map() {
+            Some(shown) => format!("{} {shown}", sentence(&said)),
+            None => said,
+        };
+    };
     for (i, (name, value, _)) in numbers.entries().filter(|(_, value, _)| !value.is_empty()).enumerate() {
         let more = format!("{line}{} {name} {value}", if i > 0 { " ·" } else { "" });
-        let whole = format!("{more}{end}");
         let galley =
-            theme::elided(ui, &whole, FontId::proportional(size), Palette::here(ui).text, f32::INFINITY);
+            theme::elided(ui, &more, FontId::proportional(size), Palette::here(ui).text, f32::INFINITY);
         if galley.size().x > room {
             break;
         }
         line = more;
     }
-    line + end
+    line
 }

@@ -92,7 +92,7 @@ impl Session {
         }
     }
 
-    /// A note that the compared views have not converged, so that statistics and difference map are out of date; `None`
+    /// A note that the compared views have not converged, so that there are no statistics and no difference map; `None`
     /// once they have.
     #[must_use]
     pub fn unconverged(&self) -> Option<String> {
@@ -101,10 +101,21 @@ impl Session {
         (least.missing() > 0).then(|| format!("Not converged yet: {}", least.samples()))
     }
 
-    /// Why statistics and difference map do not match the pictures; `None` if they do.
+    /// The reason why the views on screen have no statistics and no difference map yet; `None` if they have, or if there
+    /// is only one.
     #[must_use]
     pub fn no_difference(&self) -> Option<String> {
-        self.incomparable().or_else(|| self.unconverged())
+        let several = self.document.comparison.views(self.document.variants.len()).len() > 1;
+        let is_due = several && self.facts.comparison.is_none();
+        let measuring = || is_due.then(|| "Measuring the difference…".to_owned());
+        self.incomparable().or_else(|| self.unconverged()).or_else(measuring)
+    }
+
+    /// The view that is shown as long as there is no difference map, in words.
+    #[must_use]
+    pub fn shown_for_map(&self) -> Option<&'static str> {
+        let is_map = self.document.comparison.layout.is_map();
+        (is_map && self.no_difference().is_some()).then_some("Shown: A")
     }
 
     /// Stores in the scene which view is compared with view A, before the scene is written. Not a step of the history.

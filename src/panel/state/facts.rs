@@ -27,7 +27,7 @@ pub struct Facts {
     pub not_finite: [Vec<NoNumber>; MAX_VARIANTS + 1],
     /// Convergence of each view's picture, view A first.
     pub converged: [Converging; MAX_VARIANTS + 1],
-    /// Statistics of the comparison; `None` until they are known.
+    /// Statistics of the comparison; `None` unless they belong to the pictures on screen.
     pub comparison: Option<Numbers>,
     /// The running export, labelled with the name of its format.
     pub export: Option<Running<&'static str>>,
@@ -149,8 +149,6 @@ pub struct Numbers {
     pub all: Vec<[String; 3]>,
     /// The largest difference, in the compared quantity; `None` if the views are equal.
     pub largest: Option<f32>,
-    /// True if the views have changed since.
-    pub outdated: bool,
 }
 
 impl Numbers {

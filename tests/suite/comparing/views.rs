@@ -498,20 +498,82 @@ fn numbers_and_map_wait_for_pictures_that_have_not_converged() {
         let written = crate::window::layout::texts(&mut bench).iter().filter(|(text, _)| text == why).count();
         assert_eq!(written, times, "{layout:?}: in the bar, and in the place of a map");
         bench.apply(Action::View(ViewChange::Presenting(true)));
-        let written = crate::window::layout::texts(&mut bench).iter().filter(|(text, _)| text == why).count();
-        assert_eq!(written, 1, "{layout:?}: a presentation says it once");
+        let said = if layout.is_map() { format!("{why}. Shown: A") } else { why.to_owned() };
+        let texts = crate::window::layout::texts(&mut bench);
+        let written: Vec<_> = texts.into_iter().filter(|(text, _)| text.contains(why)).collect();
+        assert!(
+            written.len() == 1 && written[0].0 == said,
+            "{layout:?}: a presentation says it once: {written:?}"
+        );
         bench.apply(Action::View(ViewChange::Presenting(false)));
     }
     bench.session.facts.converged[1] = all;
     bench.settle();
     assert!(bench.says("RMSE 0.031") && !bench.says("Not converged"));
     bench.apply(Action::View(ViewChange::Presenting(true)));
-    let mut ends = |outdated| {
-        bench.session.facts.comparison.as_mut().expect("set above").outdated = outdated;
+    let numbers = bench.session.facts.comparison.clone();
+    let mut ends = |numbers| {
+        bench.session.facts.comparison = numbers;
         let texts = crate::window::layout::texts(&mut bench);
-        texts.iter().any(|(text, _)| text.contains("RMSE 0.031") && text.ends_with('…'))
+        let line =
+            texts.into_iter().map(|(text, _)| text).find(|text| text.starts_with("B compared with A:"));
+        let line = line.expect("the line below the pictures");
+        (line.contains("RMSE 0.031"), line.contains('…'))
     };
-    assert!(ends(true) && !ends(false), "numbers of the pictures before");
+    assert_eq!(ends(numbers), (true, false));
+    assert_eq!(ends(None), (false, true), "there are none of these pictures");
+}
+
+#[test]
+fn until_there_is_a_difference_it_is_measured_and_a_map_says_whose_picture_stands_there() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    let texts = |bench: &mut Bench| {
+        crate::window::layout::texts(bench).into_iter().map(|(text, _)| text).collect::<Vec<_>>()
+    };
+    let count = |texts: &[String], said: &str| texts.iter().filter(|text| *text == said).count();
+    for (layout, measuring, shown) in
+        [(Layout::Single, 0, 0), (Layout::SideBySide, 1, 0), (Layout::Wipe, 1, 0), (Layout::Difference, 2, 1)]
+    {
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        bench.session.facts.comparison = None;
+        bench.settle();
+        let said = texts(&mut bench);
+        assert_eq!(count(&said, "Measuring the difference…"), measuring, "{layout:?}");
+        assert_eq!(count(&said, "Shown: A"), shown, "{layout:?}");
+        let numbers = vec![["RMSE", "0.031", "help"].map(str::to_owned)];
+        bench.session.facts.comparison = Some(Numbers { all: numbers, largest: None });
+        bench.settle();
+        assert!(!bench.says("Measuring") && !bench.says("Shown: A"), "{layout:?}");
+    }
+    bench.session.facts.comparison = None;
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    assert!(texts(&mut bench).contains(&"B compared with A: … Shown: A".to_owned()));
+}
+
+#[test]
+fn what_is_said_in_place_of_a_map_lies_among_the_badges_and_not_where_its_legend_is() {
+    for scale in [100, 150, 200] {
+        let mut bench = bench();
+        bench.size = vec2(1920.0, 1080.0);
+        bench.key(Key::B, CTRL);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
+        bench.session.facts.converged[1] = Converging { done: 63, total: 256, noise: None };
+        let share = vec![20; Clipping::GRID[0] * Clipping::GRID[1]];
+        bench.session.facts.clipping[0] = Clipping::new(share);
+        bench.settle();
+        let map = bench.area.map.expect("a map");
+        let of_map = |label: &str| {
+            let seen = bench.tree.iter().find(|s| s.label.contains(label) && map.contains_rect(s.rect));
+            seen.unwrap_or_else(|| panic!("“{label}” is not in the map at {scale} %")).rect
+        };
+        let all = ["Not converged yet", "Shown: A", "A · Clipped"].map(of_map);
+        for (i, place) in all.iter().enumerate() {
+            assert!(place.bottom() < map.center().y, "{scale} %: {place:?} in {map:?}");
+            assert!(all[..i].iter().all(|other| !other.intersects(*place)), "{scale} %: {all:?}");
+        }
+    }
 }
 
 #[test]
