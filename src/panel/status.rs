@@ -51,8 +51,9 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Convergence of pictures with light with extent: the least converged one in words, and one line per view if there are
-/// several. `None` while no view has such light.
+/// Convergence of pictures with light with extent: the least converged one in words, with the largest noise of those that
+/// still converge, once all of these have one; and one line per view if there are several. `None` while no view has such
+/// light.
 fn samples_in_words(converged: &[Converging]) -> Option<(String, Vec<String>)> {
     let shown: Vec<_> = converged.iter().enumerate().filter(|(_, view)| view.total > 0).collect();
     let words = |view: Converging| {
@@ -60,7 +61,9 @@ fn samples_in_words(converged: &[Converging]) -> Option<(String, Vec<String>)> {
         view.samples() + &noise
     };
     let (_, least) = shown.iter().max_by_key(|(_, view)| view.missing())?;
-    let most_noise = shown.iter().filter_map(|(_, view)| view.noise).reduce(f32::max);
+    // A picture that is finished says nothing of those that are not.
+    let counts = shown.iter().filter(|(_, view)| view.missing() > 0 || least.missing() == 0);
+    let most_noise = counts.map(|(_, view)| view.noise).reduce(|a, b| Some(a?.max(b?))).flatten();
     let lines = shown.iter().filter(|_| shown.len() > 1).map(|(view, converging)| {
         format!("{}: {}", LETTERS.get(*view).copied().unwrap_or_default(), words(**converging))
     });
@@ -152,5 +155,16 @@ mod tests {
         let lines = ["A: 64 of 256 samples · noise 1.2 %", "B: 8 of 256 samples · noise 0.50 %"];
         let words = "8 of 256 samples · noise 1.2 %".to_owned();
         assert_eq!(both, Some((words, lines.map(str::to_owned).to_vec())));
+    }
+
+    #[test]
+    fn the_noise_is_that_of_pictures_that_still_converge() {
+        let of = |done, noise| Converging { done, total: 256, noise };
+        let words = |a, b| samples_in_words(&[a, b]).map(|(words, _)| words);
+        let done = of(256, Some(0.049));
+        assert_eq!(words(done, of(6, None)).as_deref(), Some("6 of 256 samples"), "only A has one");
+        assert_eq!(words(done, of(9, Some(0.01))).as_deref(), Some("9 of 256 samples · noise 1.0 %"));
+        assert_eq!(words(of(64, Some(0.02)), of(6, None)).as_deref(), Some("6 of 256 samples"));
+        assert_eq!(words(done, of(256, Some(0.01))).as_deref(), Some("256 of 256 samples · noise 4.9 %"));
     }
 }
