@@ -43,6 +43,8 @@ struct Hold {
     before: Dragged,
     /// The value that was asked for last, of several parts.
     asked: Option<Dragged>,
+    /// The value that the scene has got by the next frame, which the label then says.
+    given: Option<Dragged>,
     /// True once the pointer has moved.
     moved: bool,
 }
@@ -114,7 +116,7 @@ fn take(
     if let (Selection::Light(i), None) = (target.part, target.group()) {
         marks::hold(ui.ctx(), Some((i, target.at)));
     }
-    kept::set(ui.ctx(), Some(Hold { view, grasp, before, asked: None, moved: false }));
+    kept::set(ui.ctx(), Some(Hold { view, grasp, before, asked: None, given: None, moved: false }));
     ui.ctx().set_dragged_id(view.with(placed.handle));
     Some(Action::BeginDrag)
 }
@@ -243,7 +245,8 @@ fn drag(ui: &Ui, sight: Sight<'_>, lens: &Lens, mut hold: Hold, target: &Target)
     let several = target.group().is_some();
     let legal = edit.filter(|edit| several || session.document.allows(edit, registry));
     if hold.moved {
-        let shown = wanted.filter(|_| legal.is_some()).or(now);
+        // Like outline and handles: this frame paints the scene before the edit.
+        let shown = hold.given.or_else(|| grasp.drag(lens, grasp.pointer, false, room)).or(now);
         let Handle { sort, which } = grasp.handle;
         (sort.guide)(ui, *lens, which, target.at, [grasp.pointer, pointer], room);
         if let Some(shown) = shown {
@@ -251,6 +254,7 @@ fn drag(ui: &Ui, sight: Sight<'_>, lens: &Lens, mut hold: Hold, target: &Target)
             theme::beside(ui, &ui.painter_at(lens.rect), pointer, words);
         }
     }
+    hold.given = wanted.filter(|_| legal.is_some()).or(hold.given);
     let changed = legal.filter(|edit| match wanted {
         wanted if several => wanted != now,
         _ => !is_same(edit, now.and_then(|now| hold.grasp.edit(now, room))),

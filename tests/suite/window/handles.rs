@@ -580,6 +580,31 @@ fn a_size_grows_on_both_sides_by_what_the_pointer_pulls_at_either_end() {
 }
 
 #[test]
+fn the_label_of_a_size_says_in_each_frame_what_outline_and_knob_show() {
+    let mut bench = lamp("rectangle");
+    let at = ends(&bench, "width")[0];
+    let middle = Lens::of(&bench.session, bench.area.rect).project(PLACE).unwrap();
+    let out = (at - middle).normalized();
+    let said = |texts: Vec<String>| {
+        let said = texts.iter().find_map(|text| text.strip_prefix("width ")?.strip_suffix(" m"));
+        said.unwrap_or_else(|| panic!("{texts:?}")).parse::<f32>().expect("a number")
+    };
+    bench.frame(vec![Event::PointerMoved(at)]);
+    press(&mut bench, at, true);
+    for k in 1..=5 {
+        // A frame paints the lamp before the edit that it asks for.
+        let [painted] = numbers(&bench, ["width"]);
+        bench.frame(vec![Event::PointerMoved(at + 15.0 * k as f32 * out)]);
+        let said = said(bench.texts_just_painted());
+        assert!((said - painted).abs() < 0.006, "frame {k} says {said} and shows {painted}");
+        assert!(numbers(&bench, ["width"])[0] > painted + 0.01, "it follows the pointer");
+    }
+    let [width] = numbers(&bench, ["width"]);
+    let said = said(bench.texts());
+    assert!((said - width).abs() < 0.006, "at rest it says {said} of {width}");
+}
+
+#[test]
 fn a_radius_grows_as_far_as_the_pointer_pulls() {
     for light_type in ["disc", "sphere", "cylinder", "ring_lamp"] {
         let mut bench = lamp(light_type);

@@ -376,6 +376,15 @@ impl Bench {
         self.shapes.iter().zip(&self.clips).filter_map(in_sight).collect()
     }
 
+    /// The texts of the last frame, without another one.
+    pub fn texts_just_painted(&self) -> Vec<String> {
+        let text = |shape: &egui::Shape| match shape {
+            egui::Shape::Text(text) => Some(text.galley.text().to_owned()),
+            _ => None,
+        };
+        self.shapes.iter().filter_map(text).collect()
+    }
+
     /// The texts over the picture.
     pub fn words(&mut self) -> Vec<String> {
         self.texts_within(self.area.rect)
