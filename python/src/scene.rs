@@ -221,7 +221,8 @@ impl Scene {
             found.values.iter().map(|(name, v)| ((*name).to_owned(), v.json())).collect();
         let said = serde_json::json!({
             "view": LETTERS[number], "on": what.id(), "metric": measure.metric().map(Metric::id), "unit": measure.unit(), "before": found.before, "after": found.after,
-            "values": values, "unchanged": found.kept,
+            "values": values, "unchanged": found.kept, "without_effect": found.without_effect,
+            "evaluations": found.evaluations, "ended": found.ended.id(),
         });
         let mut scene = self.scene.clone();
         found

@@ -31,7 +31,7 @@ use crate::{
         variant::LETTERS,
     },
     signals::Interrupt,
-    text::listed,
+    text::{listed, plural},
 };
 
 #[derive(Args, Debug)]
@@ -51,7 +51,7 @@ pub(super) struct Arguments {
     /// The metric of the lobes: what the difference is taken of
     #[arg(long, value_parser = metric(), default_value = Metric::default().id())]
     metric: Metric,
-    /// The parameters that are free, such as alpha,k_s; by default every number, and beside a measurement every colour too
+    /// The parameters that are free, such as alpha,k_s; by default every number, and beside a measurement every colour too. The fewer, the quicker and the surer
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     free: Vec<String>,
     /// Write the scene with these parameters to this file, another one than the scene's
@@ -252,7 +252,7 @@ fn in_words(found: &Match, before: &[Value], view: usize, measure: Measure) -> S
     if found.values.is_empty() {
         let (unit, before) = (measure.unit(), digits(found.before));
         let stays = format!("view {letter} stays as it is: no other values come nearer to view A");
-        return format!("{stays}\n{unit}: {before}\n");
+        return format!("{stays}\n{unit}: {before}\n{}", about_the_search(found));
     }
     let mut text = format!("view {letter} matched to view A on the {measure}\n");
     for ((name, value), before) in found.values.iter().zip(before) {
@@ -261,7 +261,21 @@ fn in_words(found: &Match, before: &[Value], view: usize, measure: Measure) -> S
     if !found.kept.is_empty() {
         text += &format!("unchanged: {}\n", listed(&found.kept, "and"));
     }
-    text + &format!("{}: {} → {}\n", measure.unit(), digits(found.before), digits(found.after))
+    text += &format!("{}: {} → {}\n", measure.unit(), digits(found.before), digits(found.after));
+    text + &about_the_search(found)
+}
+
+/// The parameters without effect, the number of evaluations, and what ended the search.
+fn about_the_search(found: &Match) -> String {
+    let mut text = String::new();
+    if !found.without_effect.is_empty() {
+        text += &format!("without effect in all that was tried: {}\n", listed(&found.without_effect, "and"));
+    }
+    text += &format!("compared {}\n", plural(found.evaluations, "time"));
+    if let Some(note) = found.ended.note() {
+        text += &format!("{note}\n");
+    }
+    text
 }
 
 fn as_json(found: &Match, view: usize, measure: Measure) -> Json {
@@ -276,5 +290,8 @@ fn as_json(found: &Match, view: usize, measure: Measure) -> Json {
         "after": found.after,
         "values": values,
         "unchanged": found.kept,
+        "without_effect": found.without_effect,
+        "evaluations": found.evaluations,
+        "ended": found.ended.id(),
     })
 }

@@ -36,6 +36,7 @@ use crate::{
 };
 
 mod axis;
+mod descent;
 pub mod each;
 mod highlight;
 pub mod least_squares;
@@ -62,7 +63,12 @@ use sides::Side;
 const MOST_LOBES: [usize; 2] = [2500, 250];
 /// Maximum number of pictures of a search that compares pictures, and the additional ones for each free
 /// number.
-const MOST_PICTURES: [usize; 2] = [400, 50];
+const MOST_PICTURES: [usize; 2] = [400, 200];
+/// What the pictures of a search may cost together: the square of the number of the model's parameters for each, and as many times
+/// that as there are [`USUAL`] responses in a picture.
+const PICTURES: usize = 800_000;
+/// Responses of the models in a picture of usual size: pixels times lights.
+const USUAL: usize = 20_000;
 
 ids! {
     /// The quantity that is compared.
@@ -89,6 +95,44 @@ ids! {
     }
 }
 
+/// What ended a search.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ended {
+    /// Nothing that it tried last came nearer.
+    #[default]
+    Itself,
+    /// The maximum number of evaluations.
+    Evaluations,
+    /// The maximum duration.
+    Time,
+}
+
+impl Ended {
+    /// Name in JSON.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Itself => "search",
+            Self::Evaluations => "evaluations",
+            Self::Time => "time",
+        }
+    }
+
+    /// A sentence about the end, without a full stop; `None` if the search ended by itself.
+    #[must_use]
+    pub fn note(self) -> Option<&'static str> {
+        match self {
+            Self::Itself => None,
+            Self::Evaluations => {
+                Some("the search ended at its limit of evaluations: fewer free parameters may come nearer")
+            }
+            Self::Time => Some(
+                "the search ended at its limit of 10 minutes: fewer free parameters may come nearer, and a faster computer may find others",
+            ),
+        }
+    }
+}
+
 /// A request to match a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'a> {
@@ -103,12 +147,18 @@ pub struct Request<'a> {
 }
 
 /// The result of a match.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Match {
     /// The values for the view, without parameters that hardly matter.
     pub values: Vec<(&'static str, Value)>,
     /// The free parameters that keep their values, since changing them hardly helps.
     pub kept: Vec<&'static str>,
+    /// Those of the unchanged parameters of which no value that was tried made a difference.
+    pub without_effect: Vec<&'static str>,
+    /// Number of times that the views were compared.
+    pub evaluations: usize,
+    /// What ended the search.
+    pub ended: Ended,
     /// The error with the present values: see [`Measure::unit`].
     pub before: f64,
     /// The error with the matched values.
@@ -286,7 +336,11 @@ pub fn match_view(request: &Request, registry: &Registry, progress: &Progress) -
         }
         What::Picture => {
             let mut picture = Picture::new(sides, registry).ok_or(MatchError::NothingVisible)?;
-            search(&mut picture, &free, MOST_PICTURES, progress)
+            let size = b.models(registry).iter().map(|model| model.parameters.len()).max().unwrap_or(1);
+            let work = size * size * picture.responses().max(USUAL) / USUAL;
+            let most = most(&free, MOST_PICTURES);
+            let most = most.min((PICTURES / work).max(most / 8));
+            Search::new(&mut picture, &free, most, progress).run()
         }
         What::Highlight => {
             let none = |i: usize| {
@@ -300,20 +354,24 @@ pub fn match_view(request: &Request, registry: &Registry, progress: &Progress) -
     };
     // An endless function is detected only when it runs.
     can_run()?;
-    let Found { values, before, after } = found?;
+    let Found { values, before, after, without_effect, evaluations, ended } = found?;
     let given = |name: &str| values.iter().any(|(known, _)| *known == name);
     let kept = free.iter().map(|free| free.parameter.name).filter(|name| !given(name)).collect();
-    Ok(Match { values, kept, before, after })
+    Ok(Match { values, kept, without_effect, evaluations, ended, before, after })
 }
 
 fn search(
     target: &mut impl Target,
     free: &[Free],
-    [most, each]: [usize; 2],
+    limit: [usize; 2],
     progress: &Progress,
 ) -> Result<Found, Cancelled> {
-    let axes: usize = free.iter().map(|free| free.axes.len()).sum();
-    Search::new(target, free, most + each * axes, progress).run()
+    Search::new(target, free, most(free, limit), progress).run()
+}
+
+/// Maximum number of evaluations.
+fn most(free: &[Free], [most, each]: [usize; 2]) -> usize {
+    most + each * free.iter().map(|free| free.axes.len()).sum::<usize>()
 }
 
 /// The free parameters.
@@ -355,7 +413,12 @@ fn frees(
                 Some(_) => MatchError::NoRange { name: parameter.name, view },
             });
         }
-        frees.push(Free { parameter, axes, now });
+        let groups = side.models(registry).into_iter().flat_map(|model| model.groups);
+        let group = groups
+            .into_iter()
+            .find(|group| group.parameters.contains(&parameter.name))
+            .map(|group| group.name);
+        frees.push(Free { parameter, axes, now, group });
     }
     Ok(frees)
 }

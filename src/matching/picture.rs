@@ -12,7 +12,7 @@ use crate::{
     parameter::Values,
     reference::{self, LightSamples, Settings},
     registry::Registry,
-    scene::Scene,
+    scene::{Scene, has_extent},
 };
 
 /// Height of the pictures, in pixels.
@@ -21,11 +21,12 @@ pub const HEIGHT: u32 = 96;
 pub const WIDTH: u32 = HEIGHT * 16 / 9;
 
 /// Number of samples of lights with extent: what they leave out is missing in both pictures alike.
-const LIGHT_SAMPLES: LightSamples = LightSamples::of(32);
+const SAMPLES: u32 = 32;
 
 /// The light of a scene.
 fn light(scene: &Scene, registry: &Registry, settings: &Settings) -> Vec<Vec4> {
-    reference::render_samples(scene, registry, settings, LIGHT_SAMPLES, &AtomicBool::new(false)).pixels
+    reference::render_samples(scene, registry, settings, LightSamples::of(SAMPLES), &AtomicBool::new(false))
+        .pixels
 }
 
 /// The picture of a view, for comparison with that of view A.
@@ -51,6 +52,12 @@ impl<'r> Picture<'r> {
         }
         let own = b.scene.objects.iter().map(|object| object.material.clone()).collect();
         Some(Self { scene: b.scene.clone(), own, registry, settings: settings(b), wanted })
+    }
+
+    /// Number of responses of the models in a picture.
+    pub(super) fn responses(&self) -> usize {
+        let samples = |light| if has_extent([light], self.registry) { SAMPLES as usize } else { 1 };
+        self.wanted.len() * self.scene.shining().map(samples).sum::<usize>()
     }
 }
 

@@ -1,41 +1,53 @@
 //! Searches for the closest values.
 //!
 //! The search descends from the present values. Then it searches each parameter alone, and the best of them
-//! together, adding one more at a time. Then it descends from the best point so far, and from the most
-//! promising of some points spread over all ranges. It keeps the best point seen, so more free parameters
-//! never give a worse result than a subset that was tried. Finally it simplifies the result: parameters that
-//! hardly matter keep their values, and insignificant digits are dropped. Nothing is random.
+//! together with those that promise most, one more at a time. Then it descends from the best point so far, and from the
+//! nearest of points spread over the ranges of small sets of parameters, such as two of the coat, and of all. It keeps the best
+//! point seen, so more free parameters never give a worse result than a subset that was tried. Finally it simplifies the
+//! result: parameters that hardly matter keep their values, and insignificant digits are dropped. Nothing is random, and
+//! it ends by the number of evaluations, so that the result is the same on every computer.
 
 use std::time::{Duration, Instant};
 
 use super::{
+    Ended,
     axis::Axis,
-    least_squares::{Limits, Residuals, Stop, descend},
+    descent::{self, descend},
+    least_squares::{Limits, Residuals, Stop},
 };
 use crate::{
     parameter::{Parameter, Value},
     progress::{Cancelled, Progress},
 };
 
-/// Number of points spread over the ranges.
+/// Number of points spread over the ranges of some parameters.
 const SPREAD: usize = 24;
-/// Number of those from which the search descends, in addition to the present values.
-const DESCENTS: usize = 4;
+/// Number of those from which the search descends.
+const DESCENTS: usize = 3;
+/// A descent with few parameters goes on with all if its error is at most this many times the least so far.
+const PROMISING: f64 = 10.0;
 /// Termination conditions of each descent.
 const LIMITS: Limits = Limits { steps: 25, least_gain: 1e-7, least_move: 1e-6, first_step: 0.5 };
 /// Termination conditions of a short descent, which only shows which parameters are promising.
-const SHORT: Limits = Limits { steps: 8, ..LIMITS };
+const SHORT: Limits = Limits { steps: 6, ..LIMITS };
 /// Least and greatest number of values tried for one parameter, in addition to the present one, and the part of all evaluations
 /// that those of all parameters may take in between.
 const SCANNED: [usize; 2] = [6, 24];
 const SCANS: f64 = 0.1;
-/// Maximum number of parameters that are added one by one.
-const GROWN: usize = 6;
-/// Maximum duration of a search; the best result until then counts.
-const LONGEST: Duration = Duration::from_secs(60);
+/// Parts of the evaluations after which the descent from the present values and the growth of subsets end.
+const SHARES: [f64; 2] = [0.12, 0.35];
+/// Maximum number of parameters that are searched together before all are.
+const GROWN: usize = 5;
+/// Number of parameters that are tried beside those of a subset, and number of subsets that are kept for that.
+const TRIED: usize = 2;
+const BEAMS: usize = 4;
+/// Part of the error that must be left for one more parameter to help.
+const HELPS: f64 = 0.99;
+/// Maximum duration of a search, far beyond what its evaluations should take; the best result until then counts.
+const LONGEST: Duration = Duration::from_secs(600);
 /// A parameter keeps its value, and digits are dropped, if the error grows by at most this fraction of
 /// itself, or of the initial error.
-const GIVEN_UP: [f64; 2] = [1e-3, 1e-4];
+const GIVEN_UP: [f64; 2] = [1e-3, 1e-6];
 /// Errors below this count as zero: the models calculate in 32 bits.
 const NONE: f64 = 1e-6;
 
@@ -57,6 +69,8 @@ pub(super) struct Free {
     pub(super) axes: Vec<Axis>,
     /// Present value.
     pub(super) now: Value,
+    /// Title of the group of parameters in the model.
+    pub(super) group: Option<&'static str>,
 }
 
 /// The result of a search.
@@ -65,6 +79,10 @@ pub(super) struct Found {
     pub(super) values: Given,
     pub(super) before: f64,
     pub(super) after: f64,
+    /// Parameters of which no value that was tried made a difference.
+    pub(super) without_effect: Vec<&'static str>,
+    pub(super) evaluations: usize,
+    pub(super) ended: Ended,
 }
 
 /// A point: a number on each axis.
@@ -89,7 +107,20 @@ pub(super) struct Search<'a, T> {
     last: bool,
     cancelled: bool,
     best: (f64, Option<Point>),
+    /// For each parameter the difference that its value made, with the others at their present values.
+    influence: Vec<f64>,
+    /// For each parameter whether values of it were tried, and whether one of them made a difference.
+    effect: Vec<(bool, bool)>,
+    ended: Ended,
     step: String,
+}
+
+/// The nearest point that was found with some of the parameters.
+#[derive(Clone)]
+struct Subset {
+    error: f64,
+    chosen: Vec<usize>,
+    point: Point,
 }
 
 impl<'a, T: Target> Search<'a, T> {
@@ -105,6 +136,9 @@ impl<'a, T: Target> Search<'a, T> {
             last: false,
             cancelled: false,
             best: (f64::INFINITY, None),
+            influence: vec![0.0; free.len()],
+            effect: vec![(false, false); free.len()],
+            ended: Ended::Itself,
             step: String::new(),
         }
     }
@@ -126,12 +160,19 @@ impl<'a, T: Target> Search<'a, T> {
         }
         let (error, best) = std::mem::take(&mut self.best);
         let Some(best) = best.filter(|_| error < before) else {
-            return Ok(Found { values: Vec::new(), before, after: before });
+            return Ok(self.found(Vec::new(), before, before));
         };
         self.last = true;
         let good = (1.0 + GIVEN_UP[0]) * error + GIVEN_UP[1] * before;
         let (best, after) = self.simplified(best, good, error).map_err(|Stop| Cancelled)?;
-        Ok(Found { values: self.values(&best), before, after })
+        let values = self.values(&best);
+        Ok(self.found(values, before, after))
+    }
+
+    fn found(self, values: Given, before: f64, after: f64) -> Found {
+        let without = self.free.iter().zip(&self.effect).filter(|(_, effect)| **effect == (true, false));
+        let without_effect = without.map(|(free, _)| free.parameter.name).collect();
+        Found { values, before, after, without_effect, evaluations: self.evaluations, ended: self.ended }
     }
 
     /// The axes of all parameters.
@@ -171,7 +212,10 @@ impl<'a, T: Target> Search<'a, T> {
     /// The differences at a point, and their root mean square.
     fn differences(&mut self, point: &Point, to: &mut [f64]) -> Result<f64, Stop> {
         self.cancelled |= (self.progress.cancelled)();
-        let spent = self.evaluations >= self.until.min(self.most) || self.begun.elapsed() > LONGEST;
+        if self.begun.elapsed() > LONGEST && !self.last {
+            self.ended = Ended::Time;
+        }
+        let spent = self.evaluations >= self.until.min(self.most) || self.ended == Ended::Time;
         if self.cancelled || spent && !self.last {
             return Err(Stop);
         }
@@ -191,9 +235,7 @@ impl<'a, T: Target> Search<'a, T> {
 
     /// Reports the progress of the search.
     fn tell(&self) {
-        // Whichever ends the search first.
-        let spent = self.begun.elapsed().as_secs_f32() / LONGEST.as_secs_f32();
-        let done = spent.max(self.evaluations as f32 / self.most as f32).min(1.0);
+        let done = (self.evaluations as f32 / self.most as f32).min(1.0);
         (self.progress.tell)(if self.last { 1.0 } else { done }, &self.step);
     }
 
@@ -221,72 +263,119 @@ impl<'a, T: Target> Search<'a, T> {
         let all: Vec<usize> = (0..self.free.len()).collect();
         let present = Point { numbers: self.present(), on: vec![true; all.len()] };
         let ways: [(f64, &mut dyn FnMut(&mut Self) -> Result<(), Stop>); 3] = [
-            (0.25, &mut |search| {
+            (SHARES[0], &mut |search| {
                 "descending from the present values".clone_into(&mut search.step);
                 search.descend_from(&present, &all, LIMITS).map(drop)
             }),
-            (0.65, &mut |search| if all.len() > 1 { search.grow() } else { Ok(()) }),
+            (SHARES[1], &mut |search| if all.len() > 1 { search.grow() } else { Ok(()) }),
             (1.0, &mut |search| search.spread_out(&all)),
         ];
         for (share, way) in ways {
             self.until = (share * self.most as f64).ceil() as usize;
             let ended = way(self);
-            if self.cancelled {
+            if self.cancelled || self.ended == Ended::Time {
                 return ended;
             }
             if self.best.0 < NONE {
                 break;
+            }
+            if ended.is_err() && self.until >= self.most {
+                self.ended = Ended::Evaluations;
             }
         }
         "trying whole numbers".clone_into(&mut self.step);
         self.try_neighbours()
     }
 
-    /// Searches each parameter alone, then the best of them, the best with the second, and so on.
-    /// Improvements that need several parameters at once are left to [`look_around`](Self::look_around); if
-    /// many parameters are free, it may miss those that need only few.
+    /// Searches each parameter alone, then the best of them together with each of the others that promise most, and so
+    /// on, as long as one more helps.
     fn grow(&mut self) -> Result<(), Stop> {
         let present = Point { numbers: self.present(), on: vec![false; self.free.len()] };
         let mut alone = Vec::new();
         for (i, free) in self.free.iter().enumerate() {
             self.step = format!("trying {} alone", free.parameter.label);
-            let found = self.scan(&present, i).and_then(|start| self.descend_from(&start, &[i], SHORT));
-            match found {
-                Ok(found) => alone.push((found.0, i, found.1)),
-                Err(Stop) if self.cancelled => return Err(Stop),
-                Err(Stop) => break,
-            }
+            let (errors, start) = self.scan(&present, i)?;
+            self.influence[i] = errors[1] - errors[0];
+            self.effect[i] = (true, self.effect[i].1 || errors[1] != errors[0]);
+            alone.push(Subset { error: errors[0], chosen: vec![i], point: start });
         }
-        alone.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut chosen = Vec::new();
-        let mut so_far: Option<(f64, Point)> = None;
-        for (error, i, point) in alone.into_iter().take(GROWN) {
-            let Some((before, start)) = &so_far else {
-                chosen.push(i);
-                so_far = Some((error, point));
-                continue;
-            };
-            self.step = format!("trying {} parameters together", chosen.len() + 1);
-            let before = *before;
-            let mut together = start.clone();
-            together.on[i] = true;
-            let start = self.scan(&together, i)?;
-            let mut more = chosen.clone();
-            more.push(i);
-            let found = self.descend_from(&start, &more, SHORT)?;
-            if found.0 < before {
-                (chosen, so_far) = (more, Some(found));
+        alone.sort_by(|a, b| a.error.total_cmp(&b.error));
+        alone.truncate(BEAMS);
+        for subset in &mut alone {
+            (subset.error, subset.point) = self.descend_from(&subset.point, &subset.chosen, SHORT)?;
+        }
+        let none = Subset { error: 0.0, chosen: Vec::new(), point: present.clone() };
+        let at_first = self.promises(&none)?;
+        let mut kept = self.nearest(alone);
+        for size in 2..=GROWN.min(self.free.len()) {
+            self.step = format!("trying {size} parameters together");
+            let mut grown: Vec<Subset> = Vec::new();
+            for subset in &kept {
+                let here = self.promises(subset)?;
+                let new = |more: &&usize| !subset.chosen.contains(more);
+                let [here, there] = [&here, &at_first].map(|all| all.iter().filter(new).take(TRIED));
+                for more in here.chain(there) {
+                    let chosen = [&[*more], &subset.chosen[..]].concat();
+                    if grown.iter().any(|known| known.chosen.iter().all(|i| chosen.contains(i))) {
+                        continue;
+                    }
+                    // The present values are often nearer to the valley than the end of a smaller subset.
+                    for start in [&subset.point, &present] {
+                        let (error, point) = self.descend_from(start, &chosen, SHORT)?;
+                        grown.push(Subset { error, chosen: chosen.clone(), point });
+                    }
+                }
             }
+            if grown.is_empty() || self.best.0 < NONE {
+                break;
+            }
+            kept = self.nearest(grown);
         }
         Ok(())
     }
 
-    /// The best of several values of a parameter, with the others as at `from`.
-    fn scan(&mut self, from: &Point, parameter: usize) -> Result<Point, Stop> {
+    /// The nearest of some subsets, one for each group of the parameter that was added last.
+    fn nearest(&self, mut subsets: Vec<Subset>) -> Vec<Subset> {
+        subsets.sort_by(|a, b| a.error.total_cmp(&b.error));
+        let mut groups = Vec::new();
+        subsets.retain(|subset| {
+            let group = self.free[subset.chosen[0]].group;
+            let is_new = group.is_none() || !groups.contains(&group);
+            groups.push(group);
+            is_new
+        });
+        subsets.truncate(BEAMS);
+        subsets
+    }
+
+    /// All parameters, first those that promise most beside those of a subset, by the slope at its point.
+    fn promises(&mut self, subset: &Subset) -> Result<Vec<usize>, Stop> {
+        let all: Vec<usize> = (0..self.free.len()).collect();
+        let owners = self.owners();
+        let mut track = Track::new(self, &subset.point, &all);
+        track.point.on.clone_from(&subset.point.on);
+        let at = track.coordinates();
+        let mut here = vec![0.0; track.count()];
+        let mut columns = vec![here.clone(); at.len()];
+        track.derivatives(&at, &mut here, &mut columns)?;
+        let slope = descent::Slope::of(&columns, &here);
+        let ranges = vec![(0.0, 1.0); at.len()];
+        let promise = |more: usize| {
+            let moves = |owner: usize| owner == more || subset.chosen.contains(&owner);
+            let axes: Vec<usize> = (0..at.len()).filter(|axis| moves(owners[*axis].0)).collect();
+            slope.promise(&axes, &at, &ranges)
+        };
+        let mut others: Vec<_> = all.into_iter().map(|i| (promise(i), i)).collect();
+        others.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Ok(others.into_iter().map(|(_, i)| i).collect())
+    }
+
+    /// The least and the greatest error for several values of a parameter, with the others as at `from`, and the point with the least.
+    fn scan(&mut self, from: &Point, parameter: usize) -> Result<([f64; 2], Point), Stop> {
         let mut scratch = vec![0.0; self.count()];
         let first: usize = self.free[..parameter].iter().map(|free| free.axes.len()).sum();
         let axes = &self.free[parameter].axes;
-        let mut best = (f64::INFINITY, from.clone());
+        let mut best = ([f64::INFINITY, 0.0], from.clone());
         let [least, most] = SCANNED;
         let scanned = ((SCANS * self.most as f64) as usize / self.free.len()).clamp(least, most);
         for step in 0..=scanned {
@@ -298,39 +387,102 @@ impl<'a, T: Target> Search<'a, T> {
                 axes.iter().enumerate().for_each(|(k, axis)| point.numbers[first + k] = axis.value(at));
             }
             let error = self.noted(&point, &mut scratch)?;
-            if error < best.0 {
-                best = (error, point);
+            best.0[1] = error.max(best.0[1]);
+            if error < best.0[0] {
+                best.0[0] = error;
+                best.1 = point;
             }
         }
-        Ok(best.1)
+        Ok(best)
     }
 
-    /// Descends from the best so far, and from the most promising of points spread over all ranges.
+    /// Descends from the best so far, then in rounds from points spread over the ranges of small sets of parameters, with
+    /// the others at their present values, and over those of all.
     fn spread_out(&mut self, all: &[usize]) -> Result<(), Stop> {
-        let axes: Vec<&Axis> = self.axes().collect();
-        let mut scratch = vec![0.0; self.count()];
-        let on = vec![true; all.len()];
-        let mut starts = Vec::new();
-        for i in 0..SPREAD {
-            self.step = format!("trying start {} of {SPREAD}", i + 1);
-            let numbers = axes.iter().zip(spread(i, axes.len())).map(|(axis, at)| axis.value(at)).collect();
-            let point = Point { numbers, on: on.clone() };
-            starts.push((self.noted(&point, &mut scratch)?, point));
-        }
-        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-        starts.truncate(DESCENTS);
         if let Some(best) = self.best.1.clone() {
-            starts.insert(0, (self.best.0, Point { on, ..best }));
+            "descending from the best so far".clone_into(&mut self.step);
+            self.descend_from(&best, all, LIMITS)?;
         }
-        let count = starts.len();
-        for (i, (_, point)) in starts.into_iter().enumerate() {
-            self.step = format!("descending from start {} of {count}", i + 1);
-            self.descend_from(&point, all, LIMITS)?;
-            if self.best.0 < NONE {
+        let sets = self.sets();
+        for round in 0.. {
+            let before = self.best.0;
+            for (i, set) in sets.iter().enumerate() {
+                let number = round * sets.len() + i;
+                self.step = format!("trying start {}", number + 1);
+                let (error, point) = self.descend_spread(number, set)?;
+                if set.len() < all.len() && error < PROMISING * self.best.0 {
+                    self.descend_from(&point, all, LIMITS)?;
+                }
+                if self.best.0 < NONE {
+                    return Ok(());
+                }
+            }
+            if self.best.0 >= HELPS * before {
                 break;
             }
         }
         Ok(())
+    }
+
+    /// Small sets of parameters, and all: two of a group, alone and with the leaders, which are the parameters that change most in the
+    /// two groups that change most. Those without effect in all that was tried are left out.
+    fn sets(&self) -> Vec<Vec<usize>> {
+        let mut ranked: Vec<usize> =
+            (0..self.free.len()).filter(|i| self.effect[*i] != (true, false)).collect();
+        ranked.sort_by(|a, b| self.influence[*b].total_cmp(&self.influence[*a]));
+        let group = |i: &usize| self.free[*i].group.map_or_else(|| Err(*i), Ok);
+        let first = ranked.first().into_iter();
+        let leaders: Vec<usize> = first
+            .clone()
+            .chain(ranked.iter().find(|i| first.clone().all(|first| group(first) != group(i))))
+            .copied()
+            .collect();
+        let mut sets: Vec<Vec<usize>> = Vec::new();
+        for (k, i) in ranked.iter().enumerate() {
+            for j in ranked[..k].iter().filter(|j| group(j) == group(i) || self.free[*i].group.is_none()) {
+                // Alone their starts lie denser.
+                sets.push(vec![*i, *j]);
+                sets.push([&[*i, *j], &leaders[..]].concat());
+            }
+            if self.free[*i].group.is_some() && ranked.iter().filter(|j| group(j) == group(i)).count() == 1 {
+                sets.push([&[*i], &leaders[..]].concat());
+            }
+        }
+        sets.push((0..self.free.len()).collect());
+        let mut known = std::collections::HashSet::new();
+        for set in &mut sets {
+            set.sort_unstable();
+            set.dedup();
+        }
+        sets.retain(|set| known.insert(set.clone()));
+        sets
+    }
+
+    /// Descends with some parameters from the nearest of points spread over their ranges.
+    fn descend_spread(&mut self, number: usize, chosen: &[usize]) -> Result<(f64, Point), Stop> {
+        let present = Point { numbers: self.present(), on: vec![false; self.free.len()] };
+        let owners = self.owners();
+        let axes: Vec<_> =
+            owners.iter().enumerate().filter(|(_, (owner, _))| chosen.contains(owner)).collect();
+        let mut scratch = vec![0.0; self.count()];
+        let mut starts = Vec::new();
+        for i in 0..SPREAD {
+            let mut point = present.clone();
+            chosen.iter().for_each(|i| point.on[*i] = true);
+            for ((k, (_, axis)), at) in axes.iter().zip(spread(number * SPREAD + i, axes.len())) {
+                point.numbers[*k] = axis.value(at);
+            }
+            starts.push((self.noted(&point, &mut scratch)?, point));
+        }
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut best = (f64::INFINITY, present);
+        for (_, start) in starts.iter().take(DESCENTS) {
+            let found = self.descend_from(start, chosen, SHORT)?;
+            if found.0 < best.0 {
+                best = found;
+            }
+        }
+        self.descend_from(&best.1, chosen, LIMITS)
     }
 
     /// Descends from a point, changing only these parameters. Returns the error and the final point.
@@ -340,21 +492,11 @@ impl<'a, T: Target> Search<'a, T> {
         parameters: &[usize],
         limits: Limits,
     ) -> Result<(f64, Point), Stop> {
-        let mut slope =
-            Slope { point: start.clone(), axes: Vec::new(), best: (f64::INFINITY, None), of: self };
-        let mut first = 0;
-        for (i, free) in slope.of.free.iter().enumerate() {
-            if parameters.contains(&i) {
-                slope.point.on[i] = true;
-                slope.axes.extend(free.axes.iter().enumerate().map(|(k, axis)| (first + k, axis)));
-            }
-            first += free.axes.len();
-        }
-        let mut at: Vec<f64> =
-            slope.axes.iter().map(|(i, axis)| axis.coordinate(start.numbers[*i])).collect();
+        let mut track = Track::new(self, start, parameters);
+        let mut at = track.coordinates();
         let ranges = vec![(0.0, 1.0); at.len()];
-        descend(&mut slope, &mut at, &ranges, limits)?;
-        let (error, point) = slope.best;
+        descend(&mut track, &mut at, &ranges, limits)?;
+        let (error, point) = track.best;
         Ok((error, point.unwrap_or_else(|| start.clone())))
     }
 
@@ -418,7 +560,7 @@ impl<'a, T: Target> Search<'a, T> {
 }
 
 /// A descent in which some of the axes vary and the others are fixed.
-struct Slope<'s, 'a, T> {
+struct Track<'s, 'a, T> {
     of: &'s mut Search<'a, T>,
     /// The present point, including the fixed values.
     point: Point,
@@ -427,7 +569,21 @@ struct Slope<'s, 'a, T> {
     best: (f64, Option<Point>),
 }
 
-impl<T: Target> Slope<'_, '_, T> {
+impl<'s, 'a, T: Target> Track<'s, 'a, T> {
+    /// From a point, along the axes of some parameters, which are then set.
+    fn new(of: &'s mut Search<'a, T>, start: &Point, parameters: &[usize]) -> Self {
+        let varies = |(_, (owner, _)): &(usize, (usize, &Axis))| parameters.contains(owner);
+        let axes =
+            of.owners().into_iter().enumerate().filter(varies).map(|(i, (_, axis))| (i, axis)).collect();
+        let mut point = start.clone();
+        parameters.iter().for_each(|i| point.on[*i] = true);
+        Self { of, point, axes, best: (f64::INFINITY, None) }
+    }
+
+    fn coordinates(&self) -> Vec<f64> {
+        self.axes.iter().map(|(i, axis)| axis.coordinate(self.point.numbers[*i])).collect()
+    }
+
     fn noted(&mut self, to: &mut [f64]) -> Result<(), Stop> {
         let error = self.of.noted(&self.point, to)?;
         if error < self.best.0 {
@@ -443,7 +599,7 @@ impl<T: Target> Slope<'_, '_, T> {
     }
 }
 
-impl<T: Target> Residuals for Slope<'_, '_, T> {
+impl<T: Target> Residuals for Track<'_, '_, T> {
     fn count(&self) -> usize {
         self.of.count()
     }
@@ -461,6 +617,7 @@ impl<T: Target> Residuals for Slope<'_, '_, T> {
     ) -> Result<(), Stop> {
         self.move_to(point);
         self.noted(residuals)?;
+        let owners = self.of.owners();
         for (k, column) in columns.iter_mut().enumerate() {
             let (i, axis) = self.axes[k];
             let here = self.point.numbers[i];
@@ -471,6 +628,8 @@ impl<T: Target> Residuals for Slope<'_, '_, T> {
             self.point.numbers[i] = here;
             ended?;
             column.iter_mut().zip(&*residuals).for_each(|(to, from)| *to = (*to - from) / way);
+            let effect = &mut self.of.effect[owners[i].0];
+            *effect = (true, effect.1 || column.iter().any(|slope| *slope != 0.0));
         }
         Ok(())
     }
@@ -526,7 +685,7 @@ mod tests {
     }
 
     fn free(parameter: &'static Parameter, now: Value) -> Free {
-        Free { parameter, axes: Axis::of(&[parameter], &now), now }
+        Free { parameter, axes: Axis::of(&[parameter], &now), now, group: None }
     }
 
     fn frees() -> Vec<Free> {
@@ -550,12 +709,14 @@ mod tests {
     fn nothing_changes_where_nothing_comes_nearer() {
         let mut bell = Bell { wanted: [3.0, 0.9], asked: 0 };
         let found = Search::new(&mut bell, &frees(), 2000, &Progress::NONE).run().expect("not cancelled");
-        assert_eq!(found, Found { values: Vec::new(), before: 0.0, after: 0.0 });
+        assert_eq!((found.values, found.before, found.after), (Vec::new(), 0.0, 0.0));
+        assert_eq!((found.without_effect, found.evaluations), (Vec::new(), 1), "nothing was tried");
         // Only parameters without effect are free.
         let mut bell = Bell { wanted: [30.0, 0.5], asked: 0 };
         let k_a = [free(&K_A, Value::Number(0.1)), free(&K_D, Value::Number(0.8))];
         let found = Search::new(&mut bell, &k_a, 2000, &Progress::NONE).run().expect("not cancelled");
         assert_eq!((found.values, found.before), (Vec::new(), found.after));
+        assert_eq!((found.without_effect, found.ended), (vec!["k_a", "k_d"], Ended::Itself));
     }
 
     #[test]
@@ -564,6 +725,9 @@ mod tests {
         let found = Search::new(&mut bell, &frees(), 30, &Progress::NONE).run().expect("not cancelled");
         assert!(found.after < found.before, "{found:?}");
         assert!(bell.asked < 60, "{}", bell.asked);
+        assert_eq!((found.evaluations, found.ended), (bell.asked, Ended::Evaluations));
+        let again = Search::new(&mut Bell { asked: 0, ..bell }, &frees(), 30, &Progress::NONE).run();
+        assert_eq!(again.expect("not cancelled"), found, "to the bit");
     }
 
     #[test]

@@ -410,3 +410,43 @@ fn more_free_parameters_do_not_end_worse() {
     let together = after(&["roughness", "metallic"]);
     assert!(together <= 1.01 * alone, "together {together}, roughness alone {alone}");
 }
+
+/// A Disney highlight that is narrow and stretched: the descent with all numbers free ends beside it.
+#[test]
+fn all_numbers_free_end_as_near_as_those_that_differ() {
+    let metal = [("roughness", number(0.09)), ("anisotropic", number(0.97)), ("metallic", number(0.91))];
+    let plain = [("roughness", number(0.5)), ("anisotropic", number(0.0)), ("metallic", number(0.0))];
+    let scene = Scene { shading_model: "phong".to_owned(), ..scene(("disney", &metal), ("disney", &plain)) };
+    let registry = Registry::builtin();
+    let all: Vec<_> =
+        parameters(&scene, 1, &registry).into_iter().map(|(parameter, _)| parameter.name).collect();
+    let numbers: Vec<_> = all.into_iter().filter(|name| *name != "base_colour").collect();
+    let together = matched(&scene, What::Picture, &numbers).expect("a match");
+    let some = matched(&scene, What::Picture, &["roughness", "anisotropic", "metallic"]).expect("a match");
+    assert!(together.after <= some.after + 1e-5 * some.before, "{together:?}\n{some:?}");
+    // The base is white, so its hue tints nothing.
+    assert!(together.without_effect.contains(&"sheen_tint"), "{together:?}");
+    assert!(together.without_effect.iter().all(|name| together.kept.contains(name)), "{together:?}");
+}
+
+/// Dozens of numbers with a few that differ: OpenPBR's highlight took the place of its coat.
+#[test]
+fn a_coat_is_found_among_all_numbers_that_are_free() {
+    let coated = [("coat_weight", number(0.8)), ("coat_roughness", number(0.2)), ("roughness", number(0.4))];
+    let plain = [("coat_weight", number(0.0)), ("coat_roughness", number(0.0)), ("roughness", number(0.3))];
+    let scene = scene(("openpbr", &coated), ("openpbr", &plain));
+    let free = [
+        "coat_weight",
+        "coat_roughness",
+        "coat_ior",
+        "roughness",
+        "specular_ior",
+        "metallic",
+        "specular_strength",
+    ];
+    let together = matched(&scene, What::Lobe, &free).expect("a match");
+    let some = matched(&scene, What::Lobe, &free[..2]).expect("a match");
+    assert!(together.after <= some.after + 1e-5 * some.before, "{together:?}\n{some:?}");
+    assert!(together.after < 0.01 * together.before, "{together:?}");
+    assert_eq!(matched(&scene, What::Lobe, &free), Ok(together), "to the bit");
+}

@@ -49,6 +49,12 @@ impl MatchDraft {
     }
 }
 
+/// A note as one more sentence.
+fn sentence(note: &str) -> String {
+    let (first, rest) = note.split_at(note.chars().next().map_or(0, char::len_utf8));
+    format!(" {}{rest}.", first.to_uppercase())
+}
+
 impl Session {
     pub(super) fn matching(&mut self, command: MatchCommand, registry: &Registry) {
         let running = self.facts.matching.is_some() || self.facts.ranking.is_some();
@@ -112,7 +118,8 @@ impl Session {
             }
             Some(Ok(found)) if found.values.is_empty() => {
                 let what = format!("View {letter} stays as it is: no other values come nearer to view A.");
-                (Severity::Info, format!("{what} Error: {} ({unit}).", digits(found.before)))
+                let note = found.ended.note().map_or_else(String::new, sentence);
+                (Severity::Info, format!("{what} Error: {} ({unit}).{note}", digits(found.before)))
             }
             Some(Ok(found)) => return self.apply_match(view, measure, found, registry),
         };
@@ -129,13 +136,14 @@ impl Session {
             [] => String::new(),
             names => format!(" Unchanged: {}.", listed(names, "and")),
         };
+        let note = found.ended.note().map_or_else(String::new, sentence);
         let steps = self.document.done();
         let edit = Edit::materials(Part::Variant(view - 1), found.values, "Match");
         self.edit_here(edit, registry);
         self.look(registry);
         if self.document.done() != steps {
             let text = format!(
-                "View {letter} matched to view A on the {measure}: {}.{kept} Error: {} → {} ({}).",
+                "View {letter} matched to view A on the {measure}: {}.{kept} Error: {} → {} ({}).{note}",
                 listed(&values, "and"),
                 digits(found.before),
                 digits(found.after),

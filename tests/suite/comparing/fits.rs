@@ -48,8 +48,10 @@ fn every(view: usize, metric: Metric) -> Effect {
 
 /// Two models, the first the nearest.
 fn ranking() -> Ranking {
-    let matched =
-        |model, after, values| Matched { model, found: Match { values, kept: vec![], before: 0.5, after } };
+    let matched = |model, after, values| {
+        let found = Match { values, before: 0.5, after, ..Match::default() };
+        Matched { model, found }
+    };
     Ranking {
         matched: vec![
             matched("ward", 0.01, vec![("k_s", Value::Number(0.4))]),

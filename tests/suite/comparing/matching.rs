@@ -69,6 +69,8 @@ fn the_command_finds_the_exponent_of_every_lecture_and_writes_the_scene() {
     assert!(run.out.starts_with("view B matched to view A on the highlight\nalpha: 32 → 12"), "{}", run.out);
     assert!(run.out.contains("0.1 is about 10 %: 0."), "{}", run.out);
     assert!(run.out.contains("\nunchanged: k_a, k_d and k_s\n"), "{}", run.out);
+    let about = "\nwithout effect in all that was tried: k_a, k_d and k_s\ncompared ";
+    assert!(run.out.contains(about) && !run.out.contains("the search ended"), "{}", run.out);
     assert_eq!(names(at), ["a.json"], "nothing is written unasked");
 
     let arguments =
@@ -78,6 +80,8 @@ fn the_command_finds_the_exponent_of_every_lecture_and_writes_the_scene() {
     let alpha = json["values"]["alpha"].as_i64().expect("it was found");
     assert!((124..=132).contains(&alpha), "{json:#}");
     assert_eq!(json["unchanged"], json!(["k_s"]));
+    assert_eq!((&json["without_effect"], &json["ended"]), (&json!(["k_s"]), &json!("search")));
+    assert!(json["evaluations"].as_u64().is_some_and(|count| count > 10), "{json:#}");
     assert_eq!(json["values"].as_object().map(serde_json::Map::len), Some(1), "{json:#}");
     let [before, after] = ["before", "after"].map(|key| json[key].as_f64().expect("a number"));
     assert!(before > 0.5 && after < 0.01, "{json:#}");
@@ -219,7 +223,7 @@ pub fn ask(bench: &mut Bench, model: &str) {
 pub fn run(bench: &mut Bench) {
     bench.apply(Action::Match(MatchCommand::Close));
     let values = vec![("k_s", Value::Number(0.3)), ("alpha", Value::Integer(128))];
-    let found = Match { values, kept: vec!["k_a"], before: 0.0312, after: 0.00204 };
+    let found = Match { values, kept: vec!["k_a"], before: 0.0312, after: 0.00204, ..Match::default() };
     let scene = (*bench.session.document).clone();
     bench.session.matched(&scene, (1, What::Lobe.into()), Some(Ok(found)), &bench.registry);
     bench.session.facts.matching =
