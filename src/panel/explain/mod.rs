@@ -380,7 +380,7 @@ fn column_of(columns: usize, parts: usize) -> Vec<usize> {
 /// Left edge and width of each column, for parts with the given relative widths: as many columns as fit.
 fn places(shares: &[f32], width: f32) -> Vec<[f32; 2]> {
     let of = |count: usize| {
-        let shares = if count == FOUR.len() { &FOUR } else { shares };
+        let shares = if count == FOUR.len() { &FOUR[..] } else { shares };
         let mut wanted = vec![0.0; count];
         for (share, column) in shares.iter().zip(column_of(count, shares.len())) {
             // Of stacked parts, the wider one counts.
@@ -446,7 +446,9 @@ mod tests {
         assert_eq!([1000.0, 700.0, 560.0].map(|w| count(&[0.36, 0.28], w)), [2, 2, 1]);
         let four = [0.3, 0.42, 0.42, 0.28];
         assert_eq!([1256.0, 1200.0, 1000.0, 500.0].map(|w| count(&four, w)), [4, 3, 2, 1]);
-        for (shares, width) in [(&three[..], 300.0), (&three, 700.0), (&three, 1300.0), (&four, 1256.0)] {
+        for (shares, width) in
+            [(&three[..], 300.0), (&three[..], 700.0), (&three[..], 1300.0), (&four[..], 1256.0)]
+        {
             let places = places(shares, width);
             let [left, last] = places[places.len() - 1];
             assert!((left + last - width).abs() < 0.01, "{places:?} in {width}");
