@@ -60,7 +60,7 @@ impl Rectangle {
 impl LightType for Rectangle {
     const DECLARATION: Declaration = Declaration::new(
         "rectangle",
-        "Rectangle",
+        "Rectangle light",
         wgsl!("light/rectangle.wgsl"),
     )
     .summary("A window or a softbox: a rectangle that is equally bright everywhere and in every direction.")

@@ -29,7 +29,7 @@ impl Declaration {
 
 #[cfg(test)]
 mod tests {
-    use crate::registry::Registry;
+    use crate::{registry::Registry, text::capitalised};
 
     #[test]
     fn the_intensity_has_the_letter_of_the_equation() {
@@ -42,6 +42,11 @@ mod tests {
         assert_eq!(said("point"), "Point light: I(p) = I / d^2, I in cd");
         assert_eq!(said("environment"), "Environment light: L(p, l) = I L_s(l), I is a factor");
         assert!(said("photometric").starts_with("Photometric lamp: "), "{}", said("photometric"));
+        // Shapes have these names too.
+        for id in ["rectangle", "disc", "sphere", "cylinder"] {
+            let d = registry.light(id).expect("built in").declaration;
+            assert_eq!(d.name, format!("{} light", capitalised(id)));
+        }
         for light in registry.lights() {
             let d = light.declaration;
             let (_, right) = d.equation.split_once('=').unwrap_or(("", d.equation));

@@ -154,7 +154,8 @@ fn around(ui: &mut Ui, panels: &mut Panels, context: &mut PanelContext<'_>) {
     // Panel widths are stored per zoom level. A zoom takes effect a frame after it is chosen.
     let zoom = zoom_percent(&ctx);
     let widths = Widths::of(&ctx, session, whole.width());
-    let mut sizes = (widths.left.default, widths.right.default, session.settings.bottom_height);
+    let strip = session.settings.strip_height(&session.view.bottom_tab);
+    let mut sizes = (widths.left.default, widths.right.default, strip);
     // A lesson takes the full height: it is read while the strip explains.
     let (order, left) = match session.lesson {
         Some(_) => ([Place::Left, Place::Bottom, Place::Right], "lesson at the left"),

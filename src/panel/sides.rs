@@ -10,7 +10,9 @@ use super::{
     lesson::point,
     prelude::*,
     shares::shared,
-    state::{CODE_TAB, EXPLAIN_TAB, MATERIALS_TAB, OpenLesson, PLOTS_TAB, PanelInfo, SHADER_TAB},
+    state::{
+        CODE_TAB, EXPLAIN_TAB, MATERIALS_TAB, MESSAGES_TAB, OpenLesson, PLOTS_TAB, PanelInfo, SHADER_TAB,
+    },
     widths::zoom_percent,
 };
 
@@ -195,7 +197,8 @@ pub(super) fn bottom(
         PLOTS_TAB => (3, PLOT_STRIP, 0.36 * whole.height()),
         CODE_TAB => (4, CODE_STRIP, 0.45 * whole.height()),
         MATERIALS_TAB => (5, MATERIAL_STRIP, 0.34 * whole.height()),
-        _ => (0, 72.0, 0.0),
+        MESSAGES_TAB => (0, 72.0, 0.0),
+        _ => (6, 72.0, 0.0),
     };
     let strip = egui::Panel::bottom(Id::new(("bottom", zoom_percent(ui.ctx()), kind)))
         .frame(theme::panel_frame(&Palette::of(&session.settings), vec2(12.0, 4.0)))

@@ -117,8 +117,9 @@ impl Widths {
         let known = if session.lesson.is_some() { own.lesson_width } else { own.left_width };
         let left = kept(sizes.0, self.left.default, known);
         let right = kept(sizes.1, self.right.default, own.right_width);
-        let bottom = kept(sizes.2, own.bottom_height, own.bottom_height);
-        let moved = (left, right, bottom) != (known, own.right_width, own.bottom_height);
+        let strip = own.strip_height(&session.view.bottom_tab);
+        let bottom = kept(sizes.2, strip, strip);
+        let moved = (left, right, bottom) != (known, own.right_width, strip);
         let down = ctx.input(|i| i.pointer.any_down());
         if down && ctx.dragged_id().is_some() && moved {
             ctx.data_mut(|d| d.insert_temp(dragging(), true));

@@ -29,7 +29,7 @@ macro_rules! texts {
 }
 
 /// The scenes, from the simplest to those that measure something.
-const TEXTS: [(&str, &str); 35] = texts![
+const TEXTS: [(&str, &str); 36] = texts![
     "default.json",
     "shapes_and_lights.json",
     "superellipsoids.json",
@@ -48,6 +48,7 @@ const TEXTS: [(&str, &str); 35] = texts![
     "studio.json",
     "under_the_sky.json",
     "in_a_room.json",
+    "same_in_mitsuba.json",
     "glass_thin_and_solid.json",
     "glass_ball.json",
     "broken_straw.json",

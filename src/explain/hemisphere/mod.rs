@@ -128,6 +128,8 @@ impl Shining {
 pub struct Disc {
     /// Name of the quantity.
     pub name: &'static str,
+    /// The name where there is little room.
+    pub short: &'static str,
     /// Unit of the values.
     pub unit: &'static str,
     /// Selects the value.
@@ -136,9 +138,9 @@ pub struct Disc {
 
 /// The discs.
 pub const DISCS: [Disc; 3] = [
-    Disc { name: "Light that arrives: L", unit: "cd/m²", of: |above| above.arriving },
-    Disc { name: "Lobe of the model: π f", unit: "", of: |above| above.lobe },
-    Disc { name: "Product: π f L", unit: "cd/m²", of: |above| above.product },
+    Disc { name: "Light that arrives: L", short: "Light: L", unit: "cd/m²", of: |above| above.arriving },
+    Disc { name: "Lobe of the model: π f", short: "Lobe: π f", unit: "", of: |above| above.lobe },
+    Disc { name: "Product: π f L", short: "Product: π f L", unit: "cd/m²", of: |above| above.product },
 ];
 
 impl Hemisphere {

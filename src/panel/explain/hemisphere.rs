@@ -27,7 +27,8 @@ use crate::{
 
 /// Side of a disc, in pixels.
 const SIDE: usize = 96;
-/// Largest diameter of a disc, and gap between discs, in points.
+/// Smallest and largest diameter of a disc, and gap between discs, in points.
+const SMALLEST: f32 = 48.0;
 const LARGEST: f32 = 150.0;
 const GAP: f32 = 10.0;
 /// Distance below which two points count as the same, in metres.
@@ -84,13 +85,14 @@ fn textures(ctx: &Context, hemisphere: &Hemisphere) -> Vec<TextureHandle> {
     DISCS.iter().map(|disc| ctx.load_texture(disc.name, image(disc.of), TextureOptions::LINEAR)).collect()
 }
 
-/// Shows the discs if light with extent shines on the current point.
+/// True if light with extent shines on the current point.
+pub(super) fn has(ctx: &Context, seen: &Seen) -> bool {
+    probe::shown_spot(ctx, seen).is_some_and(|(_, spot)| spot.lights.iter().any(|lit| lit.integral.is_some()))
+}
+
+/// Shows the discs, as large as the column has room without scrolling.
 pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, registry: &Registry) {
     let Some((number, spot)) = probe::shown_spot(ui.ctx(), seen) else { return };
-    if spot.lights.iter().all(|lit| lit.integral.is_none()) {
-        return;
-    }
-    ui.add_space(8.0);
     rows::heading(ui, "The hemisphere above the point");
     if seen.model.trouble.is_some() {
         theme::note(ui, "The CPU cannot run this model: there is no picture of it.");
@@ -102,22 +104,41 @@ pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, r
         theme::note(ui, "Calculating…");
         return;
     };
-    let text = "From straight above: area is projected solid angle, N is the middle, the rim is the horizon, the tangent points right.";
-    theme::note(ui, text);
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
-        let width = ((ui.available_width() - 2.0 * GAP) / 3.0).clamp(24.0, LARGEST * theme::scale_here(ui));
+        let (cell, width) = widths(ui, &discs.scales);
+        let short = DISCS.iter().any(|disc| theme::small_width(ui, disc.name) > cell);
         for (i, disc) in DISCS.iter().enumerate() {
             ui.vertical(|ui| {
-                ui.set_width(width);
-                theme::note(ui, disc.name);
+                ui.set_width(cell);
+                let name = if short { disc.short } else { disc.name };
+                ui.add(Label::new(theme::small(ui, name)).truncate()).on_hover_text(disc.name);
                 one(ui, &discs, i, width);
-                theme::note(ui, format!("white: {}", discs.scales[i]));
+                theme::note(ui, white(&discs.scales[i]));
             });
         }
     });
+    let text = "From straight above: area is projected solid angle, N is the middle, the rim is the horizon, the tangent points right.";
+    theme::note(ui, text);
     // The integral of the samples is shown below its light.
     discs.hemisphere.said().into_iter().for_each(|text| drop(theme::note(ui, text)));
+}
+
+/// The legend of a disc: the end of its scale.
+fn white(scale: &str) -> String {
+    format!("white: {scale}")
+}
+
+/// The width of a disc with its words, of which three fit beside each other, and the diameter of the disc, with which
+/// title, discs and scales fit into the height of the column.
+fn widths(ui: &Ui, scales: &[String]) -> (f32, f32) {
+    let cell = ((ui.available_width() - 2.0 * GAP) / 3.0).clamp(24.0, LARGEST * theme::scale_here(ui));
+    // A scale that is too long has a second line.
+    let lines =
+        if scales.iter().any(|scale| theme::small_width(ui, &white(scale)) > cell) { 3.0 } else { 2.0 };
+    let words = ui.text_style_height(&TextStyle::Body) + lines * ui.text_style_height(&TextStyle::Small);
+    let height = ui.clip_rect().height() - words - 5.0 * ui.spacing().item_spacing.y;
+    (cell, height.max(SMALLEST).min(cell))
 }
 
 /// One disc with its marks. The pointer shows a direction and the light from there.

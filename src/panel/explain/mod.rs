@@ -49,6 +49,8 @@ pub(super) use vectors::vectors;
 const COLUMN: f32 = 272.0;
 /// Font size of a sentence that stands alone, in points.
 const SENTENCE: f32 = 20.0;
+/// Relative widths of four columns: even, so that they fit into a window of 1280 points.
+const FOUR: [f32; 4] = [0.265, 0.3, 0.3, 0.265];
 /// Gap between columns, in points.
 const GAP: f32 = 24.0;
 /// Gap between the parts of the first line, in points.
@@ -312,11 +314,14 @@ fn columns(ui: &mut Ui, explained: &Arc<Explained>, context: &mut PanelContext<'
     let parts: Vec<Part> = match (&explanation.seen, &explanation.lamp) {
         (Some(seen), _) => {
             let surface = |ui: &mut Ui| aside.set(surface(ui, seen, explained.sight, session, registry));
-            let lights = move |ui: &mut Ui| {
-                lights::lights(ui, explanation, seen, &name);
-                hemisphere::hemisphere(ui, explained, seen, registry);
-            };
-            vec![(0.3, Box::new(surface)), (0.42, Box::new(lights)), end]
+            let lights = move |ui: &mut Ui| lights::lights(ui, explanation, seen, &name);
+            let mut parts: Vec<Part> = vec![(0.3, Box::new(surface)), (0.42, Box::new(lights)), end];
+            if hemisphere::has(ui.ctx(), seen) {
+                let above = move |ui: &mut Ui| hemisphere::hemisphere(ui, explained, seen, registry);
+                // Before the list, which is long.
+                parts.insert(1, (0.42, Box::new(above)));
+            }
+            parts
         }
         (None, Some(lamp)) => vec![(0.36, Box::new(|ui| seen_light(ui, lamp, &name))), end],
         (None, None) => vec![(0.36, Box::new(|ui| background(ui, explanation))), end],
@@ -327,7 +332,8 @@ fn columns(ui: &mut Ui, explained: &Arc<Explained>, context: &mut PanelContext<'
     }
 }
 
-/// Parts in columns. With less width, the middle part stands beside the two others; with little width, they are stacked.
+/// Parts in columns. With less width, the parts in the middle stand beside the two others; with little width, they are
+/// stacked.
 fn side_by_side(ui: &mut Ui, parts: Vec<Part>) {
     let room = ui.available_rect_before_wrap();
     let shares: Vec<_> = parts.iter().map(|(share, _)| *share).collect();
@@ -361,10 +367,12 @@ fn side_by_side(ui: &mut Ui, parts: Vec<Part>) {
     ui.advance_cursor_after_rect(room);
 }
 
-/// Column of each part. With three parts in two columns, the middle part has the second column to itself.
+/// Column of each part. In fewer columns than parts, those in the middle have the second column to themselves.
 fn column_of(columns: usize, parts: usize) -> Vec<usize> {
     match (columns, parts) {
         (2, 3) => vec![0, 1, 0],
+        (2, 4) => vec![0, 1, 1, 0],
+        (3, 4) => vec![0, 1, 1, 2],
         (columns, parts) => (0..parts).map(|part| part.min(columns - 1)).collect(),
     }
 }
@@ -372,6 +380,7 @@ fn column_of(columns: usize, parts: usize) -> Vec<usize> {
 /// Left edge and width of each column, for parts with the given relative widths: as many columns as fit.
 fn places(shares: &[f32], width: f32) -> Vec<[f32; 2]> {
     let of = |count: usize| {
+        let shares = if count == FOUR.len() { &FOUR[..] } else { shares };
         let mut wanted = vec![0.0; count];
         for (share, column) in shares.iter().zip(column_of(count, shares.len())) {
             // Of stacked parts, the wider one counts.
@@ -435,8 +444,12 @@ mod tests {
         let three = [0.3, 0.42, 0.28];
         assert_eq!([1200.0, 1019.0, 1000.0, 800.0, 500.0].map(|w| count(&three, w)), [3, 2, 2, 2, 1]);
         assert_eq!([1000.0, 700.0, 560.0].map(|w| count(&[0.36, 0.28], w)), [2, 2, 1]);
-        for width in [300.0, 700.0, 1300.0] {
-            let places = places(&three, width);
+        let four = [0.3, 0.42, 0.42, 0.28];
+        assert_eq!([1256.0, 1200.0, 1000.0, 500.0].map(|w| count(&four, w)), [4, 3, 2, 1]);
+        for (shares, width) in
+            [(&three[..], 300.0), (&three[..], 700.0), (&three[..], 1300.0), (&four[..], 1256.0)]
+        {
+            let places = places(shares, width);
             let [left, last] = places[places.len() - 1];
             assert!((left + last - width).abs() < 0.01, "{places:?} in {width}");
             assert!(places.windows(2).all(|two| (two[0][0] + two[0][1] + GAP - two[1][0]).abs() < 0.01));
@@ -445,5 +458,6 @@ mod tests {
             (column_of(2, 3), column_of(3, 3), column_of(1, 3)),
             (vec![0, 1, 0], vec![0, 1, 2], vec![0, 0, 0])
         );
+        assert_eq!((column_of(2, 4), column_of(3, 4)), (vec![0, 1, 1, 0], vec![0, 1, 1, 2]));
     }
 }

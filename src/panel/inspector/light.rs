@@ -99,8 +99,7 @@ fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Opt
     let intensity = f64::from(light.intensity_as(entry));
     let unit = entry.unit(&light.parameters);
     let help = unit_help(unit);
-    let (symbol, meaning) = (d.symbol(), strength(d));
-    let caption = Caption { symbol, unit, help, ..Caption::of(&Light::intensity) };
+    let caption = Caption { symbol: d.symbol(), unit, help, ..Caption::of(&Light::intensity) };
     let default = f64::from(d.default_intensity);
     let limits = limits::intensity(d);
     let Some(solid_angle) = entry.solid_angle(&light.parameters) else {
@@ -110,23 +109,7 @@ fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Opt
     // Rounded where it is converted, to what can be told apart.
     let flux = light.luminous_flux.map_or_else(|| limits::significant(intensity * solid_angle, 6), f64::from);
     let as_flux = light.luminous_flux.is_some();
-    let rounded = |v: f64| limits::number(limits::significant(v, 4));
-    // A factor multiplies lumens, candelas spread over steradians, and a luminance over an area too.
-    let (of, unit, word) = match d.unit {
-        "cd" => ("sr", " cd", "candela"),
-        "cd/m²" => ("sr m²", " cd/m²", "candela per square metre"),
-        _ => ("lm", "", "factor"),
-    };
-    let conversion = if as_flux {
-        format!("{symbol} = Φ / ({} {of}) = {}{unit}", rounded(solid_angle), rounded(intensity))
-    } else {
-        format!("Φ = {symbol} · {} {of} = {} lm", rounded(solid_angle), rounded(flux))
-    };
-    maths::equation_of(ui, &[(Term::Total, &conversion)], maths::Sizes::default(), |symbol| match symbol {
-        letter if letter == symbol => Some(meaning.to_owned()),
-        "Φ" => Some("the luminous flux: what it sends out in all directions together".to_owned()),
-        _ => None,
-    });
+    let word = conversion(ui, d, as_flux, [solid_angle, intensity, flux]);
     let mut other_unit = None;
     let units = [[d.unit, word], ["lm", "lumen"]];
     let beside = |ui: &mut Ui| other_unit = knob::unit_choice(ui, usize::from(as_flux), &units);
@@ -146,6 +129,35 @@ fn brightness(ui: &mut Ui, part: Part, light: &Light, entry: &LightEntry) -> Opt
         Some(_) => Some(Edit::set(part, Light::luminous_flux, flux as f32)),
         None => out,
     }
+}
+
+/// How the other unit of a brightness follows, as high in both units, so that nothing below moves with the choice.
+/// Returns the name of the unit of the intensity.
+fn conversion(ui: &mut Ui, d: &Declaration, as_flux: bool, numbers: [f64; 3]) -> &'static str {
+    let [solid_angle, intensity, flux] = numbers.map(|v| limits::number(limits::significant(v, 4)));
+    let symbol = d.symbol();
+    // A factor multiplies lumens, candelas spread over steradians, and a luminance over an area too.
+    let (of, unit, word) = match d.unit {
+        "cd" => ("sr", " cd", "candela"),
+        "cd/m²" => ("sr m²", " cd/m²", "candela per square metre"),
+        _ => ("lm", "", "factor"),
+    };
+    let lines = [
+        format!("Φ = {symbol} · {solid_angle} {of} = {flux} lm"),
+        format!("{symbol} = Φ / ({solid_angle} {of}) = {intensity}{unit}"),
+    ];
+    let (sizes, width) = (maths::Sizes::default(), ui.available_width());
+    let heights = lines
+        .each_ref()
+        .map(|line| maths::measured(ui, &[(Term::Total, line.as_str())], sizes, width).height);
+    let shown = usize::from(as_flux);
+    maths::equation_of(ui, &[(Term::Total, lines[shown].as_str())], sizes, |letter| match letter {
+        letter if letter == symbol => Some(strength(d).to_owned()),
+        "Φ" => Some("the luminous flux: what it sends out in all directions together".to_owned()),
+        _ => None,
+    });
+    ui.add_space((heights[1 - shown] - heights[shown]).max(0.0));
+    word
 }
 
 /// The points that the colour of a temperature takes, with the room of a unit.

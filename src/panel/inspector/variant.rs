@@ -153,9 +153,11 @@ fn overridden(variant: &Variant, registry: &Registry) -> Vec<Row> {
     variant.each(&mut |field, held, _| {
         let declared = |name: &str| registry.material_parameter(name);
         for (name, value) in held.values().iter().flat_map(|values| &values.0) {
-            rows.extend(
-                declared(name).map(|p| (p.label.to_owned(), value.to_string(), Key::Material(p.name))),
-            );
+            let Some(p) = declared(name) else { continue };
+            // Numbers have the digits that they have in the heading.
+            let words = p.kind.limits().and_then(|_| p.kind.caption(p.label, value));
+            let words = words.unwrap_or_else(|| value.to_string());
+            rows.push((p.label.to_owned(), words, Key::Material(p.name)));
         }
         if let Some(value) = held.value().filter(|_| !matches!(field.kind, Kind::Text(_))) {
             rows.push((field.label().to_owned(), field.shown(&value, registry), Key::Own(field.key)));

@@ -9,7 +9,10 @@ use super::{
     slider::{Amount, slider},
 };
 use crate::{
-    panel::{menu, theme::Palette},
+    panel::{
+        menu,
+        theme::{self, Palette},
+    },
     parameter::{Value, kind::number::Number},
     scene::limits::number,
     text::capitalised,
@@ -29,14 +32,16 @@ pub(super) fn of_parameter(ui: &mut Ui, of: &Declared, value: &Value, default: f
     Some(kind.of_numbers([new; 3]))
 }
 
-/// The unit as a choice: each option has a sign and a name. As wide as a plain unit, which keeps fields aligned.
-/// Returns the index of a new choice.
+/// The unit as a choice: each option has a sign and a name. As wide as the longest sign and at least as a plain unit, so
+/// that the field stays in its place. Returns the index of a new choice.
 pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<usize> {
     let palette = Palette::here(ui);
     let [sign, word] = options.get(chosen).copied().unwrap_or(["–", "unknown"]);
     let font = TextStyle::Small.resolve(ui.style());
-    let width = ui.painter().layout_no_wrap(sign.to_owned(), font.clone(), palette.text).size().x;
-    let (rect, response) = ui.allocate_exact_size(vec2(width.max(18.0), 22.0), Sense::click());
+    let wide = |[sign, _]: &[&str; 2]| theme::small_width(ui, sign).ceil();
+    // The text does not touch the edge of the panel.
+    let width = options.iter().map(wide).fold(16.0, f32::max) + 2.0;
+    let (rect, response) = ui.allocate_exact_size(vec2(width, 22.0), Sense::click());
     response
         .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, ui.is_enabled(), format!("unit: {word}")));
     let hot = response.hovered() || response.has_focus();

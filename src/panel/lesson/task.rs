@@ -85,7 +85,9 @@ fn predict(
     ui.add_space(2.0);
     let chosen = open.answer();
     let tried = open.answers.get(&open.step).map_or(&[][..], Vec::as_slice);
+    let answered = just_answered(ui, open);
     for (i, choice) in answers.iter().enumerate() {
+        let top = ui.cursor().top();
         // The correct answer, once known, stays marked.
         let known = tried.contains(&i) || (open.is_done() && choice.right);
         if answer(ui, choice, chosen == Some(i), known) {
@@ -93,8 +95,24 @@ fn predict(
         }
         if known && (chosen == Some(i) || choice.right) {
             feedback(ui, choice, open.is_done());
+            if answered && chosen == Some(i) {
+                // The answer with its reason, which may lie below what is in sight.
+                let whole = Rect::from_x_y_ranges(ui.max_rect().x_range(), top..=ui.cursor().top());
+                ui.scroll_to_rect(whole, None);
+            }
         }
     }
+}
+
+/// True in the first frame after an answer.
+fn just_answered(ui: &Ui, open: &OpenLesson) -> bool {
+    let (id, now) = (Id::new("answer of a lesson"), (open.entries, open.answer()));
+    let before = ui.data_mut(|data| {
+        let before: Option<(u64, Option<usize>)> = data.get_temp(id);
+        data.insert_temp(id, now);
+        before
+    });
+    before.is_some_and(|before| before.0 == now.0 && before.1 != now.1)
 }
 
 /// The verdict on an answer and its reason, below the text of the answer.

@@ -76,7 +76,7 @@ impl Session {
     }
 
     /// True for the name, and for the description, if they are those of the default scene and still apply. False in a
-    /// lesson, which has its own.
+    /// lesson, which has its own. A scene in a file keeps its name, which stands beside that of the file.
     pub(super) fn default_words(&self) -> [bool; 2] {
         let scene = self.document.scene();
         let ([light], [object], None) = (&scene.lights[..], &scene.objects[..], &self.lesson) else {
@@ -88,7 +88,10 @@ impl Session {
         let look = parts
             && scene.model_of(object) == default.reflection_model
             && (light.colour, light.colour_temperature) == (lamp.colour, None);
-        [parts && scene.name == default.name, look && scene.description == default.description]
+        [
+            parts && self.path.is_none() && scene.name == default.name,
+            look && scene.description == default.description,
+        ]
     }
 
     /// Removes the default name and description, as part of the step that made them wrong. `before` says which of them

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{GivenKeys, OwnKeys, PictureOptions, Session, SheetOptions};
+use super::{GivenKeys, MESSAGES_TAB, OwnKeys, PictureOptions, Session, SheetOptions};
 use crate::declared::with_defaults;
 
 /// Maximum length of the list of recent files.
@@ -48,6 +48,8 @@ with_defaults! {
         pub right_width: f32 = 344.0,
         /// Height of the bottom strip, in points.
         pub bottom_height: f32 = 144.0,
+        /// Height of the bottom strip while it shows messages, which need less than the other panels, in points.
+        pub messages_height: f32 = 144.0,
         /// Ids of hidden guest panels.
         pub hidden_panels: Vec<String> = Vec::new(),
         /// Ids of folded guest panels.
@@ -100,6 +102,12 @@ impl Settings {
         self.folded_panels.iter().any(|folded| folded == id)
     }
 
+    /// Height of the bottom strip with this panel, in points.
+    #[must_use]
+    pub fn strip_height(&self, tab: &str) -> f32 {
+        if tab == MESSAGES_TAB { self.messages_height } else { self.bottom_height }
+    }
+
     /// Replaces sizes that no screen has (after manual edits of the file) by defaults.
     pub(in crate::panel) fn tidy(mut self) -> Self {
         let default = Self::default();
@@ -112,6 +120,7 @@ impl Settings {
         tidy(&mut self.lesson_width, default.lesson_width);
         tidy(&mut self.right_width, default.right_width);
         tidy(&mut self.bottom_height, default.bottom_height);
+        tidy(&mut self.messages_height, default.messages_height);
         self.picture.tidy();
         self.sheet.tidy();
         self

@@ -165,7 +165,7 @@ pub enum ViewChange {
         left: f32,
         /// See [`Settings::right_width`].
         right: f32,
-        /// See [`Settings::bottom_height`].
+        /// See [`Settings::strip_height`]: of the panel that the strip shows.
         bottom: f32,
     },
     /// See [`View::keys_open`].
@@ -250,7 +250,11 @@ impl View {
             ViewChange::Left(open) => self.left_open = open,
             ViewChange::Right(open) => self.right_open = open,
             ViewChange::Sizes { left, right, bottom } => {
-                (kept.left_width, kept.right_width, kept.bottom_height) = (left, right, bottom);
+                (kept.left_width, kept.right_width) = (left, right);
+                match self.bottom_tab == MESSAGES_TAB {
+                    true => kept.messages_height = bottom,
+                    false => kept.bottom_height = bottom,
+                }
             }
             ViewChange::Keys(open) => self.keys_open = open,
             ViewChange::About(open) => self.about_open = open,

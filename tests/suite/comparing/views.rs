@@ -431,6 +431,19 @@ fn each_view_has_its_badges_in_every_layout() {
 }
 
 #[test]
+fn the_list_of_a_view_has_the_digits_of_its_heading() {
+    let mut bench = bench();
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "metallic_roughness")));
+    bench.key(Key::B, CTRL);
+    let roughness = Value::Number(0.424_264_07);
+    bench.apply(Action::Edit(Edit::material(Part::Variant(0), "roughness", roughness)));
+    bench.apply(Action::Compare(CompareCommand::Activate(1)));
+    bench.settle();
+    let texts = crate::window::layout::texts(&mut bench);
+    assert!(texts.iter().any(|(text, _)| text == "roughness  0.4243"), "{texts:?}");
+}
+
+#[test]
 fn a_view_differs_only_in_what_differs_now() {
     let mut bench = bench();
     bench.key(Key::B, CTRL);

@@ -538,6 +538,12 @@ fn the_words_of_the_default_scene_go_once_they_are_untrue() {
         session.apply(Action::Redo, &registry);
         assert_eq!(words(&session), (None, None), "{actions:?}");
     }
+    // A file keeps the name of its scene, and stays in the title.
+    let mut session = Session::new(default.clone());
+    session.path = Some("/scenes/default.json".into());
+    session.apply(Action::AddObject("torus".to_owned()), &registry);
+    assert_eq!(words(&session), (both.0.clone(), None));
+    assert_eq!(session.window_title(), "Default scene — default.json");
     // The user's own words are kept.
     let own = Scene { name: Some("Mine".to_owned()), description: Some("Two.".to_owned()), ..default };
     let mut session = Session::new(own);

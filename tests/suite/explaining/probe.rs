@@ -77,6 +77,71 @@ fn light_with_extent_has_its_error_and_a_choice_of_samples() {
     assert!(2.0 * error(&bench) < usual, "{} of {usual}", error(&bench));
 }
 
+#[test]
+fn the_hemisphere_is_whole_beside_the_list_in_a_window_of_1280_by_720() {
+    let mut scene = scene("phong", "phong");
+    scene.lights[0] = Light {
+        light_type: "rectangle".to_owned(),
+        direction: Some(scene.objects[0].position - scene.lights[0].position.expect("a place")),
+        ..scene.lights[0].clone()
+    };
+    let mut bench = bench(scene);
+    let pin = Pin::of_pixel(0, [320, 180], [640, 360], bench.session.document.view_angle());
+    bench.apply(Action::View(ViewChange::Pin(Some(pin))));
+    let mut scales = Vec::new();
+    // It is calculated in a thread.
+    for _ in 0..1000 {
+        bench.frame(Vec::new());
+        scales = bench.texts_in_sight();
+        scales.retain(|(text, _)| text.starts_with("white: "));
+        if !scales.is_empty() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    assert_eq!(scales.len(), 3, "each below its disc: {scales:?}");
+    let texts = bench.texts_in_sight();
+    let of = |start: &str| {
+        let found = texts.iter().find(|(text, _)| text.starts_with(start));
+        found.unwrap_or_else(|| panic!("{start} is not in sight: {texts:?}")).1
+    };
+    let (title, list) = (of("The hemisphere above"), of("Light by light"));
+    assert!((title.top() - list.top()).abs() < 4.0 && title.right() < list.left(), "{title} beside {list}");
+    for (text, place) in scales {
+        let disc = place.top() - title.bottom();
+        assert!(disc > 48.0 && place.bottom() < 694.0, "{text}: {place} below {title}");
+    }
+}
+
+#[test]
+fn messages_do_not_take_the_height_that_the_explanation_was_given() {
+    let mut bench = bench(scene("phong", "phong"));
+    let edge = bench.area.rect.bottom();
+    let press = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let at = |y: f32| bevy_egui::egui::pos2(640.0, y);
+    bench.frame(vec![Event::PointerMoved(at(edge))]);
+    bench.frame(vec![press(at(edge), true)]);
+    for k in 1..=6 {
+        bench.frame(vec![Event::PointerMoved(at(edge - 20.0 * k as f32))]);
+    }
+    bench.frame(vec![press(at(edge - 120.0), false)]);
+    bench.settle();
+    let settings = bench.session.settings.clone();
+    assert!(settings.bottom_height > 350.0, "{}", settings.bottom_height);
+    bench.session.say(lights_camera_models::panel::state::Severity::Error, "room.json:14:20: k_d is 0.2");
+    bench.settle();
+    assert!(720.0 - bench.area.rect.bottom() < 230.0, "the strip: {}", bench.area.rect);
+    assert_eq!(bench.session.settings, settings);
+    bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
+    bench.settle();
+    assert!((bench.area.rect.bottom() - edge + 120.0).abs() < 4.0, "{} of {edge}", bench.area.rect);
+}
+
 /// Moves the pointer to a place.
 fn point(bench: &mut Bench, at: Pos2) {
     bench.frame(vec![Event::PointerMoved(at)]);

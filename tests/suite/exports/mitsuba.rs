@@ -20,7 +20,7 @@ use lights_camera_models::{
     reference::{self, LightSamples, Picture, Settings},
     reflection::rgl,
     registry::Registry,
-    scene::{Background, Light, Object, Scene},
+    scene::{Background, Light, Object, Scene, examples::EXAMPLES},
 };
 
 const WIDTH: u32 = 128;
@@ -85,6 +85,16 @@ fn lights_that_hide_each_other_and_have_two_sides_are_named_where_there_are_some
     assert!(both.contains("hide farther ones") && !both.contains("two-sided"), "{both}");
     let doubled = said(vec![lamp("true")]).expect("a note");
     assert!(!doubled.contains("hide farther") && doubled.contains("a millimetre apart"), "{doubled}");
+}
+
+#[test]
+fn an_example_with_light_of_extent_is_exported() {
+    let example = EXAMPLES.iter().find(|example| example.file == "same_in_mitsuba.json").expect("shipped");
+    let scene = example.scene(&Registry::builtin()).expect("legal");
+    let types: Vec<_> = scene.lights.iter().map(|light| light.light_type.as_str()).collect();
+    assert_eq!(types, ["rectangle", "sphere", "environment"]);
+    let notes = exported(&scene).notes;
+    assert!(notes.iter().any(|note| note.contains("nearer ones hide farther ones")), "{notes:?}");
 }
 
 fn exported(scene: &Scene) -> Export {

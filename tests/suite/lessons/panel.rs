@@ -804,6 +804,26 @@ fn page_keys_scroll_long_text_and_the_footer_stays() {
     }
 }
 
+#[test]
+fn the_reason_of_an_answer_is_scrolled_into_sight() {
+    let lamp = LESSONS.iter().position(|lesson| lesson.id.starts_with("09")).expect("a lesson");
+    for (step, answer, reason) in [(0, 1, "That is why the equations"), (4, 0, "The highlight is its mirror")]
+    {
+        let mut bench = Bench::new(Session::default());
+        bench.size = vec2(1280.0, 720.0);
+        go(&mut bench, LessonCommand::Open(LessonSource::Shipped(lamp)));
+        go(&mut bench, LessonCommand::GoTo(step));
+        go(&mut bench, LessonCommand::Answer(answer));
+        (0..30).for_each(|_| drop(bench.frame(Vec::new())));
+        let next = bench.find("Next").expect("a button").rect;
+        let texts = bench.texts_in_sight();
+        let place =
+            |start: &str| texts.iter().find(|(text, _)| text.starts_with(start)).map(|(_, place)| *place);
+        let (verdict, reason) = (place("Right.").expect("in sight"), place(reason).expect("in sight"));
+        assert!(verdict.top() > 60.0 && reason.bottom() <= next.top(), "{step}: {verdict} {reason} {next}");
+    }
+}
+
 // ── layout ──
 
 #[test]

@@ -281,12 +281,24 @@ const TASKS: &[(&str, &str, Deed, Deed)] = &[
     ),
     (
         "09",
+        "A larger lamp",
+        Deed::Set(&[("/lights/0/width", || json!(5.2)), ("/lights/0/height", || json!(3.6))]),
+        Deed::Set(&[("/lights/0/width", || json!(10.4))]),
+    ),
+    (
+        "09",
         "Roughness blurs the image",
         Deed::Set(&[
             ("/objects/0/material/alpha_x", || json!(0.03)),
             ("/objects/0/material/alpha_y", || json!(0.03)),
         ]),
         Deed::Set(&[("/objects/0/material/alpha_x", || json!(0.03))]),
+    ),
+    (
+        "10",
+        "Turn the sky",
+        Deed::Set(&[("/lights/0/rotation", || json!(-120))]),
+        Deed::Set(&[("/lights/0/rotation", || json!(30))]),
     ),
     (
         "10",

@@ -701,7 +701,7 @@ fn each_view_has_the_handles_of_a_lamp_and_a_presentation_has_none() {
     bench.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)));
     bench.apply(Action::Select(Selection::Light(0)));
     let widths = |bench: &Bench| {
-        let named = bench.tree.iter().filter(|s| s.label == "Handle: width of Rectangle 1");
+        let named = bench.tree.iter().filter(|s| s.label == "Handle: width of Rectangle light 1");
         let mut all: Vec<_> = named.map(|s| s.rect.center()).collect();
         all.sort_by(|a, b| a.x.total_cmp(&b.x));
         all

@@ -1012,8 +1012,17 @@ fn a_lamp_with_extent_is_as_bright_as_its_luminance_or_lumen_say_and_its_unit_ha
             unit.left() >= bench.field("intensity").rect.right() && unit.width() > 25.0,
             "{scale}: {unit}"
         );
+        let sign = bench
+            .texts_in_sight()
+            .into_iter()
+            .find(|(text, place)| text == "cd/m²" && unit.intersects(*place));
+        let sign = sign.expect("the sign").1;
+        assert!(unit.shrink2(vec2(0.5, 0.0)).x_range().contains(sign.right()), "{scale}: {sign} in {unit}");
+        let before = bench.field("intensity").rect;
         bench.click("unit: candela per square metre");
         bench.click("lm  lumen");
+        let after = bench.field("luminous flux").rect;
+        assert!((after.min - before.min).length() < 0.5, "{scale}: from {before} to {after}");
         assert_eq!(bench.session.document.lights[0].luminous_flux, Some(246.74));
         assert!(bench.says(" cd/m²"), "{scale}");
     }
