@@ -63,7 +63,7 @@ use sides::Side;
 const MOST_LOBES: [usize; 2] = [2500, 250];
 /// Maximum number of pictures of a search that compares pictures, and the additional ones for each free
 /// number.
-const MOST_PICTURES: [usize; 2] = [400, 200];
+const MOST_PICTURES: [usize; 2] = [400, 250];
 /// What the pictures of a search may cost together: the square of the number of the model's parameters for each, and as many times
 /// that as there are [`USUAL`] responses in a picture.
 const PICTURES: usize = 800_000;

@@ -109,6 +109,8 @@ pub(super) struct Search<'a, T> {
     best: (f64, Option<Point>),
     /// For each parameter the difference that its value made, with the others at their present values.
     influence: Vec<f64>,
+    /// The same, or more where the others of its group are in the middle of their ranges.
+    reach: Vec<f64>,
     /// For each parameter whether values of it were tried, and whether one of them made a difference.
     effect: Vec<(bool, bool)>,
     ended: Ended,
@@ -137,6 +139,7 @@ impl<'a, T: Target> Search<'a, T> {
             cancelled: false,
             best: (f64::INFINITY, None),
             influence: vec![0.0; free.len()],
+            reach: vec![0.0; free.len()],
             effect: vec![(false, false); free.len()],
             ended: Ended::Itself,
             step: String::new(),
@@ -299,6 +302,13 @@ impl<'a, T: Target> Search<'a, T> {
             self.effect[i] = (true, self.effect[i].1 || errors[1] != errors[0]);
             alone.push(Subset { error: errors[0], chosen: vec![i], point: start });
         }
+        self.reach.clone_from(&self.influence);
+        for (i, free) in self.free.iter().enumerate() {
+            self.step = format!("trying {} with its group", free.parameter.label);
+            let (errors, _) = self.scan(&self.amid(i), i)?;
+            self.reach[i] = self.reach[i].max(errors[1] - errors[0]);
+            self.effect[i].1 |= errors[1] != errors[0];
+        }
         alone.sort_by(|a, b| a.error.total_cmp(&b.error));
         alone.truncate(BEAMS);
         for subset in &mut alone {
@@ -334,6 +344,20 @@ impl<'a, T: Target> Search<'a, T> {
         Ok(())
     }
 
+    /// The present values, but the others of a parameter's group in the middle of their ranges: the roughness of a coat shows only
+    /// where there is a coat.
+    fn amid(&self, parameter: usize) -> Point {
+        let mut point = Point { numbers: self.present(), on: vec![false; self.free.len()] };
+        let group = self.free[parameter].group;
+        for (k, (owner, axis)) in self.owners().into_iter().enumerate() {
+            if group.is_some() && owner != parameter && self.free[owner].group == group {
+                point.on[owner] = true;
+                point.numbers[k] = axis.value(0.5);
+            }
+        }
+        point
+    }
+
     /// The nearest of some subsets, one for each group of the parameter that was added last.
     fn nearest(&self, mut subsets: Vec<Subset>) -> Vec<Subset> {
         subsets.sort_by(|a, b| a.error.total_cmp(&b.error));
@@ -353,7 +377,6 @@ impl<'a, T: Target> Search<'a, T> {
         let all: Vec<usize> = (0..self.free.len()).collect();
         let owners = self.owners();
         let mut track = Track::new(self, &subset.point, &all);
-        track.point.on.clone_from(&subset.point.on);
         let at = track.coordinates();
         let mut here = vec![0.0; track.count()];
         let mut columns = vec![here.clone(); at.len()];
@@ -411,7 +434,10 @@ impl<'a, T: Target> Search<'a, T> {
                 self.step = format!("trying start {}", number + 1);
                 let (error, point) = self.descend_spread(number, set)?;
                 if set.len() < all.len() && error < PROMISING * self.best.0 {
-                    self.descend_from(&point, all, LIMITS)?;
+                    let (error, point) = self.descend_from(&point, all, SHORT)?;
+                    if error <= self.best.0 {
+                        self.descend_from(&point, all, LIMITS)?;
+                    }
                 }
                 if self.best.0 < NONE {
                     return Ok(());
@@ -427,27 +453,36 @@ impl<'a, T: Target> Search<'a, T> {
     /// Small sets of parameters, and all: two of a group, alone and with the leaders, which are the parameters that change most in the
     /// two groups that change most. Those without effect in all that was tried are left out.
     fn sets(&self) -> Vec<Vec<usize>> {
-        let mut ranked: Vec<usize> =
-            (0..self.free.len()).filter(|i| self.effect[*i] != (true, false)).collect();
-        ranked.sort_by(|a, b| self.influence[*b].total_cmp(&self.influence[*a]));
-        let group = |i: &usize| self.free[*i].group.map_or_else(|| Err(*i), Ok);
-        let first = ranked.first().into_iter();
-        let leaders: Vec<usize> = first
-            .clone()
-            .chain(ranked.iter().find(|i| first.clone().all(|first| group(first) != group(i))))
-            .copied()
-            .collect();
-        let mut sets: Vec<Vec<usize>> = Vec::new();
-        for (k, i) in ranked.iter().enumerate() {
-            for j in ranked[..k].iter().filter(|j| group(j) == group(i) || self.free[*i].group.is_none()) {
+        let [by_influence, ranked] = [&self.influence, &self.reach].map(|by| {
+            let mut all: Vec<usize> =
+                (0..self.free.len()).filter(|i| self.effect[*i] != (true, false)).collect();
+            all.sort_by(|a, b| by[*b].total_cmp(&by[*a]));
+            all
+        });
+        let group = |i: &usize| self.free[*i].group;
+        let first = by_influence.first();
+        let other = |i: &&usize| {
+            first.is_some_and(|first| group(first) != group(i) || group(i).is_none() && first != *i)
+        };
+        let second = by_influence.iter().find(other);
+        let leaders: Vec<usize> = first.into_iter().chain(second).copied().collect();
+        // Each with its place among those of its group: no group waits for all sets of another.
+        let mut placed: Vec<(usize, Vec<usize>)> = Vec::new();
+        for i in &ranked {
+            let mates: Vec<usize> = ranked.iter().copied().filter(|j| group(j) == group(i)).collect();
+            let at = mates.iter().position(|j| j == i).unwrap_or(0);
+            for (k, j) in mates[..at].iter().enumerate() {
+                let place = 2 * (at * (at - 1) / 2 + k);
                 // Alone their starts lie denser.
-                sets.push(vec![*i, *j]);
-                sets.push([&[*i, *j], &leaders[..]].concat());
+                placed.push((place, vec![*i, *j]));
+                placed.push((place + 1, [&[*i, *j], &leaders[..]].concat()));
             }
-            if self.free[*i].group.is_some() && ranked.iter().filter(|j| group(j) == group(i)).count() == 1 {
-                sets.push([&[*i], &leaders[..]].concat());
+            if mates.len() == 1 {
+                placed.push((0, [&[*i], &leaders[..]].concat()));
             }
         }
+        placed.sort_by_key(|(place, _)| *place);
+        let mut sets: Vec<Vec<usize>> = placed.into_iter().map(|(_, set)| set).collect();
         sets.push((0..self.free.len()).collect());
         let mut known = std::collections::HashSet::new();
         for set in &mut sets {

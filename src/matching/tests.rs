@@ -429,24 +429,31 @@ fn all_numbers_free_end_as_near_as_those_that_differ() {
     assert!(together.without_effect.iter().all(|name| together.kept.contains(name)), "{together:?}");
 }
 
-/// Dozens of numbers with a few that differ: OpenPBR's highlight took the place of its coat.
+/// OpenPBR's base takes the place of its coat, whose roughness shows only where there is a coat.
 #[test]
-fn a_coat_is_found_among_all_numbers_that_are_free() {
+fn a_coat_is_found_among_numbers_that_are_free() {
     let coated = [("coat_weight", number(0.8)), ("coat_roughness", number(0.2)), ("roughness", number(0.4))];
     let plain = [("coat_weight", number(0.0)), ("coat_roughness", number(0.0)), ("roughness", number(0.3))];
     let scene = scene(("openpbr", &coated), ("openpbr", &plain));
-    let free = [
-        "coat_weight",
-        "coat_roughness",
-        "coat_ior",
-        "roughness",
-        "specular_ior",
-        "metallic",
-        "specular_strength",
-    ];
+    let free = ["coat_weight", "coat_roughness", "roughness", "metallic", "specular_ior"];
     let together = matched(&scene, What::Lobe, &free).expect("a match");
-    let some = matched(&scene, What::Lobe, &free[..2]).expect("a match");
+    let some = matched(&scene, What::Lobe, &free[..3]).expect("a match");
     assert!(together.after <= some.after + 1e-5 * some.before, "{together:?}\n{some:?}");
-    assert!(together.after < 0.01 * together.before, "{together:?}");
-    assert_eq!(matched(&scene, What::Lobe, &free), Ok(together), "to the bit");
+    assert!(together.after < 1e-4 * together.before, "{together:?}");
+}
+
+#[test]
+fn two_searches_find_the_same_to_the_bit() {
+    let scene = scene(("ward", &[("alpha_x", number(0.1))]), ("blinn_phong", &[]));
+    let [first, second] =
+        [0, 1].map(|_| matched(&scene, What::Lobe, &["k_d", "k_s", "alpha"]).expect("a match"));
+    assert_eq!(first, second);
+    assert!(first.evaluations > 100 && first.after < first.before, "{first:?}");
+}
+
+#[test]
+fn what_ended_a_search_has_a_name_and_a_sentence() {
+    let all = [Ended::Itself, Ended::Evaluations, Ended::Time];
+    assert_eq!(all.map(Ended::id), ["search", "evaluations", "time"]);
+    assert_eq!(all.map(|ended| ended.note().is_some()), [false, true, true]);
 }

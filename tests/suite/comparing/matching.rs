@@ -9,7 +9,7 @@ use bevy::{
 use bevy_egui::egui::{Key, Modifiers};
 use lights_camera_models::{
     document::Edit,
-    matching::{self, Match, Measure, Metric, Request, What, match_view},
+    matching::{self, Ended, Match, Measure, Metric, Request, What, match_view},
     panel::state::{Action, CompareCommand, Effect, MatchCommand, Running, Session, Severity},
     parameter::{Value, Values},
     progress::Progress,
@@ -281,6 +281,20 @@ fn a_question_without_an_answer_is_closed() {
     bench.apply(Action::Compare(CompareCommand::Remove(1)));
     assert!(bench.session.match_draft.is_none());
     assert_eq!(bench.effects, []);
+}
+
+#[test]
+fn a_match_says_that_a_limit_ended_the_search() {
+    let mut bench = compared();
+    let scene = (*bench.session.document).clone();
+    let some = vec![("k_s", Value::Number(0.3))];
+    for values in [Vec::new(), some] {
+        let found = Match { values, ended: Ended::Evaluations, ..Match::default() };
+        bench.session.matched(&scene, (1, What::Lobe.into()), Some(Ok(found)), &bench.registry);
+        let text = bench.session.messages.last().map(|message| message.text.clone()).unwrap_or_default();
+        let end = ". The search ended at its limit of evaluations: fewer free parameters may come nearer.";
+        assert!(text.ends_with(end), "{text}");
+    }
 }
 
 #[test]
