@@ -24,6 +24,8 @@ struct Known {
     entered: Option<(Id, u64)>,
     /// A list and its entry that is chosen now: where arrow keys begin.
     current: Option<(Id, Id)>,
+    /// The chosen entry of the list that is open, and the first and the latest pass that showed it.
+    seen: Option<(Id, u64, u64)>,
 }
 
 fn enter(ctx: &Context, menu: Id) {
@@ -104,8 +106,19 @@ pub(super) fn choice(ui: &mut Ui, chosen: bool, text: impl Into<String>, by_key:
     let text: String = text.into();
     let response = ui.selectable_label(chosen, text);
     if chosen {
-        let entry = Some((response.layer_id.id, response.id));
-        kept::with(ui.ctx(), |known: &mut Known| known.current = entry);
+        let pass = ui.ctx().cumulative_pass_nr();
+        let first = kept::with(ui.ctx(), |known: &mut Known| {
+            known.current = Some((response.layer_id.id, response.id));
+            let before = known.seen.filter(|(id, _, last)| *id == response.id && pass <= last + 1);
+            let first = before.map_or(pass, |(_, first, _)| first);
+            known.seen = Some((response.id, first, pass));
+            first
+        });
+        // A list opens with what is chosen in sight. Its height is known after its first pass.
+        if pass <= first + PATIENCE && !ui.clip_rect().contains_rect(response.rect) {
+            response.scroll_to_me_animation(None, egui::style::ScrollAnimation::none());
+            ui.ctx().request_repaint();
+        }
     }
     if response.clicked() {
         *by_key = response.has_focus();

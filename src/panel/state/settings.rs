@@ -108,6 +108,11 @@ impl Settings {
         if tab == MESSAGES_TAB { self.messages_height } else { self.bottom_height }
     }
 
+    /// The height of the bottom strip with this panel, to change it.
+    pub(super) fn strip_height_mut(&mut self, tab: &str) -> &mut f32 {
+        if tab == MESSAGES_TAB { &mut self.messages_height } else { &mut self.bottom_height }
+    }
+
     /// Replaces sizes that no screen has (after manual edits of the file) by defaults.
     pub(in crate::panel) fn tidy(mut self) -> Self {
         let default = Self::default();

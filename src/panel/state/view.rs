@@ -251,10 +251,7 @@ impl View {
             ViewChange::Right(open) => self.right_open = open,
             ViewChange::Sizes { left, right, bottom } => {
                 (kept.left_width, kept.right_width) = (left, right);
-                match self.bottom_tab == MESSAGES_TAB {
-                    true => kept.messages_height = bottom,
-                    false => kept.bottom_height = bottom,
-                }
+                *kept.strip_height_mut(&self.bottom_tab) = bottom;
             }
             ViewChange::Keys(open) => self.keys_open = open,
             ViewChange::About(open) => self.about_open = open,

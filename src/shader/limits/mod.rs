@@ -161,6 +161,30 @@ mod tests {
     }
 
     #[test]
+    fn the_largest_shader_is_as_documented() {
+        let page = include_str!("../../../docs/custom-models.md").replace('\n', " ");
+        for words in [
+            "solid body of OpenPBR",
+            "about 21 000 of the 150 000 words",
+            "about 60 000 of the 393 216 words",
+        ] {
+            assert!(page.contains(words), "{words}");
+        }
+        assert_eq!((LIMITS.tokens, 4 * LIMITS.expansion), (150_000, 393_216));
+        let all = shipped();
+        let size = |(_, composed): &&(String, Composed)| {
+            token::tokens(&composed.text, LIMITS.tokens).map_or(0, |tokens| tokens.list.len())
+        };
+        let found = all.iter().max_by_key(size).expect("there are some");
+        let (count, (name, largest)) = (size(&found), found);
+        assert!(name.starts_with("openpbr") && (18_000..24_000).contains(&count), "{name}: {count}");
+        // Of all declarations together it is four times as much.
+        let passes =
+            |expansion| text::check(&largest.text, &Limits { expansion, ..LIMITS }, |_| true).is_ok();
+        assert!(!passes(52_000 / 4) && passes(70_000 / 4), "{name}");
+    }
+
+    #[test]
     fn what_is_shipped_stays_far_below_the_limits() {
         let fifth = LIMITS.divided(5);
         for (name, composed) in shipped() {

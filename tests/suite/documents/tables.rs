@@ -568,6 +568,7 @@ fn limits() -> String {
         ("functions, constants, types and module variables", l.declarations.to_string()),
         ("a chain of these, each of which uses the next", l.chain.to_string()),
         ("words of one of these, with the constants and types in it written out", l.expansion.to_string()),
+        ("words of all of these, likewise", (4 * l.expansion).to_string()),
         ("brackets within brackets", l.nesting.to_string()),
         ("operators and calls on one path through an expression", l.depth.to_string()),
         ("blocks within blocks (each `else if` counts as one)", l.blocks.to_string()),

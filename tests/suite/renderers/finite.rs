@@ -13,14 +13,15 @@ use lights_camera_models::{
         self, Incident, LightRecord, LightType,
         extent::{Sample, Seen},
     },
-    optics::{Frame, Terms, sampling},
+    optics::{Frame, TermSelection, Terms, sampling},
     panel::state::{Session, Severity},
+    parameter::Value,
     parameters,
     reference::{self, Settings},
     reflection::{self, ReflectionModel},
     registry::{Register as _, Registry},
     scene::{
-        Light, Object, Scene, Variant,
+        Light, Object, Scene, Variant, check,
         load::{self, Defaults},
         save,
     },
@@ -29,6 +30,7 @@ use lights_camera_models::{
 };
 
 use crate::{
+    helpers::pictures::sampled,
     helpers::support::{Run, lcm_in, shipped_scenes},
     library::plugins::app,
 };
@@ -405,4 +407,27 @@ fn the_window_says_once_which_model_gives_no_number() {
     let odd = &session.facts.not_finite;
     assert_eq!(odd[0].iter().map(|odd| odd.part).collect::<Vec<_>>(), [Selection::Object(1)]);
     assert!(odd[1..].iter().all(Vec::is_empty));
+}
+
+#[test]
+fn a_lamp_within_an_object_lights_nothing_of_it_and_one_that_reaches_out_lights_what_is_around() {
+    let registry = Registry::builtin();
+    let settings = Settings { width: 48, height: 48, samples: 1, terms: TermSelection::All };
+    let drawn = |place: Vec3, radius: f32| {
+        let mut scene = Scene { shading_model: "phong".to_owned(), ..Scene::default() };
+        let lamp = &mut scene.lights[0];
+        lamp.light_type = "sphere".to_owned();
+        (lamp.position, lamp.intensity) = (Some(place), 1.0);
+        lamp.parameters.set("radius", Value::Number(radius));
+        assert_eq!(check::scene(&scene, &registry), [], "{place}");
+        sampled(&scene, &registry, &settings, 32)
+    };
+    // The centres of lamp and object differ by a little, for they must not be equal.
+    let hidden = drawn(Vec3::new(5.0, 5.1, 5.0), 0.3);
+    let middle = 3 * (24 * 48 + 24);
+    assert_eq!(hidden[middle..middle + 3], [0, 0, 0]);
+    let reaches = drawn(Vec3::new(5.0, 5.4, 5.6), 0.6);
+    let background = reaches[0];
+    let lit = reaches.iter().filter(|code| (1..255).contains(*code) && **code != background).count();
+    assert!(reaches.contains(&255) && reaches.contains(&0) && lit > 30, "{lit}");
 }

@@ -7,6 +7,7 @@ use lights_camera_models::{
         state::{Action, Badge, Effect, MATERIALS_TAB, Session, Severity, Steer, ViewChange},
         theme::DARK,
     },
+    parameter::Value,
     scene::{Object, Scene},
 };
 
@@ -374,5 +375,32 @@ fn arrows_in_a_drop_down_list_begin_at_what_is_chosen() {
         bench.key(key, Modifiers::NONE);
         assert_eq!(name(&bench), types[expected], "{key:?} from {}", types[chosen]);
         bench.key(Key::Escape, Modifiers::NONE);
+    }
+}
+
+#[test]
+fn the_chosen_entry_of_a_long_list_is_whole_when_it_opens_and_so_is_each_that_gets_the_focus() {
+    let mut scene = Scene::default();
+    scene.lights[0].light_type = "environment".to_owned();
+    scene.lights[0].position = None;
+    for (name, value) in [("source", "sky"), ("sky_type", "12")] {
+        scene.lights[0].parameters.set(name, Value::Choice(value.into()));
+    }
+    let mut bench = Bench::new(Session::new(scene));
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Select(Selection::Light(0)));
+    let button = bench.tree.iter().find(|s| s.label.starts_with("type of sky: ")).expect("a list").rect;
+    bench.click_at(button.center(), PointerButton::Primary);
+    let entry = bench.tree.iter().find(|s| s.label.starts_with("12 ")).expect("an entry").rect;
+    let whole = bench.ctx.viewport(|viewport| {
+        let mut all = viewport.prev_pass.widgets.layers().flat_map(|(_, all)| all);
+        let is_entry =
+            |w: &egui::WidgetRect| (w.rect.min - entry.min).length() < 1.0 && w.sense.senses_click();
+        all.any(|w| is_entry(w) && w.interact_rect.expand(0.5).contains_rect(w.rect))
+    });
+    assert!(whole, "{entry} is cut");
+    for key in [Key::ArrowDown, Key::ArrowUp, Key::ArrowUp, Key::ArrowDown] {
+        bench.key(key, Modifiers::NONE);
+        assert!(in_sight(&bench), "{} at {:?}", name(&bench), focused(&bench));
     }
 }
