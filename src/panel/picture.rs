@@ -469,13 +469,9 @@ fn plate_room(ui: &Ui, rect: Rect, left: f32) -> f32 {
 /// The text of a badge: the longest that takes one line. If none does, the shortest.
 fn one_line<'b>(ui: &Ui, rect: Rect, badge: &'b Badge, font: &FontId, left: f32) -> &'b String {
     let room = plate_room(ui, rect, left);
-    let width = |text: &String| {
-        let galley = ui.painter().layout_no_wrap(text.clone(), font.clone(), Color32::WHITE);
-        galley.size().x
-    };
     let mut texts = iter::once(&badge.text).chain(&badge.shorter);
     let shortest = badge.shorter.last().unwrap_or(&badge.text);
-    texts.find(|text| width(text) <= room).unwrap_or(shortest)
+    texts.find(|text| theme::width_in(ui, text, font) <= room).unwrap_or(shortest)
 }
 
 /// Text on a background that is readable over any picture, where `put` puts a plate of its size. Returns the rectangle.
