@@ -632,3 +632,14 @@ fn in_a_narrow_window_names_go_before_icons_and_sliders_have_room() {
     let slider = slider.expect("of the rectangle").rect.width() / bench.ctx.zoom_factor();
     assert!(slider > 48.0, "{slider}");
 }
+
+#[test]
+fn in_a_narrow_panel_the_unit_of_a_colour_is_whole() {
+    let mut session = with_objects(&["sphere"]);
+    session.settings.right_width = 264.0;
+    let mut bench = Bench::new(session);
+    bench.apply(Action::Select(Selection::Light(0)));
+    let units: Vec<_> = bench.texts_in_sight().into_iter().filter(|(text, _)| text == "sRGB").collect();
+    assert!(!units.is_empty());
+    assert!(units.iter().all(|(_, rect)| rect.right() < bench.size.x - 10.0), "{units:?} of {}", bench.size);
+}
