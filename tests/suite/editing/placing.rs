@@ -575,7 +575,7 @@ fn new_lamps_cover_no_object_and_no_other_lamp() {
             session.apply(Action::AddLight(kind.to_owned()), &registry);
             let all = [0, nth, nth + 1].map(|visible| with_lamps(&session, visible, &registry));
             let [bare, before, after] = all.each_ref().map(|picture| &picture.pixels);
-            let things = || (0..bare.len()).filter(|i| bare[*i].w > 0.0 || bare[*i] != before[*i]);
+            let things = || (0..bare.len()).filter(move |i| bare[*i].w > 0.0 || bare[*i] != before[*i]);
             let covered = things().filter(|i| before[*i] != after[*i]).count();
             let light = session.document.lights.last();
             assert!(100 * covered < things().count(), "{what}, {kind}: {covered} pixels: {light:?}");
