@@ -63,7 +63,12 @@ fn fragment(in: SeenStages) -> SeenPixel {
     if !light_there || illumination.channel != 0u {
         discard;
     }
-    // The depth of objects: the distance of the near plane over that along the view axis.
     // As bright as a white surface that receives it from everywhere, as objects are shown.
-    return SeenPixel(displayed(PI * radiance * illumination.exposure), min(nearness * view.clip_from_view[3].z, 1.0));
+    var shown = displayed(PI * radiance * illumination.exposure);
+    if illumination.look == LOOK_PART {
+        // A lamp is not a surface that clips: src/render/mean.wgsl marks pixels that any part of one is in.
+        shown.a = -4096.0;
+    }
+    // The depth of objects: the distance of the near plane over that along the view axis.
+    return SeenPixel(shown, min(nearness * view.clip_from_view[3].z, 1.0));
 }

@@ -31,8 +31,9 @@ pub fn badge(session: &Session, view: usize, pixels: f64) -> Option<Badge> {
     Some(Badge {
         severity: Severity::Warning,
         text: format!("Clipped: {share} of the picture"),
+        shorter: vec![format!("Clipped: {share}"), share],
         help: "Some pixels ask for more light than the display can show. They are cut off: highlights lose their \
-               shape, and colours shift. A lower exposure, a weaker light or tone mapping brings them back. \
+               shape, and colours shift. Lights in sight do not count. A lower exposure, a weaker light or tone mapping brings them back. \
                Click to show where."
             .to_owned(),
     })

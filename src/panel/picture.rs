@@ -1,6 +1,6 @@
 //! The overlays of the picture: badges, caption, axes, hints.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, iter};
 
 use bevy_egui::egui::FontFamily;
 
@@ -349,7 +349,8 @@ impl<'a> Overlaid<'_, 'a> {
         let rect = placer.room;
         for (badge, actions) in all {
             let put = |size| placer.place(size);
-            let place = plate(ui, rect, put, &badge.text, font.clone(), 18.0 * scale);
+            let text = one_line(ui, rect, &badge, &font, 18.0 * scale);
+            let place = plate(ui, rect, put, text, font.clone(), 18.0 * scale);
             let sense = if actions.is_empty() { Sense::hover() | Sense::FOCUSABLE } else { Sense::click() };
             let response = ui.interact(place, ui.id().with(("badge", &badge.text)), sense);
             let painter = ui.painter_at(rect);
@@ -369,12 +370,17 @@ impl<'a> Overlaid<'_, 'a> {
             self.written.push(place);
             let pointer = if sense.senses_click() { CursorIcon::PointingHand } else { CursorIcon::Default };
             let response = response.on_hover_cursor(pointer);
-            if !badge.help.is_empty() {
+            let help = if *text == badge.text {
+                badge.help.clone()
+            } else {
+                format!("{}. {}", badge.text, badge.help)
+            };
+            if !help.is_empty() {
                 // With the keyboard alone, the help can be reached in no other way.
                 if response.has_focus() {
-                    response.show_tooltip_text(&badge.help);
+                    response.show_tooltip_text(&help);
                 }
-                response.on_hover_text(&badge.help);
+                response.on_hover_text(&help);
             }
         }
     }
@@ -451,12 +457,25 @@ fn that_fit(ui: &Ui, rect: Rect, heading: &str, lines: &[String], tallest: f32) 
     Some(galleys).filter(|galleys| !too_large(galleys))
 }
 
+/// The width of the text of a plate in a picture.
+fn plate_room(ui: &Ui, rect: Rect, left: f32) -> f32 {
+    (rect.width() - 16.0 - 16.0 * theme::scale_here(ui) - left).max(64.0)
+}
+
+/// The text of a badge: the longest that takes one line. If none does, the shortest.
+fn one_line<'b>(ui: &Ui, rect: Rect, badge: &'b Badge, font: &FontId, left: f32) -> &'b String {
+    let room = plate_room(ui, rect, left);
+    let mut texts = iter::once(&badge.text).chain(&badge.shorter);
+    let shortest = badge.shorter.last().unwrap_or(&badge.text);
+    texts.find(|text| theme::width_in(ui, text, font) <= room).unwrap_or(shortest)
+}
+
 /// Text on a background that is readable over any picture, where `put` puts a plate of its size. Returns the rectangle.
 fn plate(ui: &Ui, rect: Rect, put: impl FnOnce(Vec2) -> Rect, text: &str, font: FontId, left: f32) -> Rect {
     let palette = Palette::here(ui);
     let padding = vec2(8.0, 4.0) * theme::scale_here(ui);
-    let room = rect.width() - 16.0 - 2.0 * padding.x - left;
-    let galley = ui.painter().layout(text.to_owned(), font, palette.text, room.max(64.0));
+    let room = plate_room(ui, rect, left);
+    let galley = ui.painter().layout(text.to_owned(), font, palette.text, room);
     let place = put(galley.size() + 2.0 * padding + vec2(left, 0.0));
     let painter = ui.painter_at(rect);
     painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
@@ -504,6 +523,7 @@ fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<S
     let badge = Badge {
         severity: if whose.is_empty() { Severity::Info } else { Severity::Warning },
         text: format!("Only the {shown} term{whose} · Show all"),
+        shorter: Vec::new(),
         help: "The other terms of the equation are hidden. Click to show them all; T goes on to the next."
             .to_owned(),
     };
@@ -525,6 +545,7 @@ fn no_number(view: usize, session: &Session, registry: &Registry) -> Option<Sign
     let badge = Badge {
         severity: Severity::Warning,
         text: format!("Not a number: {}", names.join(", ")),
+        shorter: Vec::new(),
         help: format!("{} It is drawn black or white. Click to show where.", lines.join(" ")),
     };
     let shown = session.view.channels.get(view).copied().flatten() == Some(DebugChannel::NotANumber);
@@ -547,8 +568,11 @@ fn badges_of(view: usize, picture: Rect, ui: &Ui, session: &Session, registry: &
     }
     all.extend(clipped);
     if !session.document.variants.is_empty() {
-        for (badge, _) in &mut all {
-            badge.text = format!("{} · {}", LETTERS[view.min(MAX_VARIANTS)], badge.text);
+        let letter = LETTERS[view.min(MAX_VARIANTS)];
+        for text in
+            all.iter_mut().flat_map(|(badge, _)| iter::once(&mut badge.text).chain(&mut badge.shorter))
+        {
+            *text = format!("{letter} · {text}");
         }
     }
     all

@@ -146,8 +146,13 @@ pub fn small(ui: &Ui, text: impl Into<String>) -> RichText {
 /// Width of a text in the smallest size.
 #[must_use]
 pub fn small_width(ui: &Ui, text: &str) -> f32 {
-    let font = TextStyle::Small.resolve(ui.style());
-    ui.painter().layout_no_wrap(text.to_owned(), font, Color32::WHITE).size().x
+    width_in(ui, text, &TextStyle::Small.resolve(ui.style()))
+}
+
+/// Width of a text in a font.
+#[must_use]
+pub fn width_in(ui: &Ui, text: &str, font: &FontId) -> f32 {
+    ui.painter().layout_no_wrap(text.to_owned(), font.clone(), Color32::WHITE).size().x
 }
 
 /// Text in bold, for headings of groups.

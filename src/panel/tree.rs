@@ -156,8 +156,27 @@ fn heading(ui: &mut Ui, name: &str, count: usize, menu: impl FnOnce(&mut Ui)) {
     Popup::menu(&response).show(menu);
 }
 
-/// Width below which the list has tighter spacing, in points.
+/// Width below which the list has tighter spacing, and names go before icons, in points.
 const NARROW: f32 = 190.0;
+/// Width below which the spacing is tighter still, in points.
+const TIGHT: f32 = 150.0;
+
+/// Spacing of a row: from its left to the middle of the sign, from there to the name, and the width of a column of icons.
+fn spacing(width: f32, nested: bool) -> [f32; 3] {
+    match width {
+        width if width < TIGHT => [13.0, 11.0, 17.0],
+        width if width < NARROW => [16.0, 14.0, 22.0],
+        _ => [if nested { 22.0 } else { 16.0 }, 14.0, 24.0],
+    }
+}
+
+/// The number of columns behind a name in a narrow list: switch and colour, or the switch alone, or none, so that the name
+/// has its room. The switch of what is off stays. A row under the pointer has both.
+fn columns(name: f32, room: f32, between: f32, is_there: bool) -> usize {
+    let fits = |count: usize| name <= room - (count as f32 * between).max(4.0);
+    let least = usize::from(!is_there);
+    (least..=2).rev().find(|count| fits(*count)).unwrap_or(least)
+}
 
 /// The row of a part.
 struct PartRow<'a> {
@@ -200,32 +219,63 @@ impl<'a> PartRow<'a> {
         } else if hovered || self.is_in_chosen_row {
             painter.rect_filled(ground, 4.0, palette.hovered);
         }
-        let narrow = rect.width() < NARROW;
-        let x = rect.left() + (if nested && !narrow { 22.0 } else { 16.0 });
+        let [indent, gap, between] = spacing(rect.width(), nested);
+        let x = rect.left() + indent;
         let square = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, 14.0));
         let dot = self.sign(ui, &painter, square);
-        let text_left = x + 14.0;
+        let text_left = x + gap;
         if session.renaming == Some(part) {
             let place =
                 rect.shrink2(vec2(0.0, 2.0)).with_min_x(text_left - 4.0).with_max_x(ground.right() - 4.0);
             return self.rename(ui, place, context);
         }
-        let between = if narrow { 22.0 } else { 24.0 };
-        let right = ground.right() - if nested { 2.0 * between } else { 8.0 };
+        let body = TextStyle::Body.resolve(ui.style());
+        let columns = match nested {
+            true if rect.width() < NARROW && !hovered => {
+                self.columns(ui, ground.right() - text_left, between)
+            }
+            _ => 2 * usize::from(nested),
+        };
+        let right = ground.right() - (columns as f32 * between).max(if nested { 4.0 } else { 8.0 });
         let colour = if is_there(&session.document, part) { palette.text } else { palette.weak };
         let room = (right - text_left).max(8.0);
-        let body = TextStyle::Body.resolve(ui.style());
         let (galley, cut) = theme::elided_within(ui, name, &body, colour, room);
         painter.galley(pos2(text_left, rect.center().y - galley.size().y / 2.0), galley, colour);
         if let Some(rgb) = dot {
-            let centre = |from_right: f32| pos2(ground.right() - from_right, rect.center().y);
-            self.toggle(ui, centre(1.5 * between), hovered, context);
-            self.colour_dot(ui, centre(0.5 * between), rgb, context);
+            self.buttons(ui, ground, [columns as f32, between], rgb, context);
         }
         acted(ui, &response, part, nested, context);
         response.context_menu(|ui| menu(ui, part, nested, context));
         if cut {
             response.on_hover_text(name);
+        }
+    }
+
+    /// The number of columns behind the name in a narrow list.
+    fn columns(&self, ui: &Ui, room: f32, between: f32) -> usize {
+        let body = TextStyle::Body.resolve(ui.style());
+        let name = theme::width_in(ui, &self.name, &body);
+        columns(name, room, between, is_there(&self.session.document, self.part))
+    }
+
+    /// The switch and the colour of a light or an object, as far as so many columns of a width have room for them.
+    fn buttons(
+        &self,
+        ui: &mut Ui,
+        row: Rect,
+        [columns, width]: [f32; 2],
+        rgb: [u8; 3],
+        context: &mut PanelContext<'_>,
+    ) {
+        let place = |column: f32| {
+            let centre = pos2(row.right() - (column - 0.5) * width, row.center().y);
+            Rect::from_center_size(centre, vec2(width.min(22.0), 22.0))
+        };
+        if columns > 0.5 {
+            self.toggle(ui, place(columns), ui.rect_contains_pointer(row), context);
+        }
+        if columns > 1.5 {
+            self.colour_dot(ui, place(1.0), rgb, context);
         }
     }
 
@@ -259,11 +309,11 @@ impl<'a> PartRow<'a> {
     }
 
     /// The eye of an object, or the lamp of a light.
-    fn toggle(&self, ui: &mut Ui, centre: Pos2, row_hovered: bool, context: &mut PanelContext<'_>) {
+    fn toggle(&self, ui: &mut Ui, place: Rect, row_hovered: bool, context: &mut PanelContext<'_>) {
         let (palette, part) = (Palette::here(ui), self.part);
         let there = is_there(&self.session.document, part);
         let says = format!("{} {}", toggle_words(part, there), self.name);
-        let response = spot(ui, centre, ui.id().with(("toggle", part)), &says);
+        let response = spot(ui, place, ui.id().with(("toggle", part)), &says);
         let icon = match (part, there) {
             (Selection::Light(_), true) => Icon::Lamp,
             (Selection::Light(_), false) => Icon::LampOff,
@@ -272,18 +322,18 @@ impl<'a> PartRow<'a> {
         };
         let strong = row_hovered || !there || response.hovered();
         let colour = if strong { palette.text } else { palette.weak };
-        icon::paint(ui.painter(), Rect::from_center_size(centre, vec2(13.0, 13.0)), icon, colour);
+        icon::paint(ui.painter(), Rect::from_center_size(place.center(), vec2(13.0, 13.0)), icon, colour);
         if response.on_hover_text(format!("{says} (V for what is selected)")).clicked() {
             context.act(Action::Toggle(part));
         }
     }
 
     /// The colour of a part, as a button that changes it.
-    fn colour_dot(&self, ui: &mut Ui, centre: Pos2, [r, g, b]: [u8; 3], context: &mut PanelContext<'_>) {
+    fn colour_dot(&self, ui: &mut Ui, place: Rect, [r, g, b]: [u8; 3], context: &mut PanelContext<'_>) {
         let (palette, part) = (Palette::here(ui), self.part);
         let says = format!("Colour of {}", self.name);
-        let response = spot(ui, centre, ui.id().with(("dot", part)), &says);
-        ui.painter().circle(centre, 4.5, Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
+        let response = spot(ui, place, ui.id().with(("dot", part)), &says);
+        ui.painter().circle(place.center(), 4.5, Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
         let popup = Popup::menu(&response);
         popup.close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
             let chosen = knob::picker(ui, response.id.with("picker"), &says, [r, g, b]);
@@ -400,12 +450,25 @@ fn toggle_words(part: Selection, there: bool) -> &'static str {
 }
 
 /// A small clickable area in a row. Tab skips it, since the row offers the same action by keyboard.
-fn spot(ui: &Ui, centre: Pos2, id: Id, says: &str) -> Response {
-    let rect = Rect::from_center_size(centre, vec2(22.0, 22.0));
+fn spot(ui: &Ui, rect: Rect, id: Id, says: &str) -> Response {
     let response = ui.interact(rect, id, Sense::CLICK);
     theme::says(&response, WidgetType::Button, says);
     if response.hovered() {
         ui.painter().rect_filled(rect, 4.0, Palette::here(ui).hovered);
     }
     response
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn in_a_narrow_list_names_go_before_icons() {
+        let of = |name: f32| [true, false].map(|is_there| columns(name, 70.0, 17.0, is_there));
+        assert_eq!(of(30.0), [2, 2]);
+        assert_eq!(of(50.0), [1, 1]);
+        assert_eq!(of(60.0), [0, 1], "what is off says so");
+        assert_eq!(of(300.0), [0, 1]);
+    }
 }

@@ -23,6 +23,8 @@ struct Header {
 // As in display.wgsl, whose last step this is for the mean.
 const CUT_OFF: f32 = 254.0 / 255.0;
 const WHITE: f32 = 1.0005;
+// The opacity of a pixel that a light with extent is in, which does not count as clipped.
+const LAMP: f32 = 253.0 / 255.0;
 const LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
 struct Drawn {
@@ -54,13 +56,16 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Drawn {
             select(of_block.g, luminance, weights.z > 0.0),
         );
     }
-    // The opacity of the mean is 0 where something is seen, 1 where nothing is, and in a channel everywhere.
+    // The opacity of the mean is 0 where something is seen, 1 where nothing is, and in a channel everywhere; negative where
+    // a light with extent is in sight.
+    let opacity = max(mean.a, 0.0);
     var colour = mean.rgb;
-    var is_cut_off = mean.a < 1.0 && any(colour > vec3(WHITE));
+    var is_cut_off = opacity < 1.0 && any(colour > vec3(WHITE));
     if illumination.gamma_naive != 0u && illumination.channel == 0u {
-        is_cut_off = mean.a < 1.0 && any(colour >= vec3(1.0));
+        is_cut_off = opacity < 1.0 && any(colour >= vec3(1.0));
         let c = clamp(colour, vec3(0.0), vec3(1.0));
-        colour = mix(vec3(srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b)), colour, mean.a);
+        colour = mix(vec3(srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b)), colour, opacity);
     }
-    return Drawn(vec4(colour, select(1.0, CUT_OFF, is_cut_off)), mean, squares);
+    let mark = select(select(1.0, CUT_OFF, is_cut_off), LAMP, mean.a < 0.0);
+    return Drawn(vec4(colour, mark), mean, squares);
 }

@@ -2,7 +2,8 @@
 //!
 //! A compute pass reads the texture of the picture. After tone mapping, it contains the values sent to the display,
 //! even beyond the displayable range; a picture drawn [straight](Straight) into its texture marks such pixels. A few
-//! kilobytes come back, a frame or two later.
+//! kilobytes come back, a frame or two later. Lights with extent in sight, which are meant to be brighter than surfaces, do
+//! not count; they too are marked by the opacity.
 
 use std::collections::HashMap;
 

@@ -25,7 +25,9 @@ fn count(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var y = low.y; y < high.y; y++) {
         for (var x = low.x; x < high.x; x++) {
             let pixel = textureLoad(picture, vec2(x, y), 0);
-            clipped += u32(select(any(pixel.rgb > vec3(ask.limit)), pixel.a < 0.999, ask.limit < 0.0));
+            // Lights with extent in sight are marked by an opacity of 253 of 255, and do not count.
+            let is_beyond = any(pixel.rgb > vec3(ask.limit)) && pixel.a > 253.5 / 255.0;
+            clipped += u32(select(is_beyond, pixel.a < 0.999, ask.limit < 0.0));
         }
     }
     answer[1u + id.y * ACROSS + id.x] = clipped;

@@ -10,7 +10,7 @@ use super::{
     vector::axis_letter,
 };
 use crate::{
-    panel::theme::Palette,
+    panel::theme::{self, Palette},
     parameter::{Value, kind::colour::Colour},
     scene::limits::Limits,
     text::capitalised,
@@ -60,6 +60,11 @@ pub fn colour_knob(
     out.filter(|c| *c != value)
 }
 
+/// Widths of a swatch, of the field of a channel, and of the letter and the gaps beside that, in points.
+const SWATCH: f32 = 44.0;
+const CHANNEL: f32 = 40.0;
+const BESIDE: f32 = 22.0;
+
 /// The swatch, and a field for each channel. Returns the new value, and the first error with the field.
 fn channels(
     ui: &mut Ui,
@@ -70,7 +75,12 @@ fn channels(
 ) -> (Option<[u8; 3]>, Option<(String, Response)>) {
     ui.spacing_mut().item_spacing.x = 4.0;
     let mut rgb = value;
-    swatch(ui, id.with("swatch"), caption.label, &mut rgb, default);
+    // In a narrow panel, swatch and fields shrink before the unit is cut off.
+    let whole = SWATCH + 3.0 * (CHANNEL + BESIDE) + theme::small_width(ui, caption.unit).max(18.0) + 4.0;
+    let over = (whole - ui.available_width()).max(0.0);
+    let shrunk = over.min(0.5 * SWATCH);
+    let channel_width = (CHANNEL - (over - shrunk) / 3.0).max(34.0);
+    swatch(ui, id.with("swatch"), caption.label, SWATCH - shrunk, &mut rgb, default);
     let (mut out, mut wrong) = (Some(rgb).filter(|rgb| *rgb != value), None);
     let limits = Limits::between(0.0, 255.0).whole();
     for (channel, (letter, word)) in [("R", "red"), ("G", "green"), ("B", "blue")].into_iter().enumerate() {
@@ -82,7 +92,7 @@ fn channels(
         };
         let now = f64::from(value[channel]);
         axis_letter(ui, letter, &name, &limits, now, &mut set);
-        let f = field(ui, id.with(channel), &name, now, &limits, 40.0);
+        let f = field(ui, id.with(channel), &name, now, &limits, channel_width);
         f.value.into_iter().for_each(set);
         wrong = wrong.or(f.error.map(|e| (e, f.response)));
     }
@@ -91,9 +101,9 @@ fn channels(
 }
 
 /// The colour swatch: a click opens the picker, a double-click sets the default.
-fn swatch(ui: &mut Ui, id: Id, name: &str, rgb: &mut [u8; 3], default: Option<[u8; 3]>) {
+fn swatch(ui: &mut Ui, id: Id, name: &str, width: f32, rgb: &mut [u8; 3], default: Option<[u8; 3]>) {
     let palette = Palette::here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(44.0, 22.0), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(width, 22.0), Sense::click());
     let says = format!("{name}: choose a colour");
     response.widget_info(|| WidgetInfo::labeled(WidgetType::ColorButton, ui.is_enabled(), &says));
     let [r, g, b] = *rgb;

@@ -1,7 +1,7 @@
 //! The line of a knob: symbol and label at the left, the widgets at the right, and the tooltip.
 
 use bevy_egui::egui::{
-    self, Align, Button, Response, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType, pos2, vec2,
+    self, Align, Button, FontId, Response, RichText, Sense, TextStyle, Ui, WidgetInfo, WidgetType, pos2, vec2,
 };
 
 use crate::{
@@ -57,6 +57,8 @@ pub(super) enum Words {
     Leave(f32),
     /// A column of the same width in every knob, so that sliders are aligned.
     Column,
+    /// At most that column, and no wider than the longest word needs, so that a slider beside a long unit has room.
+    Slim,
 }
 
 /// A knob with its lines. It can be disabled; the equation and a lesson can point at it.
@@ -103,11 +105,15 @@ pub(super) fn head<R>(
     let colour = if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
     let room = match words {
         Words::Leave(points) => (ui.available_width() - points).max(symbol_column + 40.0),
-        Words::Column => (COLUMN * ui.available_width()).max(symbol_column + 40.0).floor(),
+        Words::Column | Words::Slim => (COLUMN * ui.available_width()).max(symbol_column + 40.0).floor(),
     };
     // A parameter without a symbol uses its name as the symbol, which is not repeated.
     let word = if caption.symbol == caption.label { "" } else { caption.label };
     let font = TextStyle::Body.resolve(ui.style());
+    let room = match words {
+        Words::Slim => room.min(symbol_column + longest(ui, word, &font) + GAP),
+        _ => room,
+    };
     // Wrapped rather than elided, since some labels differ only in their last words.
     let mut job = egui::text::LayoutJob::simple(word.to_owned(), font, colour, room - symbol_column);
     job.wrap.max_rows = ROWS;
@@ -117,7 +123,7 @@ pub(super) fn head<R>(
         ui.spacing_mut().item_spacing.x = 4.0;
         let width = match words {
             Words::Leave(_) => symbol_column + galley.size().x,
-            Words::Column => room,
+            Words::Column | Words::Slim => room,
         };
         let height = galley.size().y.max(22.0);
         let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
@@ -137,6 +143,14 @@ pub(super) fn head<R>(
     });
     row.inner
 }
+
+/// Width of the longest word of a label.
+fn longest(ui: &Ui, label: &str, font: &FontId) -> f32 {
+    label.split_whitespace().map(|word| theme::width_in(ui, word, font)).fold(0.0, f32::max)
+}
+
+/// Gap between a label and a slider, in points.
+const GAP: f32 = 6.0;
 
 /// Font size of a symbol.
 const SYMBOL: f32 = 16.0;

@@ -9,10 +9,14 @@ use super::{
     slider::{Amount, slider},
 };
 use crate::{
+<<<<<<< HEAD
     panel::{
         menu,
         theme::{self, Palette},
     },
+=======
+    panel::{menu, theme::{self, Palette}},
+>>>>>>> efb617d19d1493be545ca4ae270a07939d97b796
     parameter::{Value, kind::number::Number},
     scene::limits::number,
     text::capitalised,
@@ -70,6 +74,10 @@ pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<
     out
 }
 
+/// Width of a line below which a long unit leaves no room for a slider, and that of a long unit, in points.
+const SLIM: f32 = 300.0;
+const LONG_UNIT: f32 = 24.0;
+
 /// A knob for a number. Returns a new valid value.
 pub fn number_knob(ui: &mut Ui, caption: &Caption, amount: Amount) -> Option<f64> {
     number_knob_beside(ui, caption, amount, |ui| unit(ui, caption.unit))
@@ -87,7 +95,12 @@ pub fn number_knob_beside(
     knob(ui, caption, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let finite = limits.slider_min.is_finite() && limits.slider_max.is_finite();
-        let words = if finite { Words::Column } else { Words::Leave(NUMBER) };
+        let is_slim = ui.available_width() < SLIM && theme::small_width(ui, caption.unit) > LONG_UNIT;
+        let words = match finite {
+            true if is_slim => Words::Slim,
+            true => Words::Column,
+            false => Words::Leave(NUMBER),
+        };
         let (label, (field, slider)) = head(ui, caption, words, |ui| {
             beside(ui);
             let field = field(ui, id, caption.label, value, limits, 56.0);

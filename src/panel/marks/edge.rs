@@ -19,6 +19,9 @@ use crate::{
 const ARROW: f32 = 8.0;
 /// Distance of the arrows from the edge, points.
 const INSET: f32 = 16.0;
+/// Angle between the places tried for an arrow along the edge, and their number to either side.
+const STEP: f32 = 2.0 * std::f32::consts::PI / 180.0;
+const ASIDE: u16 = 20;
 /// Names in the tooltip of an arrow that stands for several lights.
 const NAMES: usize = 8;
 
@@ -31,16 +34,24 @@ pub(super) struct Outside {
     pub(super) covered: Option<Pos2>,
 }
 
-/// The place of an arrow on the way from the middle to a light: as far out as nothing is written over it.
+/// The place of an arrow on the way from the middle to a light: as far out as nothing is written over it; at the edge beside
+/// that way where it would be far in, over the objects in the middle.
 fn clear_end(frame: Rect, overlays: &[Rect], outside: &Outside) -> Pos2 {
     let end = outside.covered.unwrap_or_else(|| at_edge(frame, outside.way));
-    let length = (end - frame.center()).length();
-    let places = (0..).map(|k| length - 2.0 * k as f32).take_while(|l| *l > 0.3 * length);
+    let (middle, way) = (frame.center(), outside.way);
+    let length = (end - middle).length();
+    let inward = |least: f32| {
+        let lengths = (0..).map(move |k| length - 2.0 * k as f32).take_while(move |l| *l > least);
+        lengths.map(move |l| middle + way * l)
+    };
+    let turns = (1..=ASIDE).flat_map(|k| [f32::from(k), -f32::from(k)]).filter(|_| outside.covered.is_none());
+    let aside = turns.map(|k| at_edge(frame, Vec2::angled(way.angle() + STEP * k)));
     let free = |at: &Pos2| {
         let arrow = Rect::from_center_size(*at, Vec2::splat(3.0 * ARROW));
         !overlays.iter().any(|r| r.intersects(arrow))
     };
-    places.map(|l| frame.center() + outside.way * l).find(free).unwrap_or(end)
+    let mut places = inward(length - 3.0 * ARROW).chain(aside).chain(inward(0.3 * length));
+    places.find(free).unwrap_or(end)
 }
 
 /// Paints the arrow for some lights, with their number.
@@ -115,4 +126,30 @@ pub(super) fn arrows(
         places.push(place);
     }
     (actions, places)
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_egui::egui::pos2;
+
+    use super::*;
+
+    #[test]
+    fn an_arrow_gives_way_to_what_is_written_along_the_edge_and_not_into_the_middle() {
+        let frame = Rect::from_min_max(pos2(0.0, 0.0), pos2(300.0, 400.0));
+        let outside = |covered| Outside { light: 0, way: vec2(0.6, -0.8), covered };
+        let end = at_edge(frame, vec2(0.6, -0.8));
+        assert_eq!(clear_end(frame, &[], &outside(None)), end);
+        let badge = Rect::from_min_max(pos2(170.0, 0.0), pos2(300.0, 90.0));
+        let at = clear_end(frame, &[badge], &outside(None));
+        assert!(!badge.intersects(Rect::from_center_size(at, Vec2::splat(3.0 * ARROW))), "{at:?}");
+        assert!(frame.expand(1.0).contains(at) && !frame.shrink(1.0).contains(at), "at the edge: {at:?}");
+        // A small step inwards is enough beside a thin one.
+        let thin = Rect::from_min_max(pos2(0.0, 0.0), pos2(300.0, 4.0));
+        let at = clear_end(frame, &[thin], &outside(None));
+        assert!((at - end).length() < 3.0 * ARROW && at.y > end.y, "{at:?}");
+        // A light in the picture is pointed at on the way to it.
+        let covered = clear_end(frame, &[badge], &outside(Some(pos2(210.0, 120.0))));
+        assert!((covered - frame.center()).normalized().dot(vec2(0.6, -0.8)) > 0.999, "{covered:?}");
+    }
 }

@@ -101,7 +101,8 @@ impl Session {
     ) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         let text = printable(&format!("{name} {what}")).into_owned();
-        self.disk.badge = Some(Badge { severity, text, help: printable(help).into_owned() });
+        self.disk.badge =
+            Some(Badge { severity, text, shorter: Vec::new(), help: printable(help).into_owned() });
     }
 
     /// Shows a message about the file, which newer ones replace.

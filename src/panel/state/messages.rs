@@ -42,6 +42,8 @@ pub struct Badge {
     pub severity: Severity,
     /// A few words.
     pub text: String,
+    /// Fewer words, and fewer again, for one line where there is little room.
+    pub shorter: Vec<String>,
     /// The full explanation, for the tooltip.
     pub help: String,
 }

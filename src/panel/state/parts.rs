@@ -6,6 +6,7 @@ use super::{Session, Severity, placing::Stand};
 use crate::{
     document::{Selection, names::free_name},
     light::MAX_LIGHTS,
+    parameter::Value,
     registry::Registry,
     scene::{Light, MAX_OBJECTS, Object, Repetition},
 };
@@ -45,6 +46,9 @@ impl Session {
         };
         if d.has_position {
             stand.fit_size(entry, position, &mut light.parameters);
+        }
+        if !stand.may_fill_background(entry) {
+            light.parameters.set("visible", Value::flag(false));
         }
         with(&mut light);
         let (intensity, clips) = stand.intensity(&light, entry);

@@ -36,6 +36,9 @@ const VISIBLE: f32 = 0.07;
 const HIGHLIGHTS: f32 = 0.006;
 /// Fraction of the lit pixels that are brightened at least that much.
 const VISIBLE_PART: f32 = 0.05;
+/// Minimum brightening by a new light in a picture that clips already, as a fraction of what is there: no pixel is dark
+/// enough then that it could be brightened without clipping more of them.
+const FLOOR: f32 = 0.25;
 
 /// Distances of a copy from the original, in widths or heights of a copy; farther away it would no longer be beside it.
 const APART: [f32; 8] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
@@ -194,13 +197,12 @@ impl<'a> Stand<'a> {
 
     /// Position of a new light of a type.
     pub(super) fn new_light(&self, entry: &LightEntry) -> Vec3 {
-        let is_lamp = !entry.declaration.sizes.is_empty();
-        self.light(is_lamp.then(|| self.above_target()), is_lamp)
+        if entry.declaration.sizes.is_empty() { self.light(None) } else { self.lamp(entry) }
     }
 
     /// Position of a copy of the light at a position.
     pub(super) fn copy_of_light(&self, at: Vec3) -> Vec3 {
-        self.light(Some(at), false)
+        self.light(Some(at))
     }
 
     /// The position of these that is farthest from all lights, as seen from the centre of the view.
@@ -209,8 +211,33 @@ impl<'a> Stand<'a> {
         all.into_iter().min_by(dark)
     }
 
-    /// Position of a light: at `near` if it is a lamp, beside `near` if it is a copy, otherwise where it is noticed most.
-    fn light(&self, near: Option<Vec3>, is_lamp: bool) -> Vec3 {
+    /// Distance between lights, and between the places tried for one, in metres.
+    fn light_step(&self) -> f32 {
+        let distance = (self.middle() - self.eye).length();
+        0.1 * distance.min(self.scene.scene_size.corner().min_element()).max(AIR)
+    }
+
+    /// True if a light is inside the room, outside objects, and farther than a step away from other lights. See
+    /// [`Self::free_for_light`].
+    fn is_apart(&self, p: Vec3, step: f32, copied: Option<Vec3>) -> bool {
+        let lights = self.scene.lights.iter().filter_map(|l| l.position);
+        self.free_for_light(p, 0.0, copied) && lights.into_iter().all(|q| p.distance(q) > step)
+    }
+
+    /// True if a light is in the picture, away from its edges.
+    fn sees_light(&self, p: Vec3) -> bool {
+        // A narrow view is not all edge.
+        let margin = (0.2 * self.opening()[1]).min(0.08);
+        self.sees(p, margin * p.distance(self.eye))
+    }
+
+    /// True if a light is in the picture, and its marker covers none of another light.
+    fn shows_light(&self, p: Vec3) -> bool {
+        self.sees_light(p) && self.is_beside_markers(p)
+    }
+
+    /// Position of a light without size: beside `copied` if it is a copy, otherwise where it is noticed most.
+    fn light(&self, copied: Option<Vec3>) -> Vec3 {
         let distance = (self.middle() - self.eye).length();
         let [across, up] = self.opening();
         // Over the shoulder or from below, on the side with the least light, where the new light is most noticeable.
@@ -218,20 +245,15 @@ impl<'a> Stand<'a> {
         let beside = |[side, rise]: [f32; 2]| {
             self.eye + self.turn * (depth * Vec3::new(side * across, rise * up, -1.0))
         };
-        let wanted = near.unwrap_or_else(|| {
+        let wanted = copied.unwrap_or_else(|| {
             let sides = [[0.4, 0.6], [-0.4, 0.6], [0.4, -0.5], [-0.4, -0.5]];
             self.darkest(sides.map(beside)).unwrap_or(self.eye)
         });
-        let step = 0.1 * distance.min(self.scene.scene_size.corner().min_element()).max(AIR);
-        let copied = near.filter(|_| !is_lamp);
-        let apart = |p: Vec3| {
-            let lights = self.scene.lights.iter().filter_map(|l| l.position);
-            self.free_for_light(p, 0.0, copied) && lights.into_iter().all(|q| p.distance(q) > step)
-        };
+        let step = self.light_step();
+        let apart = |p: Vec3| self.is_apart(p, step, copied);
         // A copy of a light outside the view is still placed near it.
         let hidden = copied.is_some_and(|near| !self.sees(near, 0.0));
-        let shows = |p: Vec3| self.sees(p, 0.08 * p.distance(self.eye)) && self.is_beside_markers(p);
-        let fits = |p: Vec3| apart(p) && (hidden || shows(p));
+        let fits = |p: Vec3| apart(p) && (hidden || self.shows_light(p));
         copied
             .and_then(|near| self.beside(near, [1.1 * step; 2], &APART, fits))
             .or_else(|| self.search(wanted, step, fits))
@@ -253,10 +275,9 @@ impl<'a> Stand<'a> {
         (self.middle() - from).try_normalize().map_or(Vec3::NEG_Y, |v| round(v, 100.0))
     }
 
-    /// An intensity at which a new light is visible while the brightest parts stay within the range of the display,
-    /// determined by rendering with and without the light. Also returns true if more pixels clip than are tolerated.
-    pub(super) fn intensity(&self, light: &Light, entry: &LightEntry) -> (f32, bool) {
-        let default = entry.declaration.default_intensity;
+    /// The scene of test pictures, as seen by the camera. Lights are judged by the objects, not by lamps in sight and what is
+    /// behind them.
+    fn probe(&self) -> Scene {
         let mut scene = self.scene.clone();
         scene.observer =
             Observer { position: self.eye, direction: self.turn * Vec3::NEG_Z, ..scene.observer };
@@ -269,19 +290,37 @@ impl<'a> Stand<'a> {
                 object.tessellation = Some(count.clamp(*range.start(), *range.end()));
             }
         }
+        scene.lights.iter_mut().for_each(|light| self.conceal(light));
+        scene
+    }
+
+    /// Makes a light with extent invisible itself.
+    fn conceal(&self, light: &mut Light) {
+        if self.registry.light(&light.light_type).is_some_and(|e| e.parameter("visible").is_some()) {
+            light.parameters.set("visible", Value::flag(false));
+        }
+    }
+
+    /// An intensity at which a new light is visible while the brightest parts stay within the range of the display,
+    /// determined by rendering with and without the light. In a picture that clips already, it adds a [part](FLOOR) of the
+    /// light that is there. Also returns true if more pixels clip than are tolerated.
+    pub(super) fn intensity(&self, light: &Light, entry: &LightEntry) -> (f32, bool) {
+        let default = entry.declaration.default_intensity;
+        let mut scene = self.probe();
         let [width, height] = PROBE;
         let settings = reference::Settings { width, height, samples: 1, ..reference::Settings::default() };
         let before = reference::render(&scene, self.registry, &settings);
         scene.lights = vec![Light { intensity: default, luminous_flux: None, ..light.clone() }];
-        // The light is judged by the objects, not by its own appearance behind them.
-        if entry.parameter("visible").is_some() {
-            scene.lights[0].parameters.set("visible", Value::flag(false));
-        }
+        scene.lights.iter_mut().for_each(|light| self.conceal(light));
         let added = reference::render(&scene, self.registry, &settings);
         let limit = self.brightest();
         let (mut factors, mut floors, mut clipped) = (Vec::new(), Vec::new(), 0);
+        let mut sums = [0.0; 2];
         for (before, added) in before.pixels.iter().zip(&added.pixels) {
             let (before, added) = (before.truncate().max_element(), added.truncate().max_element());
+            if added > 1e-9 {
+                sums = [sums[0] + before.min(limit), sums[1] + added];
+            }
             if before >= limit {
                 // A pixel that clips already uses up the tolerance.
                 clipped += 1;
@@ -302,7 +341,10 @@ impl<'a> Stand<'a> {
         let least = floors[(VISIBLE_PART * floors.len() as f32) as usize];
         // Highlights, but nothing else, may clip to make the light visible.
         let clipping = factors[(HIGHLIGHTS * factors.len() as f32) as usize];
-        let factor = (SHARE * most).max(least.min(clipping.max(most)));
+        let mut factor = (SHARE * most).max(least.min(clipping.max(most)));
+        if clipped > spared {
+            factor = factor.max(FLOOR * sums[0] / sums[1]);
+        }
         let intensity = f64::from(default) * f64::from(factor).clamp(1e-6, 1e3);
         (significant(intensity, 2) as f32, factor > most)
     }

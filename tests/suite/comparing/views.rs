@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, accesskit::Role, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, Vec2, accesskit::Role, vec2};
 use lights_camera_models::{
     caption::header,
     channel::DebugChannel,
@@ -431,6 +431,7 @@ fn each_view_has_its_badges_in_every_layout() {
 }
 
 #[test]
+<<<<<<< HEAD
 fn the_list_of_a_view_has_the_digits_of_its_heading() {
     let mut bench = bench();
     bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "metallic_roughness")));
@@ -441,6 +442,35 @@ fn the_list_of_a_view_has_the_digits_of_its_heading() {
     bench.settle();
     let texts = crate::window::layout::texts(&mut bench);
     assert!(texts.iter().any(|(text, _)| text == "roughness  0.4243"), "{texts:?}");
+=======
+fn badges_take_one_line_where_there_is_little_room() {
+    let heights = |size: Vec2| {
+        let mut bench = bench();
+        bench.size = size;
+        bench.apply(Action::Compare(CompareCommand::Add));
+        bench.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)));
+        let clipped = |share: u32| Clipping::new(vec![share; Clipping::GRID[0] * Clipping::GRID[1]]);
+        bench.session.facts.clipping = [clipped(2), clipped(20), None, None];
+        bench.settle();
+        // Read out, it is whole.
+        let sign = |letter: &str| {
+            let is_it = |s: &&Seen| {
+                s.label.starts_with(&format!("{letter} · Clipped: ")) && s.label.ends_with(" of the picture")
+            };
+            bench.tree.iter().find(is_it).map_or_else(|| panic!("no {letter}"), |s| s.rect)
+        };
+        let cells: Vec<_> = bench.area.cells.iter().map(|c| c.rect).collect();
+        let signs = ["A", "B"].map(sign);
+        assert!(signs.iter().zip(&cells).all(|(sign, cell)| cell.contains_rect(*sign)), "{signs:?}");
+        signs.map(|sign| sign.height())
+    };
+    let wide = heights(vec2(1600.0, 900.0));
+    // A small window, and one of 1280 by 720 at 150 %.
+    for size in [vec2(960.0, 600.0), vec2(853.0, 480.0)] {
+        let low = heights(size);
+        assert!(low.iter().zip(&wide).all(|(a, b)| (a - b).abs() < 1.0), "{size:?}: {low:?} and {wide:?}");
+    }
+>>>>>>> efb617d19d1493be545ca4ae270a07939d97b796
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! New parts of a scene are placed free and in view, and a new light shows the scene without blowing it out.
 
+use std::sync::atomic::AtomicBool;
+
 use bevy_egui::egui::{Pos2, Rect, vec2};
 use glam::{Mat3, Quat, Vec3};
 use lights_camera_models::{
@@ -546,4 +548,79 @@ fn new_positions_are_short_numbers() {
         assert!(light.position.is_none_or(|p| all(p) <= 1), "{:?}", light.position);
         assert!(light.direction.is_none_or(|d| all(d) <= 2), "{:?}", light.direction);
     }
+}
+
+/// A picture of a session in which some lights with a position are visible: the first ones, so many.
+fn with_lamps(session: &Session, visible: usize, registry: &Registry) -> reference::Picture {
+    let settings = reference::Settings { width: 320, height: 180, samples: 1, ..Default::default() };
+    let mut scene = session.document.scene().clone();
+    let lights = scene.lights.iter_mut().filter(|light| light.position.is_some());
+    for (i, light) in lights.enumerate() {
+        if registry.light(&light.light_type).is_some_and(|entry| entry.declaration.extent) {
+            light.parameters.set("visible", Value::flag(i < visible));
+        }
+    }
+    let samples = reference::LightSamples { first: 0, count: 4 };
+    reference::render_samples(&scene, registry, &settings, samples, &AtomicBool::default())
+}
+
+#[test]
+fn new_lamps_cover_no_object_and_no_other_lamp() {
+    let registry = Registry::builtin();
+    let dark = Scene { lights: Vec::new(), ..Scene::default() };
+    // The view of the studio is narrow.
+    for (what, scene) in [("dark", dark), ("studio", shipped("studio"))] {
+        let mut session = Session::new(scene);
+        for (nth, kind) in ["rectangle", "disc", "sphere"].into_iter().enumerate() {
+            session.apply(Action::AddLight(kind.to_owned()), &registry);
+            let all = [0, nth, nth + 1].map(|visible| with_lamps(&session, visible, &registry));
+            let [bare, before, after] = all.each_ref().map(|picture| &picture.pixels);
+            let things = || (0..bare.len()).filter(move |i| bare[*i].w > 0.0 || bare[*i] != before[*i]);
+            let covered = things().filter(|i| before[*i] != after[*i]).count();
+            let light = session.document.lights.last();
+            assert!(100 * covered < things().count(), "{what}, {kind}: {covered} pixels: {light:?}");
+            let seen = (0..bare.len()).filter(|i| before[*i] != after[*i]).count();
+            // The others shine to one side, which the camera sees in a wide view alone.
+            assert!(kind != "sphere" || seen > 20, "{what}: only {seen} pixels show the lamp: {light:?}");
+        }
+    }
+}
+
+#[test]
+fn in_a_picture_that_clips_a_new_light_still_adds_a_part_of_what_is_there() {
+    let registry = Registry::builtin();
+    for kind in ["rectangle", "disc", "sphere", "sun", "point", "environment"] {
+        let mut session = Session::new(shipped("studio"));
+        let before = brightness(&session, &registry);
+        let clips = before.iter().filter(|b| **b > 1.0).count();
+        assert!(100 * clips > before.len(), "the wrong scene: {clips} pixels clip");
+        session.apply(Action::AddLight(kind.to_owned()), &registry);
+        let after = brightness(&session, &registry);
+        let sum = |all: &[f32]| all.iter().sum::<f32>();
+        let there: f32 = before.iter().map(|b| b.min(1.0)).sum();
+        let part = (sum(&after) - sum(&before)) / there;
+        // Of what the light reaches, a quarter.
+        assert!((0.08..0.6).contains(&part), "{kind}: {part} of {:?}", session.document.lights.last());
+    }
+}
+
+#[test]
+fn a_second_environment_leaves_the_background_as_the_first_does() {
+    let registry = Registry::builtin();
+    let visible = |session: &Session| {
+        let light = session.document.lights.last().expect("added");
+        registry.light(&light.light_type).expect("built in").is_visible(&light.parameters)
+    };
+    let add = |scene: Scene| {
+        let mut session = Session::new(scene);
+        session.apply(Action::AddLight("environment".to_owned()), &registry);
+        visible(&session)
+    };
+    // That of the studio is not in sight, and the sky is: both add up.
+    assert!(!add(shipped("studio")));
+    assert!(add(shipped("under_the_sky")));
+    assert!(add(Scene::default()));
+    let mut studio = shipped("studio");
+    studio.lights[0].enabled = false;
+    assert!(add(studio));
 }

@@ -616,6 +616,79 @@ fn a_page_says_what_it_does_until_its_first_picture_is_there() {
     assert!(said.last().is_some_and(|last| last.starts_with("Web")), "{said:?}");
 }
 
+/// As if by the system: the device is lost, there is no adapter, work on the GPU ends in errors, nothing reaches the
+/// screen.
+#[test]
+fn a_page_goes_on_with_webgl_when_webgpu_fails() {
+    let Some(browser) = Browser::start() else { return };
+    browser.resize(WIDTH, HEIGHT);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("page.html");
+    fs::write(&file, page(&scene(&shipped("default.json"))).expect("a page")).expect("written");
+    // Pages without WebGPU have none of its classes.
+    browser.run_first(
+        "const asks = (what) => window.GPU && location.hash.includes(what);
+        const gone = async () => { throw new Error('A valid external Instance reference no longer exists.'); };
+        if (asks('broken')) GPU.prototype.requestAdapter = gone;
+        if (asks('late')) GPUQueue.prototype.onSubmittedWorkDone = gone;
+        if (asks('blank')) GPUQueue.prototype.submit = () => {};
+        if (asks('unread')) GPUBuffer.prototype.mapAsync = gone;
+        if (asks('neither')) {
+            GPU.prototype.requestAdapter = gone;
+            HTMLCanvasElement.prototype.getContext = () => null;
+        }
+        if (window.GPU) {
+            const made = GPUAdapter.prototype.requestDevice;
+            GPUAdapter.prototype.requestDevice = async function (...all) {
+                return (window.device = await made.apply(this, all));
+            };
+        }",
+    );
+    let size = format!("picture={WIDTH}x{HEIGHT}&samples=1");
+    let text = |what: &str| {
+        let said = browser.run(&format!("return document.getElementById({what:?}).textContent"));
+        said.as_str().unwrap_or_default().to_owned()
+    };
+    browser.open(&file, &format!("renderer=webgl&{size}"));
+    assert_eq!(text("renderer"), "WebGL 2");
+    let expected = browser.look().0;
+    let follows = |what: &str| {
+        assert_eq!(text("failure"), "", "{what}");
+        assert_eq!(text("renderer"), "WebGPU failed, so WebGL 2 draws", "{what}");
+        let off = difference(&browser.look().0, &expected);
+        assert!(off.mean < 0.01, "{what}: {off:?}");
+    };
+    for what in ["broken", "late", "blank"] {
+        browser.open(&file, &format!("{what}&{size}"));
+        follows(what);
+    }
+    browser.open(&file, &size);
+    assert_eq!(text("renderer"), "WebGPU");
+    browser.run("document.body.dataset.state = 'busy'; window.device.destroy()");
+    browser.settle();
+    follows("destroyed");
+    // It stays usable: knobs and views follow.
+    set(&browser, "input[value=flat]", "");
+    assert!(difference(&browser.look().0, &expected).mean > 0.01);
+    // The curve of a model is read from the GPU.
+    fs::write(&file, page(&scene(&shipped("white_furnace.json"))).expect("a page")).expect("written");
+    let mut curves = Vec::new();
+    for way in ["renderer=webgl", "unread"] {
+        browser.open(&file, &format!("{way}&{size}"));
+        set(&browser, "#object", "2");
+        set(&browser, "[data-name=alpha_y] input[type=number]", "0.7");
+        assert_eq!(text("failure"), "", "{way}");
+        curves.push(browser.look().0);
+    }
+    assert_eq!(text("renderer"), "WebGPU failed, so WebGL 2 draws");
+    assert!(difference(&curves[0], &curves[1]).mean < 0.01);
+    // Without either, a sentence says what to do.
+    browser.visit(&format!("{}#neither&{size}", file.display()));
+    browser.settle();
+    let said = text("failure");
+    assert!(said.contains("refuses WebGL 2. Switch on hardware acceleration"), "{said}");
+}
+
 #[test]
 fn a_browser_that_cannot_read_the_program_says_so() {
     let Some(browser) = Browser::start() else { return };

@@ -77,16 +77,20 @@ fn the_window_has_a_sign_only_where_the_picture_clips() {
 
     let screen = Screen::new(1280, 720);
     let folder = tempfile::tempdir().unwrap();
-    let sign = |name: &str, intensity: f32, display: &str| {
+    let point = |intensity: f32| {
+        format!(r#"{{ "type": "point", "position": [7.5, 8, 9], "intensity": {intensity} }}"#)
+    };
+    let sign_under = |name: &str, lights: &str, code: u8, display: &str| {
         let scene = folder.path().join(format!("{name}.json"));
         let text = format!(
             r#"{{
   "scene_size": {{ "height": 10, "width": 10, "depth": 10 }},
   "reflection_model": "lambert",
   "shading_model": "phong",
-  "lights": [{{ "type": "point", "position": [7.5, 8, 9], "intensity": {intensity} }}],
+  "lights": [{lights}],
   "observer": {{ "position": [5, 5, 9.5], "direction": [0, 0, -1], "field_of_view": 45 }},
-  "objects": [{{ "type": "sphere", "position": [5, 5, 5], "size": 2 }}],
+  "objects": [{{ "type": "sphere", "position": [5, 5, 5], "size": 2,
+                  "material": {{ "base_colour": [{code}, {code}, {code}] }} }}],
   "display": {display}
 }}"#
         );
@@ -100,6 +104,7 @@ fn the_window_has_a_sign_only_where_the_picture_clips() {
         let warning = |p: [u8; 3]| p == [0xf0, 0xc0, 0x50];
         Picture::read(&file).count(212..480, 40..76, warning) > 100
     };
+    let sign = |name: &str, intensity: f32, display: &str| sign_under(name, &point(intensity), 255, display);
     let plain = r#"{ "exposure": 0 }"#;
     assert!(sign("bright", 60.0, plain));
     assert!(!sign("dim", 10.0, plain));
@@ -108,6 +113,19 @@ fn the_window_has_a_sign_only_where_the_picture_clips() {
     // A white background is no light.
     assert!(!sign("white", 10.0, r#"{ "background": "colour" }"#));
     assert!(!sign("white_mapped", 10.0, r#"{ "background": "colour", "tone_mapping": "reinhard" }"#));
+    // Lights in sight are brighter than white, which is no fault of the surface: a lamp, and what is behind all.
+    let lamp = r#", { "type": "sphere", "position": [7.5, 6, 4], "radius": 0.6, "intensity": 1 }"#;
+    let world = r#", { "type": "environment", "source": "uniform", "intensity": 0.33 }"#;
+    let mapped = r#"{ "tone_mapping": "aces", "exposure": 2 }"#;
+    for (name, more, intensity, code, display, clips) in [
+        ("lamp", lamp, 10.0, 255, plain, false),
+        ("lamp_and_bright", lamp, 60.0, 255, plain, true),
+        // A white surface under it would be as bright.
+        ("world", world, 5.0, 128, plain, false),
+        ("lamp_mapped", lamp, 1.0, 255, mapped, false),
+    ] {
+        assert_eq!(sign_under(name, &(point(intensity) + more), code, display), clips, "{name}");
+    }
     // Of two views, the one that clips has the badge.
     let views = |a: i32, b: i32| {
         let variants =

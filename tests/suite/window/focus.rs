@@ -325,6 +325,7 @@ fn f6_reaches_the_examples_and_the_badges_and_shows_that_the_picture_has_the_key
     bench.session.disk.badge = Some(Badge {
         severity: Severity::Info,
         text: "Not what it seems".to_owned(),
+        shorter: Vec::new(),
         help: "The whole story.".to_owned(),
     });
     bench.apply(Action::View(ViewChange::Examples(true)));

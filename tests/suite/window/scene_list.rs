@@ -609,3 +609,43 @@ fn the_row_of_terms_stays_while_a_knob_makes_a_term_0() {
     bench.apply(Action::Edit(Edit::material(Part::Object(0), "refractive_index", Value::Number(1.0))));
     assert_eq!((place(&bench), terms_in_row(&bench)), (before, terms), "nothing moves under the hand");
 }
+
+#[test]
+fn in_a_narrow_window_names_go_before_icons_and_sliders_have_room() {
+    let mut session = with_objects(&["sphere", "cube"]);
+    session.settings.left_width = 121.0;
+    let mut bench = Bench::new(session);
+    bench.size = (1280.0, 720.0).into();
+    bench.apply(Action::View(ViewChange::Scale(150)));
+    bench.apply(Action::AddLight("rectangle".to_owned()));
+    bench.hover(bench.area.rect.center());
+    let texts = bench.texts();
+    for name in ["Sphere 1", "Cube 1", "Point 1", "Rectangle 1"] {
+        assert!(texts.iter().any(|text| text == name), "{name}: {texts:?}");
+    }
+    // Under the pointer a row has all of its icons.
+    let row = bench.find("Sphere 1").expect("there").rect;
+    bench.hover(row.center() / bench.ctx.zoom_factor());
+    assert!(bench.find("Hide Sphere 1").is_some() && bench.find("Colour of Sphere 1").is_some());
+    // The unit of a luminance is long.
+    let slider = bench.tree.iter().find(|s| s.role == Role::Slider && s.label.contains("intensity"));
+    let slider = slider.expect("of the rectangle").rect.width() / bench.ctx.zoom_factor();
+    assert!(slider > 48.0, "{slider}");
+}
+
+#[test]
+fn in_a_narrow_panel_the_unit_of_a_colour_is_whole() {
+    let mut session = with_objects(&["sphere"]);
+    session.settings.right_width = 264.0;
+    let mut bench = Bench::new(session);
+    // So low that there is a scroll bar.
+    bench.size = (1280.0, 400.0).into();
+    bench.apply(Action::Select(Selection::Light(0)));
+    bench.settle();
+    let right = |shape| match shape {
+        Shape::Text(text) if text.galley.text() == "sRGB" => Some(text.visual_bounding_rect().right()),
+        _ => None,
+    };
+    let units: Vec<_> = bench.shapes().into_iter().filter_map(right).collect();
+    assert!(!units.is_empty() && units.iter().all(|right| *right < 1270.0), "{units:?}");
+}

@@ -16,6 +16,16 @@ const REFUSED = 'This browser refuses WebGL 2. Switch on hardware acceleration, 
 const GAVE_UP = 'The graphics driver gave up: the scene is too much work for it. Make the window smaller, or use hardware acceleration.';
 const samples = asked.get('samples') === '1' ? 1 : 4;
 
+// A picture that could not be drawn, in words; what the browser said, behind them.
+const brokenOff = ({ message }) => `The picture could not follow. Reload the page, or open it in another browser. (${message})`;
+
+// True if a canvas that was just drawn on shows nothing, not even what it was cleared with.
+function isBlank(canvas) {
+  const small = Object.assign(document.createElement('canvas'), { width: 8, height: 8 }).getContext('2d');
+  small.drawImage(canvas, 0, 0, 8, 8);
+  return small.getImageData(0, 0, 8, 8).data.every((byte) => byte === 0);
+}
+
 function fail(text) {
   document.body.classList.add('failed');
   document.getElementById('failure').textContent = text;
@@ -47,7 +57,13 @@ class Page {
     this.scene = scene;
     this.camera = new Camera(scene.observer, scene.centre);
     this.renderer = null;
+    // The renderers that are left, in the order in which they are tried.
+    this.kinds = { webgpu: [WebGpu], webgl: [WebGl] }[asked.get('renderer')] ?? [WebGpu, WebGl];
+    // True if there is WebGPU, and it failed.
+    this.isSecond = false;
     this.starts = 0;
+    // The start in progress, or the last one.
+    this.starting = Promise.resolve();
     this.work = new Work(GOAL);
     // True once a picture of the renderer is there.
     this.hasPicture = false;
@@ -66,9 +82,10 @@ class Page {
     if (this.starts > MOST_STARTS) return fail(this.gaveUp ? GAVE_UP : REFUSED);
     // Edges that are not smoothed take a quarter of the work.
     const count = this.starts > 3 ? 1 : samples;
-    const kinds = { webgpu: [WebGpu], webgl: [WebGl] }[asked.get('renderer')] ?? [WebGpu, WebGl];
+    const { kinds } = this;
     // A browser that knows WebGL 2 and does not give it refuses it, often for a while after a driver gave up.
-    let reason = kinds.includes(WebGl) && window.WebGL2RenderingContext ? REFUSED : NO_GRAPHICS;
+    const nothing = kinds.includes(WebGl) && window.WebGL2RenderingContext ? REFUSED : NO_GRAPHICS;
+    let reason = nothing;
     for (const kind of kinds) {
       try {
         this.hasPicture = false;
@@ -76,27 +93,31 @@ class Page {
         this.canvas = freshCanvas();
         const renderer = await kind.create(this.canvas, count);
         this.renderer = renderer;
-        if (!renderer) continue;
+        if (!renderer) {
+          reason = nothing;
+          continue;
+        }
         renderer.lost.then(() => (this.gaveUp = true));
         const [width, height] = this.resize();
         await renderer.tryDrawing(this.scene, this.work.trial(this.scene, width, height), width, height);
         // Drivers compile a shader when they first draw with it.
         await renderer.finished();
-        this.label = kind.label;
+        this.label = this.isSecond ? `WebGPU failed, so ${kind.label} draws` : kind.label;
         caption.textContent = 'Drawing…';
         const ofLight = this.scene.lightSamples;
         const noise = ofLight ? `; lights with extent: ${ofLight} samples, some noise` : '';
-        caption.title = `Drawn with ${kind.label}, ${count} samples per pixel${noise}`;
-        renderer.lost.then(() => this.renderer === renderer && this.startAgain());
+        caption.title = `${this.isSecond ? 'WebGPU failed. ' : ''}Drawn with ${kind.label}, ${count} samples per pixel${noise}`;
+        renderer.lost.then(() => this.goesOnWithout(renderer));
         this.draw();
         return true;
       } catch (error) {
         console.warn(error);
+        this.drop(kind);
         if (this.renderer?.isLost) {
           this.gaveUp = true;
           this.work = new Work(0.5 * this.work.goal);
         }
-        reason = `This browser cannot draw the scene: ${error.message}`;
+        reason = `This browser cannot draw the scene; another one may. (${error.message})`;
       }
     }
     this.renderer = null;
@@ -108,10 +129,26 @@ class Page {
     return fail(reason);
   }
 
-  startAgain() {
+  // Leaves WebGPU for WebGL 2. False if it is not WebGPU, or the only one allowed.
+  drop(kind) {
+    if (kind !== WebGpu || !this.kinds.includes(WebGl)) return false;
+    this.kinds = [WebGl];
+    this.isSecond = true;
+    return true;
+  }
+
+  // Starts again after a renderer failed: with WebGL 2 where WebGPU did, otherwise if the system took it away. False if
+  // neither is so.
+  goesOnWithout(renderer) {
+    // Loss, drawing and curves may all tell of one failure.
+    if (this.renderer !== renderer) return true;
+    if (this.drop(renderer.constructor)) this.starts = 0;
+    else if (!renderer.isLost) return false;
+    this.renderer = null;
     document.body.dataset.state = 'busy';
     this.work = new Work(0.5 * this.work.goal);
-    return this.start();
+    this.starting = this.start();
+    return true;
   }
 
   // The size of the whole picture in pixels; tells the shaders where the camera is.
@@ -144,7 +181,7 @@ class Page {
     this.painting = true;
     this.paint().catch((error) => {
       this.painting = false;
-      fail(`The picture could not follow: ${error.message}`);
+      fail(brokenOff(error));
     });
   }
 
@@ -153,7 +190,12 @@ class Page {
       await new Promise(requestAnimationFrame);
       this.wanted = false;
       const { renderer } = this;
-      if (!renderer || !(await this.pictures(renderer))) continue;
+      try {
+        if (!renderer || !(await this.pictures(renderer))) continue;
+      } catch (error) {
+        if (!this.goesOnWithout(renderer)) throw error;
+        continue;
+      }
       this.starts = 1;
       document.body.dataset.drawn = Number(document.body.dataset.drawn ?? 0) + 1;
       if (this.pending === 0 && !this.wanted) document.body.dataset.state = 'ready';
@@ -183,6 +225,9 @@ class Page {
     const draw = (step) => {
       if (step.show) Object.assign(canvas, { width, height });
       renderer.draw(scene, step, width, height);
+      // A gradient is behind the canvas, which may then be empty.
+      const mayBeBlank = this.hasPicture || scene.gradient || renderer.isLost;
+      if (step.show && !mayBeBlank && isBlank(canvas)) throw new Error(`${renderer.constructor.label} shows nothing`);
     };
     work.begin();
     let clear = true;
@@ -199,7 +244,7 @@ class Page {
       if (!document.hidden) for (const [pace, points] of step.paces) pace.took(points, performance.now() - begun);
       if (isAll) break;
       if (this.wanted && !stays) return false;
-      const drawing = this.hasPicture ? `${this.label},` : 'Drawing…';
+      const drawing = this.hasPicture ? `${this.label}:` : 'Drawing…';
       caption.textContent = `${drawing} ${Math.floor(100 * step.done)} %`;
     }
     if (!isAll) draw({ list: [], tile: [0, 0, width, height], clear, show: true });
@@ -207,6 +252,22 @@ class Page {
     this.hasPicture = true;
     caption.textContent = this.label;
     return true;
+  }
+
+  // The curve of an object with these values, by the next renderer where one fails.
+  async curveOf(thing, values) {
+    for (;;) {
+      await this.starting;
+      const { renderer } = this;
+      if (!renderer) return thing.initialCurve;
+      try {
+        const curve = await curveOf(renderer, thing, values);
+        if (!renderer.isLost) return curve;
+        this.goesOnWithout(renderer);
+      } catch (error) {
+        if (!this.goesOnWithout(renderer)) throw error;
+      }
+    }
   }
 
   // Applies the values of an object; its curve belongs to them, and so both change at once.
@@ -218,7 +279,7 @@ class Page {
       // A later change replaces this one.
       const replaced = JSON.stringify(values) !== JSON.stringify(thing.values);
       let curve = thing.initialCurve;
-      if (!replaced && readsCurve(thing) && thing.isChanged) curve = await curveOf(this.renderer, thing, values);
+      if (!replaced && readsCurve(thing) && thing.isChanged) curve = await this.curveOf(thing, values);
       this.pending -= 1;
       if (replaced) return;
       thing.uniforms.albedo_curve.set(curve);
@@ -227,7 +288,7 @@ class Page {
       thing.uniforms.shading_values.set(thing.packedShading());
       this.draw();
     });
-    this.curves = this.curves.catch((error) => fail(`The picture could not follow: ${error.message}`));
+    this.curves = this.curves.catch((error) => fail(brokenOff(error)));
   }
 
   pickAt(x, y) {
@@ -254,7 +315,8 @@ async function main() {
   }
   const changed = (thing) => (thing ? page.apply(thing) : page.draw());
   const panel = new Panel(views, changed, (scene) => page.show(scene));
-  if (!(await page.start())) return;
+  page.starting = page.start();
+  if (!(await page.starting)) return;
   listen(picture, page.camera, () => page.draw(), (x, y) => panel.select(page.pickAt(x, y)));
   document.getElementById('view').addEventListener('click', () => {
     page.camera.reset();

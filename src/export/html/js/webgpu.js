@@ -18,7 +18,9 @@ class WebGpu {
     this.format = navigator.gpu.getPreferredCanvasFormat();
     const usage = GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_DST;
     context.configure({ device, format: this.format, usage, alphaMode: 'premultiplied' });
-    this.lost = device.lost.then((info) => (info.reason === 'destroyed' ? new Promise(() => {}) : info));
+    // After an error that no scope catches, the picture is not to be trusted.
+    const error = new Promise((failed) => device.addEventListener('uncapturederror', failed, { once: true }));
+    this.lost = Promise.race([device.lost, error]);
     this.isLost = false;
     this.lost.then(() => (this.isLost = true));
     this.buffers = new WeakMap();

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{Stand, round};
+use super::{PROBED, Stand, block::Block, round};
 use crate::{
     light::{LightEntry, Size},
     parameter::{ParameterKind, Value, Values},
@@ -15,6 +15,10 @@ const DEPTH: f32 = 0.87;
 const BESIDE: [[f32; 2]; 2] = [[0.55, 0.7], [-0.55, 0.7]];
 /// Smallest and largest extent of a lamp, in distances from what it lights.
 const SPAN: [f32; 2] = [0.2, 0.5];
+/// Smallest rise of a lamp above what it lights, in distances from that.
+const LEAST_RISE: f32 = 0.15;
+/// The next smaller size of a lamp that covers something.
+const SMALLER: f32 = 0.85;
 /// Largest extent of a lamp, in distances from the nearest object.
 const CLEAR: f32 = 1.6;
 
@@ -22,6 +26,69 @@ impl Stand<'_> {
     /// What a new lamp lights: the selected object if it is in view, otherwise the centre of the view.
     fn target(&self) -> Vec3 {
         self.aim.filter(|aim| self.sees(*aim, 0.0)).unwrap_or_else(|| self.middle())
+    }
+
+    /// Position of a new lamp: where the camera sees it beside all objects and lamps, preferably above what it lights;
+    /// otherwise at least not over the centre of any.
+    pub(super) fn lamp(&self, entry: &LightEntry) -> Vec3 {
+        let wanted = self.above_target();
+        let target = self.target();
+        let up = self.turn * Vec3::Y;
+        let is_above = |p: Vec3| (p - target).dot(up) > LEAST_RISE * p.distance(target);
+        let step = self.light_step();
+        let apart = |p: Vec3| self.is_apart(p, step, None);
+        let fits = |p: Vec3| self.shows_light(p) && apart(p);
+        let (span, others) = (entry.span(&Values::default()), self.in_sight());
+        let covers = |p: Vec3, centre: bool| {
+            let least = self.span_at(span, p).min(SPAN[0] * p.distance(target));
+            self.covers(p, least, &others, centre)
+        };
+        // A narrow view shows few of the places that are farther from each other.
+        let step = step.min(0.25 * self.opening()[1] * wanted.distance(self.eye));
+        let place = |fits: &dyn Fn(Vec3) -> bool| self.search(wanted, step, fits);
+        place(&|p| is_above(p) && fits(p) && !covers(p, false))
+            .or_else(|| place(&|p| fits(p) && !covers(p, false)))
+            .or_else(|| place(&|p| is_above(p) && fits(p) && !covers(p, true)))
+            .or_else(|| place(&fits))
+            .or_else(|| place(&apart))
+            .unwrap_or_else(|| self.lattice(wanted))
+    }
+
+    /// True if a lamp overlaps one of these in the picture, or with `centre`, if it covers the centre of one.
+    fn covers(&self, at: Vec3, span: f32, others: &[Block], centre: bool) -> bool {
+        let ball = Block::ball(at, 0.5 * span);
+        others.iter().any(|other| self.hides(&ball, other, centre))
+    }
+
+    /// The space that lamps and the objects nearest to the camera take, without the floors and rooms that it stands in.
+    fn in_sight(&self) -> Vec<Block> {
+        let mut all: Vec<_> =
+            self.taken.iter().filter(|other| !other.ball_holds(self.eye)).copied().collect();
+        all.sort_by(|a, b| a.centre.distance(self.eye).total_cmp(&b.centre.distance(self.eye)));
+        all.truncate(PROBED);
+        let lamps = self.scene.lights.iter().filter_map(|light| {
+            let span = self.registry.light(&light.light_type)?.span(&light.parameters);
+            (span > 0.0).then_some(Block::ball(light.position?, 0.5 * span))
+        });
+        all.extend(lamps);
+        all
+    }
+
+    /// False for a new light that would fill the background which other lights from all around leave free.
+    pub(in crate::panel::state) fn may_fill_background(&self, entry: &LightEntry) -> bool {
+        let is_around = |entry: &LightEntry| {
+            let d = entry.declaration;
+            d.extent && !d.has_position && !d.has_direction
+        };
+        let lights = self.scene.lights.iter().filter(|light| light.enabled);
+        let others: Vec<_> = lights
+            .filter_map(|light| Some((light, self.registry.light(&light.light_type)?)))
+            .filter(|(_, other)| is_around(other))
+            .collect();
+        !is_around(entry)
+            || entry.parameter("visible").is_none()
+            || others.is_empty()
+            || others.iter().any(|(light, other)| other.is_visible(&light.parameters))
     }
 
     /// The wished position of a new lamp: above what it lights, on the side with the least light of those with room.
@@ -35,7 +102,7 @@ impl Stand<'_> {
             self.eye + DEPTH * (way + way.length() * (side * across * right + rise * up * above))
         });
         let has_room = |p: Vec3| self.free_for_light(p, 0.5 * SPAN[0] * p.distance(target), None);
-        let shows = |p: Vec3| self.sees(p, 0.08 * p.distance(self.eye));
+        let shows = |p: Vec3| self.sees_light(p);
         let of = |good: &dyn Fn(Vec3) -> bool| self.darkest(all.into_iter().filter(|p| good(*p)));
         of(&|p| has_room(p) && shows(p))
             .or_else(|| of(&has_room))
@@ -55,14 +122,25 @@ impl Stand<'_> {
         wanted.try_normalize().map_or(Vec3::NEG_Y, |v| round(v, 100.0))
     }
 
-    /// Scales the sizes of a new lamp to its distance from what it lights, if they are far too large or too small for it.
-    pub(in crate::panel::state) fn fit_size(&self, entry: &LightEntry, at: Vec3, values: &mut Values) {
-        let span = entry.span(values);
+    /// The extent of a lamp at a position: its own, unless that is far too large or too small for the distance from what it
+    /// lights.
+    fn span_at(&self, span: f32, at: Vec3) -> f32 {
         let distance = at.distance(self.target());
         let gaps = self.taken.iter().map(|object| object.gap(at));
         let [least, most] = SPAN.map(|share| share * distance);
         let most = gaps.map(|gap| CLEAR * gap).fold(most, f32::min);
-        let wanted = span.max(least).min(most);
+        span.max(least).min(most)
+    }
+
+    /// Scales the sizes of a new lamp to its distance from what it lights, if they are far too large or too small for it, or
+    /// if it would cover objects or other lamps.
+    pub(in crate::panel::state) fn fit_size(&self, entry: &LightEntry, at: Vec3, values: &mut Values) {
+        let span = entry.span(values);
+        let (mut wanted, others) = (self.span_at(span, at), self.in_sight());
+        let least = SPAN[0] * at.distance(self.target());
+        while wanted > least && self.covers(at, wanted, &others, false) {
+            wanted = (SMALLER * wanted).max(least);
+        }
         if span <= 0.0 || wanted <= 0.0 || wanted == span {
             return;
         }
