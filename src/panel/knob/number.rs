@@ -9,14 +9,10 @@ use super::{
     slider::{Amount, slider},
 };
 use crate::{
-<<<<<<< HEAD
     panel::{
         menu,
         theme::{self, Palette},
     },
-=======
-    panel::{menu, theme::{self, Palette}},
->>>>>>> efb617d19d1493be545ca4ae270a07939d97b796
     parameter::{Value, kind::number::Number},
     scene::limits::number,
     text::capitalised,

@@ -431,7 +431,6 @@ fn each_view_has_its_badges_in_every_layout() {
 }
 
 #[test]
-<<<<<<< HEAD
 fn the_list_of_a_view_has_the_digits_of_its_heading() {
     let mut bench = bench();
     bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "metallic_roughness")));
@@ -442,7 +441,9 @@ fn the_list_of_a_view_has_the_digits_of_its_heading() {
     bench.settle();
     let texts = crate::window::layout::texts(&mut bench);
     assert!(texts.iter().any(|(text, _)| text == "roughness  0.4243"), "{texts:?}");
-=======
+}
+
+#[test]
 fn badges_take_one_line_where_there_is_little_room() {
     let heights = |size: Vec2| {
         let mut bench = bench();
@@ -470,7 +471,6 @@ fn badges_take_one_line_where_there_is_little_room() {
         let low = heights(size);
         assert!(low.iter().zip(&wide).all(|(a, b)| (a - b).abs() < 1.0), "{size:?}: {low:?} and {wide:?}");
     }
->>>>>>> efb617d19d1493be545ca4ae270a07939d97b796
 }
 
 #[test]
