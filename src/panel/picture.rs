@@ -495,7 +495,12 @@ fn no_map(session: &Session) -> Vec<Sign> {
     };
     let help = "This is the picture of view A. The map replaces it as soon as it belongs to both pictures.";
     let badge = |text: &str, help: &str| {
-        let badge = Badge { severity: Severity::Info, text: text.to_owned(), help: help.to_owned() };
+        let badge = Badge {
+            severity: Severity::Info,
+            text: text.to_owned(),
+            shorter: Vec::new(),
+            help: help.to_owned(),
+        };
         (badge, Vec::new())
     };
     vec![badge(&reason, ""), badge(shown, help)]
