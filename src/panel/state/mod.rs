@@ -45,10 +45,11 @@ pub use shortcut::Shortcut;
 pub use slots::{MODEL_SLOTS, ModelSlots};
 pub use stash::StashedValues;
 pub(super) use stash::{Kept, ParameterPlace};
+pub use tabs::{MESSAGES_TAB, PLOTS_TAB, SHADER_TAB};
 pub use taking::{PictureOptions, PictureSize, SheetOptions, TakeCommand, TakeDraft, Taken};
 use travels::Traveller;
 pub use travels::Travels;
-pub use view::{HandleChange, HandleMode, Labels, MESSAGES_TAB, PLOTS_TAB, SHADER_TAB, View, ViewChange};
+pub use view::{HandleChange, HandleMode, Labels, View, ViewChange};
 
 use seen::Seen;
 
@@ -109,6 +110,7 @@ mod shortcut;
 mod shown;
 mod slots;
 mod stash;
+mod tabs;
 mod taking;
 mod terms;
 mod travels;

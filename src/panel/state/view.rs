@@ -3,7 +3,8 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::{
-    Effect, LobeChoice, Pin, Place, SCALES, Session, Settings, ThemeChoice, nearest_scale, probe::EXPLAIN_TAB,
+    Effect, LobeChoice, MESSAGES_TAB, Pin, Place, SCALES, Session, Settings, ThemeChoice, nearest_scale,
+    probe::EXPLAIN_TAB,
 };
 use crate::{
     channel::DebugChannel,
@@ -12,13 +13,6 @@ use crate::{
     registry::Registry,
     scene::variant::MAX_VARIANTS,
 };
-
-/// Id of the panel that shows the messages.
-pub const MESSAGES_TAB: &str = "messages";
-/// Id of the panel that shows the plots.
-pub const PLOTS_TAB: &str = "plots";
-/// Id of the panel that shows the shaders.
-pub const SHADER_TAB: &str = "shader";
 
 choice! {
     /// The effect of the handles in the picture, and of the keys that nudge the selection; in the order of the key.
