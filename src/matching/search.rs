@@ -222,7 +222,7 @@ impl<'a, T: Target> Search<'a, T> {
         if self.cancelled || spent && !self.last {
             return Err(Stop);
         }
-        if self.evaluations.is_multiple_of(self.most.div_ceil(100)) {
+        if self.evaluations.is_multiple_of(self.most.div_ceil(1000)) {
             self.tell();
         }
         self.evaluations += 1;
