@@ -36,9 +36,11 @@ const VISIBLE: f32 = 0.07;
 const HIGHLIGHTS: f32 = 0.006;
 /// Fraction of the lit pixels that are brightened at least that much.
 const VISIBLE_PART: f32 = 0.05;
-/// Minimum brightening by a new light in a picture that clips already, as a fraction of what is there: no pixel is dark
-/// enough then that it could be brightened without clipping more of them.
+/// Brightening by a new light in a picture that clips already, as a fraction of what is there: no pixel is dark enough then
+/// that it could be brightened without clipping more of them.
 const FLOOR: f32 = 0.25;
+/// Fraction of the lit pixels that may clip in addition for that.
+const MORE: f32 = 0.012;
 
 /// Distances of a copy from the original, in widths or heights of a copy; farther away it would no longer be beside it.
 const APART: [f32; 8] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
@@ -343,7 +345,8 @@ impl<'a> Stand<'a> {
         let clipping = factors[(HIGHLIGHTS * factors.len() as f32) as usize];
         let mut factor = (SHARE * most).max(least.min(clipping.max(most)));
         if clipped > spared {
-            factor = factor.max(FLOOR * sums[0] / sums[1]);
+            let bearable = factors[(MORE * factors.len() as f32) as usize];
+            factor = factor.max((FLOOR * sums[0] / sums[1]).min(bearable));
         }
         let intensity = f64::from(default) * f64::from(factor).clamp(1e-6, 1e3);
         (significant(intensity, 2) as f32, factor > most)

