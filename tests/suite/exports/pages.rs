@@ -682,8 +682,10 @@ fn a_page_goes_on_with_webgl_when_webgpu_fails() {
     }
     assert_eq!(text("renderer"), "WebGPU failed, so WebGL 2 draws");
     assert!(difference(&curves[0], &curves[1]).mean < 0.01);
-    // Without either, a sentence says what to do.
-    browser.visit(&format!("{}#neither&{size}", file.display()));
+    // Without either, a sentence says what to do. Another file, since another fragment alone would not load the page anew.
+    let other = folder.path().join("other.html");
+    fs::copy(&file, &other).expect("copied");
+    browser.visit(&format!("{}#neither&{size}", other.display()));
     browser.settle();
     let said = text("failure");
     assert!(said.contains("refuses WebGL 2. Switch on hardware acceleration"), "{said}");
