@@ -70,7 +70,7 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     let description = request.scene.description.as_deref().unwrap_or_default();
     let (scene, meshes) = (packed(data.scene.to_string().as_bytes())?, packed(&data.meshes)?);
     let explained = explained::parts(&data.points)?;
-    let [own, curves] = [&SCRIPT.concat(), &data.script].map(|script| uncommented(script));
+    let [own, curves] = [&SCRIPT.concat(), &data.script].map(|script| compact(script));
     let script = [&*own, explained.script, &curves, START].concat();
     let page = filled(
         PAGE,
@@ -96,9 +96,10 @@ fn make(request: &Request, progress: &Progress) -> Result<Export, ExportError> {
     Ok(Export { notes: data.notes, ..Export::file(page) })
 }
 
-/// A script without the lines that are comments, which would take a tenth of the scripts' room.
-fn uncommented(script: &str) -> String {
-    script.split_inclusive('\n').filter(|line| !line.trim_start().starts_with("//")).collect()
+/// A script without the lines that are comments, which would take a tenth of the scripts' room, and indented half as far.
+fn compact(script: &str) -> String {
+    let lines = script.split_inclusive('\n').filter(|line| !line.trim_start().starts_with("//"));
+    lines.map(|line| &line[(line.len() - line.trim_start_matches(' ').len()).div_ceil(2)..]).collect()
 }
 
 /// The scene without the names of its objects and views, which may be of any length.
@@ -162,9 +163,9 @@ mod tests {
     }
 
     #[test]
-    fn scripts_lose_their_lines_of_comments_alone() {
-        let script = "// A.\nconst a = 1; // one\n  // B\nconst b = 'http://b';\n";
-        assert_eq!(uncommented(script), "const a = 1; // one\nconst b = 'http://b';\n");
+    fn scripts_lose_their_lines_of_comments_and_half_of_their_indentation() {
+        let script = "// A.\nconst a = 1; // one\n  // B\n{\n    const b = 'http://b';\n}\n";
+        assert_eq!(compact(script), "const a = 1; // one\n{\n  const b = 'http://b';\n}\n");
         // A line of a text that begins so would be lost.
         let texts = SCRIPT.iter().filter(|script| script.matches('`').count() % 2 == 1);
         assert_eq!(texts.count(), 0);
