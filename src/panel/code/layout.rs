@@ -38,8 +38,10 @@ struct Style {
 #[derive(Default)]
 pub(super) struct Layouts {
     style: Option<Style>,
-    /// How full the texture of the letters was: it is emptied when it overflows, and layouts refer to it.
+    /// How full the texture of the letters was, and in which pass: layouts refer to it, and it is made anew when it overflows
+    /// or the theme changes, which is not seen while the text is not shown.
     filled: f32,
+    pass: u64,
     lines: HashMap<u64, Arc<Galley>>,
     last: Option<(String, Arc<Galley>)>,
     /// Number of lines laid out, for tests.
@@ -57,11 +59,12 @@ impl Layouts {
             language,
         };
         let filled = ui.fonts_mut(|fonts| fonts.font_atlas_fill_ratio());
-        if self.style.as_ref() != Some(&style) || filled < self.filled {
+        let pass = ui.ctx().cumulative_pass_nr();
+        if self.style.as_ref() != Some(&style) || filled < self.filled || pass > self.pass + 1 {
             self.lines.clear();
             self.last = None;
         }
-        self.filled = filled;
+        (self.filled, self.pass) = (filled, pass);
         if let Some((_, galley)) = self.last.as_ref().filter(|(known, _)| known == text) {
             return galley.clone();
         }
@@ -196,5 +199,19 @@ mod tests {
         let before = layouts.laid;
         let (_, all) = laid_in(&ctx, &mut layouts, &format!("/*{text}"), before);
         assert!(all >= 1999, "{all}");
+    }
+
+    #[test]
+    fn a_text_that_was_out_of_sight_is_laid_out_again() {
+        let (ctx, mut layouts) = (Context::default(), Layouts::default());
+        let mut shown = || {
+            let before = layouts.laid;
+            laid_in(&ctx, &mut layouts, "let a = 1.0;\nlet b = 2.0;\n", before).1
+        };
+        shown();
+        assert_eq!((shown(), shown()), (0, 0), "nothing has changed");
+        // The letters may have other places in their texture, such as after other themes.
+        let _ = ctx.run_ui(egui::RawInput::default(), |_| ());
+        assert_eq!((shown(), shown()), (2, 0));
     }
 }

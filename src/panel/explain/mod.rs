@@ -252,6 +252,11 @@ fn remarks(explained: &Explained, session: &Session, registry: &Registry) -> Vec
         let why = format!("{not} the CPU cannot run this model, so the numbers are not its own: {trouble}.");
         say(Severity::Warning, &why);
     }
+    if let Some(channel) = session.channel_of(explained.view) {
+        let text =
+            format!("The picture shows a channel, {}; the numbers are those of the light.", channel.name());
+        say(Severity::Info, &text);
+    }
     let is_neutral = explanation.seen.is_none() && !explanation.shows_backdrop();
     if is_neutral && session.settings.theme == ThemeChoice::Light {
         let text = "The window with the light theme has a light surround here; pictures that are rendered have this background.";

@@ -3,6 +3,7 @@
 use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::{Quat, Vec3};
 use lights_camera_models::{
+    channel::DebugChannel,
     document::Edit,
     explain::{Explanation, Place},
     optics::{Frame, TermSelection, Terms},
@@ -550,6 +551,10 @@ fn what_is_no_number_and_what_the_picture_does_not_show_is_said() {
     point_at_sphere(&mut bench);
     assert!(bench.says("Only the diffuse term is shown"));
     assert_eq!(shown(&bench).terms, TermSelection::Diffuse);
+    assert!(!bench.says("The picture shows a channel"));
+    bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotV))));
+    point_at_sphere(&mut bench);
+    assert!(bench.says("The picture shows a channel, ") && bench.says("the numbers are those of the light"));
 }
 
 #[test]
