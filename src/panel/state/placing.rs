@@ -36,11 +36,6 @@ const VISIBLE: f32 = 0.07;
 const HIGHLIGHTS: f32 = 0.006;
 /// Fraction of the lit pixels that are brightened at least that much.
 const VISIBLE_PART: f32 = 0.05;
-/// Brightening by a new light in a picture that clips already, as a fraction of what is there: no pixel is dark enough then
-/// that it could be brightened without clipping more of them.
-const FLOOR: f32 = 0.25;
-/// Fraction of the lit pixels that may clip in addition for that.
-const MORE: f32 = 0.012;
 
 /// Distances of a copy from the original, in widths or heights of a copy; farther away it would no longer be beside it.
 const APART: [f32; 8] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
@@ -304,8 +299,7 @@ impl<'a> Stand<'a> {
     }
 
     /// An intensity at which a new light is visible while the brightest parts stay within the range of the display,
-    /// determined by rendering with and without the light. In a picture that clips already, it adds a [part](FLOOR) of the
-    /// light that is there. Also returns true if more pixels clip than are tolerated.
+    /// determined by rendering with and without the light. Also returns true if more pixels clip than are tolerated.
     pub(super) fn intensity(&self, light: &Light, entry: &LightEntry) -> (f32, bool) {
         let default = entry.declaration.default_intensity;
         let mut scene = self.probe();
@@ -317,12 +311,8 @@ impl<'a> Stand<'a> {
         let added = reference::render(&scene, self.registry, &settings);
         let limit = self.brightest();
         let (mut factors, mut floors, mut clipped) = (Vec::new(), Vec::new(), 0);
-        let mut sums = [0.0; 2];
         for (before, added) in before.pixels.iter().zip(&added.pixels) {
             let (before, added) = (before.truncate().max_element(), added.truncate().max_element());
-            if added > 1e-9 {
-                sums = [sums[0] + before.min(limit), sums[1] + added];
-            }
             if before >= limit {
                 // A pixel that clips already uses up the tolerance.
                 clipped += 1;
@@ -343,11 +333,7 @@ impl<'a> Stand<'a> {
         let least = floors[(VISIBLE_PART * floors.len() as f32) as usize];
         // Highlights, but nothing else, may clip to make the light visible.
         let clipping = factors[(HIGHLIGHTS * factors.len() as f32) as usize];
-        let mut factor = (SHARE * most).max(least.min(clipping.max(most)));
-        if clipped > spared {
-            let bearable = factors[(MORE * factors.len() as f32) as usize];
-            factor = factor.max((FLOOR * sums[0] / sums[1]).min(bearable));
-        }
+        let factor = (SHARE * most).max(least.min(clipping.max(most)));
         let intensity = f64::from(default) * f64::from(factor).clamp(1e-6, 1e3);
         (significant(intensity, 2) as f32, factor > most)
     }
