@@ -20,6 +20,7 @@
 //! - [`declared`]: enums whose values are declared in a file each.
 //! - [`text`]: words for messages, and JSON whose values know their place.
 //! - [`caught`]: panics that are caught, so that the rest goes on.
+//! - [`platform`]: what a desktop and a browser do differently.
 //! - [`lettering`]: text in pictures.
 //! - [`program`]: the name of the program, and folders by it.
 //! - [`files`]: every read and write: size limits, atomic replacement.
@@ -93,6 +94,7 @@ pub mod declared;
 pub mod text;
 
 pub mod caught;
+pub mod platform;
 
 pub mod lettering;
 

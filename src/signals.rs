@@ -14,6 +14,8 @@ use std::{
     },
 };
 
+use crate::{files, platform};
+
 /// The state of a request by Ctrl+C.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt(Arc<AtomicU8>);
@@ -36,7 +38,7 @@ impl Interrupt {
         last_act: impl Fn(&str) + Send + 'static,
     ) -> io::Result<Self> {
         let interrupt = Self::default();
-        system::listen(interrupt.clone(), wake, last_act)?;
+        hear(interrupt.clone(), wake, last_act)?;
         Ok(interrupt)
     }
 
@@ -47,7 +49,7 @@ impl Interrupt {
     /// Returns an error if the operating system refuses.
     pub fn end_tidily() -> io::Result<()> {
         // As if the first request had not been answered.
-        system::listen(Self(Arc::new(AtomicU8::new(HEARD))), || (), |_| ())
+        hear(Self(Arc::new(AtomicU8::new(HEARD))), || (), |_| ())
     }
 
     /// True once for each Ctrl+C that the window should answer.
@@ -70,7 +72,8 @@ impl Interrupt {
     /// Ends the process as Ctrl+C does, after a Ctrl+C.
     pub fn end_if_asked(&self) {
         if self.is_asked() {
-            system::end_by_interrupt();
+            files::give_up();
+            platform::end_by_interrupt();
         }
     }
 
@@ -80,84 +83,21 @@ impl Interrupt {
     }
 }
 
-#[cfg(unix)]
-mod system {
-    use std::{io, path::Path, thread};
-
-    use signal_hook::{
-        consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM},
-        iterator::Signals,
-        low_level::{emulate_default_handler, signal_name},
-    };
-
-    use super::Interrupt;
-    use crate::files;
-
-    pub(super) fn listen(
-        interrupt: Interrupt,
-        wake: impl Fn() + Send + 'static,
-        last_act: impl Fn(&str) + Send + 'static,
-    ) -> io::Result<()> {
-        let status = files::read(Path::new("/proc/self/status"), 1 << 16).unwrap_or_default();
-        let ignored = ignored(&String::from_utf8_lossy(&status));
-        let wanted = [SIGINT, SIGTERM, SIGHUP, SIGQUIT].into_iter().filter(|s| ignored & (1 << (s - 1)) == 0);
-        let mut signals = Signals::new(wanted)?;
-        thread::Builder::new().name("signals".to_owned()).spawn(move || {
-            for signal in signals.forever() {
-                if signal == SIGINT && interrupt.is_first() {
-                    wake();
-                    continue;
-                }
-                last_act(signal_name(signal).unwrap_or("a signal"));
-                files::give_up();
-                let _ = emulate_default_handler(signal);
-            }
-        })?;
-        Ok(())
-    }
-
-    /// The signals that the parent process wants ignored, as `nohup` does with `SIGHUP`, one bit each. Only Linux
-    /// reports them.
-    pub(super) fn ignored(status: &str) -> u64 {
-        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
-    }
-
-    pub(super) fn end_by_interrupt() {
+/// Hears of signals until the end of the process.
+fn hear(
+    interrupt: Interrupt,
+    wake: impl Fn() + Send + 'static,
+    last_act: impl Fn(&str) + Send + 'static,
+) -> io::Result<()> {
+    platform::listen(move |signal, is_interrupt| {
+        if is_interrupt && interrupt.is_first() {
+            wake();
+            return true;
+        }
+        last_act(signal);
         files::give_up();
-        let _ = emulate_default_handler(SIGINT);
-    }
-}
-
-#[cfg(not(unix))]
-mod system {
-    use std::{io, process};
-
-    use super::Interrupt;
-
-    /// Exit status that shells report for a program ended by Ctrl+C.
-    const INTERRUPTED: i32 = 130;
-
-    pub(super) fn listen(
-        interrupt: Interrupt,
-        wake: impl Fn() + Send + 'static,
-        last_act: impl Fn(&str) + Send + 'static,
-    ) -> io::Result<()> {
-        let heard = move || {
-            if interrupt.is_first() {
-                wake();
-            } else {
-                last_act("Ctrl+C");
-                end_by_interrupt();
-            }
-        };
-        ctrlc::set_handler(heard).map_err(io::Error::other)
-    }
-
-    pub(super) fn end_by_interrupt() {
-        crate::files::give_up();
-        process::exit(INTERRUPTED);
-    }
+        false
+    })
 }
 
 #[cfg(test)]
@@ -175,14 +115,5 @@ mod tests {
         }
         assert!(interrupt.is_first() && !interrupt.is_first(), "the window did not answer");
         assert!(interrupt.take() && !interrupt.is_first(), "the window asks");
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn signals_that_are_ignored_stay_so() {
-        let status =
-            "Name:\tlcm\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\nSigCgt:\t0000000000000440\n";
-        assert_eq!(system::ignored(status), 1 << 12 | 1);
-        assert_eq!(system::ignored(""), 0);
     }
 }

@@ -8,7 +8,7 @@
 //! and remembered with the state of its files, so that nothing is lost if folders appear, vanish and return,
 //! if links lead elsewhere, or if the system drops events.
 
-use crate::{caught::lock, files::Shown as _};
+use crate::{caught::lock, files::Shown as _, platform};
 use std::{
     collections::{BTreeSet, HashMap},
     path::{Path, PathBuf},
@@ -17,10 +17,11 @@ use std::{
         mpsc::{self, Receiver, RecvTimeoutError, Sender},
     },
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use notify::{Event, EventKind, RecursiveMode, event::ModifyKind};
+use web_time::Instant;
 
 pub(crate) use self::scan::Print;
 use self::{
@@ -50,6 +51,8 @@ const BATCH: usize = 4096;
 pub struct Watcher {
     orders: Sender<Order>,
     reported: Arc<Mutex<Reported>>,
+    /// What is watched where the program alone changes files.
+    own: Vec<(PathBuf, Kind)>,
 }
 
 /// The thread's reports to its owner.
@@ -87,6 +90,10 @@ impl Watcher {
     /// A watcher of nothing yet. `wake` is called from another thread whenever there is something new: files
     /// that [`changed`](Self::changed), or another [`complaint`](Self::complaint).
     pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
+        if !platform::SHARES_FILES {
+            platform::tell_of_changes(wake);
+            return Self { orders: mpsc::channel().0, reported: Arc::default(), own: Vec::new() };
+        }
         Self::with_backend(wake, |news| {
             let hear = move |event: notify::Result<Event>| {
                 // Reading changes nothing.
@@ -128,23 +135,32 @@ impl Watcher {
             lock(&reported).complaint =
                 Some(format!("Changes to files on disk will not be detected: {error}."));
         }
-        Self { orders, reported }
+        Self { orders, reported, own: Vec::new() }
     }
 
     /// Watches a folder and everything below it, including links, but not hidden folders. It may not exist
     /// yet, and may be deleted and return.
     pub fn watch_folder(&mut self, folder: &Path) {
-        self.order(|done| Order::Add(folder.to_owned(), Kind::Folder, done));
+        self.add(folder, Kind::Folder);
     }
 
     /// Watches a file through its folder, so that atomic renames, deletion and re-creation are noticed. It
     /// may be a link, and may not exist yet.
     pub fn watch_file(&mut self, file: &Path) {
-        self.order(|done| Order::Add(file.to_owned(), Kind::File, done));
+        self.add(file, Kind::File);
+    }
+
+    fn add(&mut self, path: &Path, kind: Kind) {
+        if platform::SHARES_FILES {
+            self.order(|done| Order::Add(path.to_owned(), kind, done));
+        } else {
+            self.own.push((path.to_owned(), kind));
+        }
     }
 
     /// Stops watching a file or folder, given the name under which it is watched.
     pub fn forget(&mut self, path: &Path) {
+        self.own.retain(|(own, _)| own != path);
         self.order(|done| Order::Forget(path.to_owned(), done));
     }
 
@@ -152,6 +168,7 @@ impl Watcher {
     pub fn report_later(&self, file: &Path, after: Duration) {
         // An error: the thread has ended.
         let _ = self.orders.send(Order::Remind(file.to_owned(), after));
+        platform::note_change(file);
     }
 
     /// Files that may have changed since the last call, each once, after being quiet for [`QUIET`], or after
@@ -161,7 +178,10 @@ impl Watcher {
     pub fn changed(&self) -> Vec<PathBuf> {
         let mut changed = std::mem::take(&mut lock(&self.reported).changed);
         changed.sort_by_key(|(first, _)| *first);
-        changed.into_iter().map(|(_, file)| file).collect()
+        let own = platform::own_changes()
+            .into_iter()
+            .filter(|file| self.own.iter().any(|(path, kind)| holds(path, *kind, file)));
+        changed.into_iter().map(|(_, file)| file).chain(own).collect()
     }
 
     /// The time until the next change is due, if any. The thread then calls `wake`.
@@ -210,10 +230,15 @@ impl Root {
 
     /// True if the root covers a file.
     fn holds(&self, file: &Path) -> bool {
-        match self.kind {
-            Kind::Folder => file.starts_with(&self.path),
-            Kind::File => file == self.path,
-        }
+        holds(&self.path, self.kind, file)
+    }
+}
+
+/// True if a root covers a file.
+fn holds(path: &Path, kind: Kind, file: &Path) -> bool {
+    match kind {
+        Kind::Folder => file.starts_with(path),
+        Kind::File => file == path,
     }
 }
 

@@ -1,13 +1,10 @@
 //! `lcm materials`: the library of materials as a list, as JSON, and as a sheet of pictures.
 
-use std::{
-    fmt::Write as _,
-    path::PathBuf,
-    time::{Duration, Instant},
-};
+use std::{fmt::Write as _, path::PathBuf, time::Duration};
 
 use clap::Args;
 use serde_json::{Value as Json, json};
+use web_time::Instant;
 
 use super::{
     Options, Outcome, complain, gauged, outputs, print_json, print_text,

@@ -9,6 +9,7 @@ use crate::{
     failure::Failure,
     files::{self, printable, printable_json},
     parameter::Outside,
+    platform,
     program::{self, HAS_WINDOW, in_own_words, without_window},
     progress::Progress,
     reference::MAX_SIDE,
@@ -32,7 +33,7 @@ use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, e
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 pub use engine::App;
-use engine::{Additions, ENGINE, engine};
+use engine::{Additions, engine};
 use serde::Serialize;
 use workshop::Places;
 
@@ -439,7 +440,8 @@ impl<P: Serialize> Checked<P> {
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
-    run_as(Some(program::LAB), std::env::args_os(), |_| (), |_| ())
+    platform::report_panics();
+    run_as(Some(program::LAB), platform::arguments(), |_| (), |_| ())
 }
 
 /// Runs the command line of this process with additional types, known to every command, and with additions to
@@ -466,7 +468,7 @@ pub fn main() -> ExitCode {
 /// ```
 #[must_use]
 pub fn main_with(types: impl FnOnce(&mut Registry), window: impl FnOnce(&mut App)) -> ExitCode {
-    run_with(std::env::args_os(), types, window)
+    run_with(platform::arguments(), types, window)
 }
 
 /// [`clap`]'s command with the name of the program.
@@ -524,7 +526,7 @@ fn run_as(
         Err(error) => return ended(Err(Failure::Invalid(error.to_string()))),
     }
     #[cfg(target_os = "linux")]
-    if ENGINE.is_some() && cli.loads_driver() {
+    if engine::ENGINE.is_some() && cli.loads_driver() {
         runtime_folder::provide();
     }
     match cli.scene_options() {
@@ -638,9 +640,9 @@ fn print(text: &str) -> Outcome {
     Ok(out.flush()?)
 }
 
-/// Prints a line to standard error, with control characters escaped. A missing reader must not cause a panic.
+/// Prints a line to standard error, with control characters escaped.
 fn complain(what: impl fmt::Display) {
-    let _ = writeln!(io::stderr().lock(), "{}", printable(&in_own_words(&what.to_string())));
+    platform::tell(&printable(&in_own_words(&what.to_string())));
 }
 
 /// Number of steps of a progress bar for a single piece of work.

@@ -17,9 +17,11 @@ use crate::{
     export::payload::{Payload, unpacking},
     failure::Failure,
     parameter::files_read,
+    platform,
     scene::{
         Scene,
         error::LoadError,
+        examples::{EXAMPLES, Example},
         load::{self, Defaults, Loaded, Missing, Stamp},
     },
     text::listed,
@@ -33,6 +35,8 @@ const INSIDE: &str = "the scene inside this program";
 pub(super) enum Source {
     /// No scene on the command line.
     Default,
+    /// One of [`EXAMPLES`].
+    Example(usize),
     /// No scene on the command line of a program that carries one.
     Inside(Arc<Payload>),
     /// `-`.
@@ -45,10 +49,19 @@ impl Source {
     /// The source given by an argument; without one, the scene inside this program, or the default scene.
     pub(super) fn of(argument: Option<&Path>, workshop: &Workshop) -> Self {
         match (argument, &workshop.inside) {
-            (Some(path), _) => Self::named(path),
+            (Some(path), _) => Self::shipped(path).unwrap_or_else(|| Self::named(path)),
             (None, Some(inside)) => Self::Inside(inside.clone()),
             (None, None) => Self::Default,
         }
+    }
+
+    /// The shipped scene with this name, with or without the ending of its file, where there are no files.
+    fn shipped(name: &Path) -> Option<Self> {
+        let is = |example: &Example| {
+            let file = Path::new(example.file);
+            file == name || file.file_stem() == Some(name.as_os_str())
+        };
+        if platform::SHARES_FILES { None } else { EXAMPLES.iter().position(is).map(Self::Example) }
     }
 
     /// The source with this name.
@@ -59,7 +72,7 @@ impl Source {
     /// The path of the source, which no result may replace.
     pub(super) fn path(&self) -> Option<&Path> {
         match self {
-            Self::Default | Self::Inside(_) => None,
+            Self::Default | Self::Inside(_) | Self::Example(_) => None,
             // A shell may have connected it to a file.
             Self::Stdin => Some(Path::new("/dev/stdin")),
             Self::File(path) => Some(path),
@@ -69,7 +82,7 @@ impl Source {
     /// The name for pictures of the scene.
     pub(super) fn stem(&self) -> String {
         match self {
-            Self::Default => "default".to_owned(),
+            Self::Default | Self::Example(_) => "default".to_owned(),
             Self::Inside(inside) => inside.about.stem.clone(),
             Self::Stdin => "stdin".to_owned(),
             Self::File(path) => path
@@ -82,6 +95,7 @@ impl Source {
     pub(super) fn name(&self) -> String {
         match self {
             Self::Default => "the default scene".to_owned(),
+            Self::Example(i) => EXAMPLES[*i].file.to_owned(),
             Self::Inside(_) => INSIDE.to_owned(),
             Self::Stdin => load::STDIN.to_owned(),
             Self::File(path) => path.shown().to_string(),
@@ -101,6 +115,10 @@ impl Source {
         match self {
             Self::Default => {
                 Ok(Loaded { scene: Scene::default(), missing: Vec::new(), stamp: Stamp::of(&[]) })
+            }
+            Self::Example(i) => {
+                let Example { text, file, .. } = &EXAMPLES[*i];
+                load::from_text(text, file, &workshop.registry, defaults)
             }
             Self::Inside(inside) => {
                 // Failure to unpack them was reported when the folders were looked up.

@@ -3,10 +3,10 @@
 use std::{
     fs, io,
     path::{Path, PathBuf},
-    time::Instant,
 };
 
 use clap::Args;
+use web_time::Instant;
 
 use super::{Options, Outcome, outputs, progress};
 use crate::files::Shown as _;

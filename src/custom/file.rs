@@ -1,9 +1,10 @@
 //! Reading shader files, and locating bytes that are not text.
 
-use std::{fs, io, path::Path};
+use std::{io, path::Path};
 
 use crate::{
     files::{self, FileError, Shown as _},
+    platform::fs,
     shader::check::ShaderProblem,
 };
 

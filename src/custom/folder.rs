@@ -6,7 +6,7 @@
 
 use std::{
     collections::{HashMap, HashSet},
-    fs, io,
+    io,
     mem::discriminant,
     path::{Path, PathBuf},
 };
@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use super::{EXTENSION, declare, file, id_of, is_id, is_model, named, problem, read, source_path};
 use crate::files::{self, Shown as _, words};
 use crate::{
+    platform::fs,
     registry::{CustomModel, MODELS, Registry},
     shader::{
         check::ShaderProblem,
@@ -56,7 +57,7 @@ pub struct Declared {
 /// # Errors
 /// Returns an error if the folder cannot be read.
 pub fn files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    Ok(names_in(folder)?.into_iter().filter(|path| path.is_file()).collect())
+    Ok(names_in(folder)?.into_iter().filter(|path| fs::is_file(path)).collect())
 }
 
 /// Like [`files_in`], but includes everything with a matching name: folders, pipes, dangling links.
@@ -223,7 +224,7 @@ pub fn declare_folder(folder: &Path, registry: &mut Registry) -> Declared {
 pub fn declare_rest(registry: &mut Registry) -> Declared {
     let Some(folder) = registry.custom_folder() else { return Declared::default() };
     let (paths, others): (Vec<_>, Vec<_>) = match names_in(folder) {
-        Ok(paths) => paths.into_iter().partition(|path| path.is_file()),
+        Ok(paths) => paths.into_iter().partition(|path| fs::is_file(path)),
         Err(e) => {
             let problem = ShaderProblem {
                 file: "models".to_owned(),

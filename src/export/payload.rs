@@ -14,8 +14,8 @@ use std::{
 use memchr::memmem;
 use serde::{Deserialize, Serialize};
 
-use crate::files::Shown as _;
 use crate::files::{self, FileError};
+use crate::{files::Shown as _, platform::fs};
 
 /// Length of the name at the start of the place.
 const NAME: usize = 16;
@@ -230,8 +230,8 @@ impl Payload {
             return Ok(None);
         }
         let folder = within.join(format!("{:016x}", self.checksum));
-        if folder.is_dir() {
-            return match self.files.iter().find(|(path, _)| !folder.join(path).is_file()) {
+        if fs::is_dir(&folder) {
+            return match self.files.iter().find(|(path, _)| !fs::is_file(folder.join(path))) {
                 None => Ok(Some(folder)),
                 Some((file, _)) => Err(PayloadError::Incomplete { folder, file: file.clone() }),
             };

@@ -1,7 +1,7 @@
 //! Writes exports to disk: whole or not at all, and never replacing anything without being asked.
 
 use std::{
-    env, fs,
+    env,
     io::Write as _,
     path::{Path, PathBuf},
 };
@@ -10,6 +10,7 @@ use super::{Export, File, Form, Makes};
 use crate::files::Shown as _;
 use crate::{
     files::{self, Before, Draft, FileError, FolderDraft, Refused},
+    platform::fs,
     registry::Registry,
     scene::Scene,
 };
@@ -121,7 +122,7 @@ pub fn write(export: &Export, place: &Path, before: &Before) -> Result<(), Write
     // Naming a folder in order to put the export into it must not destroy its contents.
     if let [first, _, ..] = export.files.as_slice()
         && !is_empty(place)
-        && !place.join(&first.path).is_file()
+        && !fs::is_file(place.join(&first.path))
     {
         return Err(WriteError::Foreign(place.to_owned(), first.path.clone()));
     }

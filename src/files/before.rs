@@ -1,15 +1,18 @@
 //! The state of a place before something is written to it.
 
 use std::{
-    fs::{self, File},
     path::Path,
     thread,
-    time::{Duration, Instant, SystemTime},
+    time::{Duration, SystemTime},
 };
 
-use file_id::FileId;
+use web_time::Instant;
 
 use super::follow;
+use crate::platform::{
+    FileId, file_id,
+    fs::{self, File},
+};
 
 /// Maximum wait for another process that is writing to the same folder.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -33,7 +36,7 @@ impl Before {
     pub fn of(path: &Path) -> Self {
         let place = follow(path).unwrap_or_else(|_| path.to_owned());
         Self(fs::metadata(&place).ok().map(|now| Held {
-            id: file_id::get_file_id(&place).ok(),
+            id: file_id(&place),
             content: now.is_file().then(|| (now.len(), now.modified().ok())),
         }))
     }

@@ -1,12 +1,9 @@
 //! Replaces files, all or nothing.
 
 use std::{
-    fs::{self, File, Metadata},
     io::{self, Seek as _, Write},
     path::{Path, PathBuf},
 };
-
-use tempfile::{NamedTempFile, PersistError};
 
 use super::{
     FileError, Node,
@@ -15,6 +12,10 @@ use super::{
     living::{self, Living, Temporary},
     overwrite::{fill, open_to_overwrite},
     regular, tidy,
+};
+use crate::platform::{
+    fs::{self, File, Metadata},
+    temporary::{self, NamedTempFile, PersistError},
 };
 
 /// Writes a document, replacing any existing one: all or nothing, and on disk when this returns. Links are
@@ -89,7 +90,7 @@ impl Draft {
     fn beside(path: &Path, synced: bool) -> Result<Self, FileError> {
         let target = follow(path)?;
         let is_new = existing(&target)?.is_none();
-        let mut builder = tempfile::Builder::new();
+        let mut builder = temporary::Builder::new();
         builder.prefix(litter::PREFIX).suffix(litter::DRAFT);
         #[cfg(unix)]
         if is_new {

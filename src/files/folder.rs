@@ -3,12 +3,9 @@
 use std::{
     collections::BTreeSet,
     ffi::OsStr,
-    fs::{self, File},
     io,
     path::{Component, Path, PathBuf},
 };
-
-use tempfile::TempDir;
 
 use super::shown::Shown as _;
 use super::{
@@ -18,6 +15,10 @@ use super::{
     folder_of, follow, litter,
     living::{self, Living, Temporary},
     tidy,
+};
+use crate::platform::{
+    fs::{self, File},
+    temporary::{self, TempDir},
 };
 
 /// The new content of a folder, not yet in place. Dropping it deletes it.
@@ -50,7 +51,7 @@ impl FolderDraft {
         let make = || {
             let draft = litter::locked(
                 || {
-                    let mut builder = tempfile::Builder::new();
+                    let mut builder = temporary::Builder::new();
                     let folder = builder.prefix(litter::PREFIX).suffix(litter::DRAFT).tempdir_in(around)?;
                     let path = folder.path().join(litter::LOCK);
                     let lock = File::create_new(&path)?;
@@ -151,7 +152,7 @@ pub fn in_folder<T, E: From<io::Error>>(folder: &Path, write: impl FnOnce() -> R
     // Recorded until the end, in case this process is terminated meanwhile.
     let _living = Living::making(|| Ok(()), |()| Temporary::Folders(folder.to_owned(), new.len()))?;
     let made = fs::create_dir_all(folder).map_err(|error| {
-        match (error.kind(), folder.ancestors().find(|f| f.exists())) {
+        match (error.kind(), folder.ancestors().find(|f| fs::is_there(f))) {
             (io::ErrorKind::NotFound, Some(there)) => super::missing(there),
             _ => error,
         }

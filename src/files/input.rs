@@ -1,14 +1,16 @@
 //! The inputs of commands: files and streams.
 
 use std::{
-    fs,
     io::{self, Read},
     path::Path,
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
+use web_time::Instant;
+
 use super::{FileError, Kind, options, read};
+use crate::platform::fs;
 
 /// Maximum wait for a writer of a named pipe.
 const PATIENCE: Duration = Duration::from_secs(2);

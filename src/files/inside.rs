@@ -3,6 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use super::FileError;
+use crate::platform::fs;
 
 /// The target of a path, with links resolved, if it is in or below a folder. Nothing is accessed if the path
 /// leads out of the folder by its name.
@@ -14,14 +15,14 @@ pub fn inside(folder: &Path, path: &Path) -> Result<PathBuf, FileError> {
     if !plain(path)?.starts_with(plain(folder)?) {
         return Err(outside());
     }
-    let end = path.canonicalize()?;
-    if end.starts_with(folder.canonicalize()?) { Ok(end) } else { Err(outside()) }
+    let end = fs::canonicalize(path)?;
+    if end.starts_with(fs::canonicalize(folder)?) { Ok(end) } else { Err(outside()) }
 }
 
 /// The absolute path without `.` and `..`, by name alone.
 fn plain(path: &Path) -> Result<PathBuf, FileError> {
     let mut plain = PathBuf::new();
-    for component in std::path::absolute(path)?.components() {
+    for component in fs::absolute(path)?.components() {
         match component {
             Component::CurDir => {}
             Component::ParentDir => _ = plain.pop(),

@@ -1,7 +1,6 @@
 //! Cleaning up after killed processes.
 
 use std::{
-    fs::{self, File, Metadata, TryLockError},
     io::{self, Seek as _},
     path::{Path, PathBuf},
     time::{Duration, UNIX_EPOCH},
@@ -12,6 +11,10 @@ use super::{
     FileError, Node, is_same, options,
     overwrite::{fill, open_to_overwrite},
     read, read_start,
+};
+use crate::platform::{
+    self,
+    fs::{self, File, Metadata, TryLockError},
 };
 
 /// File in the draft of a folder that is locked while its process lives.
@@ -203,7 +206,11 @@ pub(super) fn locked<T>(
 /// Removes a file of an older version, if it is empty or begins as such a file does.
 fn remove_if_old(path: &Path, beginning: &[u8]) {
     let Some(lock) = abandoned(path) else { return };
-    let age = lock.metadata().and_then(|m| m.modified()).ok().and_then(|at| at.elapsed().ok());
+    let age = lock
+        .metadata()
+        .and_then(|m| m.modified())
+        .ok()
+        .and_then(|at| platform::now().duration_since(at).ok());
     let Ok(start) = read_start(path, beginning.len() as u64) else { return };
     if age.is_some_and(|age| age > LONG) && (start.is_empty() || start == beginning) {
         let _ = fs::remove_file(path);

@@ -1,15 +1,17 @@
 //! The temporary files of this process, which are removed when a signal ends it.
 
 use std::{
-    fs, io,
+    io,
     path::PathBuf,
     sync::{Mutex, MutexGuard, TryLockError},
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
+use web_time::Instant;
+
 use super::litter;
-use crate::caught::lock;
+use crate::{caught::lock, platform::fs};
 
 /// Maximum wait for a write that hangs, before the process ends without cleaning up.
 const PATIENCE: Duration = Duration::from_secs(2);

@@ -43,12 +43,17 @@
 
 use std::{
     env, fmt,
-    fs::{self, File, FileType, Metadata, OpenOptions},
     io::{self, Read as _, Seek as _, SeekFrom},
     path::{Path, PathBuf},
 };
 
-use crate::declared::texts;
+use crate::{
+    declared::texts,
+    platform::{
+        self,
+        fs::{self, File, FileType, Metadata, OpenOptions},
+    },
+};
 
 mod before;
 mod draft;
@@ -237,7 +242,7 @@ pub fn read_range(path: &Path, from: u64, length: u64) -> Result<Vec<u8>, FileEr
 pub fn program() -> Option<PathBuf> {
     // This name stays valid when the file is replaced or removed, for example by a new build.
     let own = PathBuf::from("/proc/self/exe");
-    if cfg!(target_os = "linux") && own.exists() { Some(own) } else { env::current_exe().ok() }
+    if cfg!(target_os = "linux") && fs::is_there(&own) { Some(own) } else { env::current_exe().ok() }
 }
 
 /// Opens a regular file, and returns its reported length.
@@ -252,6 +257,7 @@ fn open_to_read(path: &Path) -> Result<(File, u64), FileError> {
 }
 
 /// Options that prevent waiting on opening, and a terminal from becoming this process's controlling terminal.
+#[cfg_attr(not(unix), allow(unused_mut))]
 fn options() -> OpenOptions {
     let mut options = OpenOptions::new();
     #[cfg(unix)]
@@ -265,18 +271,18 @@ fn options() -> OpenOptions {
 /// True if both paths lead to one file, by links or hard links.
 #[must_use]
 pub fn same(a: &Path, b: &Path) -> bool {
-    matches!((file_id::get_file_id(a), file_id::get_file_id(b)), (Ok(a), Ok(b)) if a == b)
+    platform::file_id(a).is_some_and(|a| platform::file_id(b) == Some(a))
 }
 
 /// Identifies a file, whatever paths lead to it.
-pub type Identity = file_id::FileId;
+pub type Identity = platform::FileId;
 
 /// The identity of a regular file, links followed, and its length in bytes.
 #[must_use]
 pub fn identity(path: &Path) -> Option<(Identity, u64)> {
     let metadata = fs::metadata(path).ok()?;
     regular(&metadata).ok()?;
-    Some((file_id::get_file_id(path).ok()?, metadata.len()))
+    Some((platform::file_id(path)?, metadata.len()))
 }
 
 /// What lies in a folder under names with an extension, by name, at most `most`, and true if there is more: hidden names are
@@ -325,7 +331,7 @@ pub fn follow(path: &Path) -> io::Result<PathBuf> {
 
 /// The reason why nothing can be made in a folder, where the system says that it is not there.
 fn missing(folder: &Path) -> io::Error {
-    let folder = if folder.is_dir() {
+    let folder = if fs::is_dir(folder) {
         // As in /proc.
         format!("{} is a folder of the system in which no files can be created", folder.shown())
     } else {

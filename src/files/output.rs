@@ -1,20 +1,23 @@
 //! The results of commands: destinations, and how to write them.
 
 use std::{
-    fs::{self, File},
     io::{self, Write},
-    path::{self, Path, PathBuf},
+    path::{Path, PathBuf},
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
+
+use web_time::Instant;
 
 use super::shown::Shown as _;
 use super::{
     Draft, FileError, Kind, folder::missing_folders, folder_of, in_folder, input::descriptor, kind, options,
     read_start, same,
 };
+use crate::platform::fs::{self, File};
 
 /// Maximum wait for a reader of a named pipe.
+#[cfg(unix)]
 const PATIENCE: Duration = Duration::from_secs(10);
 /// The time between two attempts to write.
 const PAUSE: Duration = Duration::from_millis(1);
@@ -82,9 +85,9 @@ pub enum Refused {
 
 fn overlap(output: &Path, input: &Path) -> String {
     // The program is named by its whole path.
-    if matches!((path::absolute(output), path::absolute(input)), (Ok(output), Ok(input)) if output == input) {
+    if matches!((fs::absolute(output), fs::absolute(input)), (Ok(output), Ok(input)) if output == input) {
         "is read by this command".to_owned()
-    } else if output.is_dir() {
+    } else if fs::is_dir(output) {
         format!("holds {}, which is read by this command", input.shown())
     } else {
         format!("is the same file as {}, which is read by this command", input.shown())
@@ -142,7 +145,7 @@ pub fn may_overwrite<'a>(
 /// Returns [`Refused::Exists`] if nothing but the user's consent is missing, or else the errors of [`may_overwrite`].
 pub fn may_replace(output: &Path, sort: Signature, agreed: bool, inputs: &[PathBuf]) -> Result<(), Refused> {
     may_overwrite(output, sort, inputs.iter().map(PathBuf::as_path))?;
-    match agreed || !output.exists() {
+    match agreed || !fs::is_there(output) {
         true => Ok(()),
         false => Err(Refused::Exists { output: output.to_owned() }),
     }

@@ -1,12 +1,9 @@
 //! Overwriting a file that stays the same file.
 
-use std::{
-    fs::{File, Metadata},
-    io,
-    path::Path,
-};
+use std::{io, path::Path};
 
 use super::{is_same, options, regular};
+use crate::platform::fs::{File, Metadata};
 
 /// Makes an open file equal to another, and waits until that is on disk. Until then its content is a prefix of the
 /// other's.

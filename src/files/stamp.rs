@@ -1,10 +1,11 @@
 //! Detects changes of a file without reading it.
 
 use std::{
-    fs,
     path::Path,
     time::{Duration, SystemTime},
 };
+
+use crate::platform::{self, fs};
 
 /// The time for which the clocks of file systems may stand still.
 const COARSE: Duration = Duration::from_millis(100);
@@ -22,7 +23,7 @@ impl Stamp {
     pub fn settled(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok()?;
         let changed = metadata.modified().ok()?;
-        let age = SystemTime::now().duration_since(changed).ok()?;
+        let age = platform::now().duration_since(changed).ok()?;
         (age > COARSE).then_some(Self { length: metadata.len(), changed })
     }
 }

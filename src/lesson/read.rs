@@ -16,6 +16,7 @@ use super::{
 use crate::{
     files::{self, FileError, Kind},
     parameter::Outside,
+    platform::fs,
     registry::Registry,
     scene::{Scene, encoding, error::LoadError},
 };
@@ -56,7 +57,7 @@ pub(super) fn file(path: &Path, registry: &Registry, outside: &Outside) -> Resul
         error => whole(error.to_string()),
     })?;
     // The name "." has no meaning.
-    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let absolute = fs::absolute(path).unwrap_or_else(|_| path.to_owned());
     let named = if is_folder { absolute.file_name() } else { absolute.file_stem() };
     let id = named.unwrap_or_default().to_string_lossy();
     let folder: PathBuf = files::folder_of(&file).to_owned();

@@ -2,7 +2,7 @@
 
 use std::{
     collections::BTreeSet,
-    env, fs, io,
+    env, io,
     path::{Path, PathBuf},
 };
 
@@ -13,6 +13,7 @@ pub use crate::registry::Folders;
 use crate::{
     custom::{self, file},
     files::{self, FileError},
+    platform::fs,
     registry::{Registry, compose::SHARED},
     shader::{Source, check::ShaderProblem, compose},
 };
@@ -68,7 +69,7 @@ fn folder(variable: &str) -> Option<PathBuf> {
 /// without either.
 #[must_use]
 pub fn data_folder() -> Option<PathBuf> {
-    let usual = || Some(directories::ProjectDirs::from("", "", crate::program::LAB)?.data_dir().to_owned());
+    let usual = || crate::platform::data_folder(crate::program::LAB);
     folder(DATA_VARIABLE).or_else(usual)
 }
 
@@ -102,9 +103,9 @@ impl Folders {
     ) -> Result<Self, AssetError> {
         let shaders = match assets {
             Some(folder) => Some(shaders_of(folder)?),
-            None => surroundings.roots.iter().map(|r| r.join("assets/shaders")).find(|s| s.is_dir()),
+            None => surroundings.roots.iter().map(|r| r.join("assets/shaders")).find(|s| fs::is_dir(s)),
         };
-        if let Some(file) = models.filter(|m| m.exists() && !m.is_dir()) {
+        if let Some(file) = models.filter(|m| fs::is_there(m) && !fs::is_dir(m)) {
             return Err(AssetError::NotAFolder(file.to_owned()));
         }
         let beside = || shaders.as_ref().map(|s| s.with_file_name("models"));
@@ -117,16 +118,16 @@ impl Folders {
 /// The shaders of a given folder.
 fn shaders_of(folder: &Path) -> Result<PathBuf, AssetError> {
     let shaders = folder.join("shaders");
-    if shaders.is_dir() {
+    if fs::is_dir(&shaders) {
         return Ok(shaders);
     }
     let inside = folder.join("assets");
-    let hint = if inside.join("shaders").is_dir() {
+    let hint = if fs::is_dir(inside.join("shaders")) {
         format!("; did you mean {}?", inside.shown())
-    } else if folder.file_name().is_some_and(|n| n == "shaders") && folder.is_dir() {
+    } else if folder.file_name().is_some_and(|n| n == "shaders") && fs::is_dir(folder) {
         let above = folder.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         format!("; did you mean {}?", above.shown())
-    } else if !folder.exists() {
+    } else if !fs::is_there(folder) {
         "; there is no such folder: `lcm assets export FOLDER` makes one".to_owned()
     } else {
         "; `lcm assets export FOLDER` makes one".to_owned()
@@ -220,10 +221,10 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     entries.sort();
     for path in entries {
         let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
-        if hidden || path.is_symlink() && path.is_dir() {
+        if hidden || fs::is_symlink(&path) && fs::is_dir(&path) {
             continue;
         }
-        if path.is_dir() {
+        if fs::is_dir(&path) {
             collect(&path, files);
         } else if path.extension().is_some_and(|e| e == custom::EXTENSION) {
             files.push(path);
@@ -253,7 +254,7 @@ pub fn export(folder: &Path, registry: &Registry) -> Result<Exported, AssetError
     let sources = built_in_sources(registry).into_iter().map(|s| (shaders.join(s.path), s.text));
     let models = EXAMPLES.iter().map(|(name, text)| (folder.join("models").join(name), *text));
     let all: Vec<_> = sources.chain(models).collect();
-    let is_new = |place: &&Path| *place != folder && !place.exists();
+    let is_new = |place: &&Path| *place != folder && !fs::is_there(place);
     let new: BTreeSet<PathBuf> = all
         .iter()
         .flat_map(|(path, _)| path.ancestors().skip(1).take_while(is_new).map(Path::to_owned))

@@ -1,6 +1,8 @@
 //! The age of problems: recent ones are not reported.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 /// Minimum age of a reported problem: many editors empty a file before they write it.
 pub const GRACE: Duration = Duration::from_millis(300);

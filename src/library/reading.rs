@@ -3,16 +3,18 @@
 use std::{
     collections::BTreeMap,
     path::PathBuf,
-    sync::{Arc, Condvar, Mutex, MutexGuard},
-    thread,
-    time::{Duration, Instant},
+    sync::{Arc, Mutex, MutexGuard},
+    time::Duration,
 };
 
+use web_time::Instant;
+
 use crate::{
-    caught::{lock, unpoisoned},
+    caught::lock,
     custom,
     optics::colour::Encoding,
     parameter::Values,
+    platform::{Next, Worker},
     reflection::ends::check_that_it_ends,
     registry::{CustomModel, MODELS, Registry},
     shader::{check::ShaderProblem, compose::Sources},
@@ -70,14 +72,13 @@ impl Job {
 /// Reads models one after the other.
 #[derive(Default)]
 pub struct Reader {
-    /// The state of a separate thread; without one, models are read immediately.
-    thread: Option<Arc<Shared>>,
+    /// The work in the background and its state; without it, models are read immediately.
+    apart: Option<(Worker, Arc<Shared>)>,
 }
 
 #[derive(Default)]
 struct Shared {
     state: Mutex<State>,
-    news: Condvar,
 }
 
 #[derive(Default)]
@@ -102,46 +103,46 @@ impl Shared {
 }
 
 impl Reader {
-    /// A reader with a separate thread, which calls `wake` after each model.
+    /// A reader that reads in the background, and calls `wake` after each model.
     pub fn apart(wake: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared::default());
         let theirs = shared.clone();
-        let started = thread::Builder::new().name("custom models".to_owned()).spawn(move || {
-            let mut told = Instant::now();
-            loop {
-                let waits = |state: &mut State| !state.closed && state.jobs.is_empty();
-                let mut state = unpoisoned(theirs.news.wait_while(theirs.lock(), waits));
-                let next = state.jobs.pop_first().filter(|_| !state.closed);
-                let Some((source, job)) = next else { return };
-                state.reading = Some(source);
-                drop(state);
-                let done = job.done();
-                let mut state = theirs.lock();
-                state.reading = None;
-                state.done.push(done);
-                let last = state.jobs.is_empty();
-                drop(state);
-                if last || told.elapsed() > PACE {
-                    told = Instant::now();
-                    wake();
-                }
+        let mut told = Instant::now();
+        let started = Worker::start("custom models", move || {
+            let mut state = theirs.lock();
+            if state.closed {
+                return Next::Never;
             }
+            let Some((source, job)) = state.jobs.pop_first() else { return Next::Woken };
+            state.reading = Some(source);
+            drop(state);
+            let done = job.done();
+            let mut state = theirs.lock();
+            state.reading = None;
+            state.done.push(done);
+            let last = state.jobs.is_empty();
+            drop(state);
+            if last || told.elapsed() > PACE {
+                told = Instant::now();
+                wake();
+            }
+            Next::Now
         });
         // Without a thread, models are read immediately.
-        Self { thread: started.ok().map(|_| shared) }
+        Self { apart: started.ok().map(|worker| (worker, shared)) }
     }
 
     /// Reads a model, and returns the result, or `None` if it comes later.
     pub fn read(&self, job: Job) -> Option<Done> {
-        let Some(shared) = &self.thread else { return Some(job.done()) };
+        let Some((worker, shared)) = &self.apart else { return Some(job.done()) };
         shared.lock().jobs.insert(job.source.clone(), job);
-        shared.news.notify_all();
+        worker.wake();
         None
     }
 
     /// The models read meanwhile.
     pub fn finished(&self) -> Vec<Done> {
-        self.thread.as_ref().map_or_else(Vec::new, |shared| std::mem::take(&mut shared.lock().done))
+        self.apart.as_ref().map_or_else(Vec::new, |(_, shared)| std::mem::take(&mut shared.lock().done))
     }
 
     /// True while a model waits to be read, or its result to be collected.
@@ -150,22 +151,22 @@ impl Reader {
         self.is(|state| state.is_at_work() || !state.done.is_empty())
     }
 
-    /// True while the thread works, and will call `wake`.
+    /// True while it reads, and will call `wake`.
     #[must_use]
     pub fn is_reading(&self) -> bool {
         self.is(|state| state.is_at_work() && state.done.is_empty())
     }
 
     fn is(&self, so: impl Fn(&State) -> bool) -> bool {
-        self.thread.as_ref().is_some_and(|shared| so(&shared.lock()))
+        self.apart.as_ref().is_some_and(|(_, shared)| so(&shared.lock()))
     }
 }
 
 impl Drop for Reader {
     fn drop(&mut self) {
-        if let Some(shared) = &self.thread {
+        if let Some((worker, shared)) = &self.apart {
             shared.lock().closed = true;
-            shared.news.notify_all();
+            worker.wake();
         }
     }
 }

@@ -3,8 +3,9 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
-    time::Instant,
 };
+
+use web_time::Instant;
 
 use super::{
     assets::{built_in_sources, shipped},
@@ -14,6 +15,7 @@ use super::{
 };
 use crate::{
     custom,
+    platform::fs,
     reflection::{Ambient, ModelEntry},
     registry::{CustomModel, Extent, MODELS, Registry, compose::compose_evaluation},
     shader::{
@@ -312,7 +314,8 @@ impl Library {
 
     /// The source paths of unusable files that are neither on disk nor built in.
     pub fn gone(&self, registry: &Registry) -> impl Iterator<Item = &str> {
-        let is_gone = |source: &str| registry.folders().file_of(source).is_some_and(|file| !file.exists());
+        let is_gone =
+            |source: &str| registry.folders().file_of(source).is_some_and(|file| !fs::is_there(file));
         self.unusable
             .keys()
             .map(String::as_str)

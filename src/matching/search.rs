@@ -7,7 +7,9 @@
 //! result: parameters that hardly matter keep their values, and insignificant digits are dropped. Nothing is random, and
 //! it ends by the number of evaluations, so that the result is the same on every computer.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use super::{
     Ended,

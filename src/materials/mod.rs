@@ -19,8 +19,9 @@
 use std::{
     path::{Path, PathBuf},
     sync::LazyLock,
-    time::Instant,
 };
+
+use web_time::Instant;
 
 use crate::{
     parameter::Values,

@@ -17,6 +17,7 @@ use super::{
 use crate::{
     export::form,
     parameter::{Outside, Parameter},
+    platform::{self, fs},
     scene::{
         formats::{self, SceneFormat},
         save::as_json,
@@ -70,7 +71,7 @@ fn labels() -> FileDialogLabels {
 
 /// A dialog in the middle of the window.
 fn dialog(title: &str, labels: FileDialogLabels) -> FileDialog {
-    FileDialog::new().title(title).labels(labels).anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
+    platform::file_dialog().title(title).labels(labels).anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
 }
 
 /// A dialog that selects a file to read: a new folder never contains one.
@@ -226,11 +227,15 @@ impl Dialogs {
         let folder = session.path.as_ref().and_then(|p| p.parent());
         let folder = match what {
             Pick::ShaderFolder => None,
-            Pick::Lesson => session.lesson_folder().or(folder.filter(|folder| folder.is_dir())),
+            Pick::Lesson => session.lesson_folder().or(folder.filter(|folder| fs::is_dir(folder))),
             _ => folder,
         };
-        if let Some(folder) = folder.filter(|folder| folder.is_dir()) {
+        if let Some(folder) = folder.filter(|folder| fs::is_dir(folder)) {
             self.dialog.config_mut().initial_directory = folder.to_owned();
+        }
+        let is_result = matches!(what, Pick::Export(_) | Pick::Picture(_) | Pick::Plot | Pick::Sheet(_));
+        if let Some(folder) = platform::results_folder().filter(|_| is_result) {
+            self.dialog.config_mut().initial_directory = folder;
         }
         match mode {
             DialogMode::SaveFile => self.dialog.save_file(),

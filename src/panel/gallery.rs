@@ -1,15 +1,12 @@
-//! Small pictures and the like, which a thread makes, each once, as long as a panel asks for them.
+//! Small pictures and the like, made in the background, each once, as long as a panel asks for them.
 
-use std::{
-    collections::HashMap,
-    hash::Hash,
-    thread,
-    time::{Duration, Instant},
-};
+use std::{collections::HashMap, hash::Hash, time::Duration};
 
 use bevy_egui::egui::Context;
+use web_time::Instant;
 
 use super::kept;
+use crate::platform::{Next, Worker};
 
 /// Time after which nobody wants a picture for which nobody has asked: the panel is closed, or its part out of sight.
 const REST: Duration = Duration::from_secs(2);
@@ -74,7 +71,8 @@ where
             store.queue.insert(place, (key.clone(), job));
             if !std::mem::replace(&mut store.working, true) {
                 let (ctx, make) = (ctx.clone(), maker());
-                thread::spawn(move || Self::work(&ctx, make));
+                // Without a thread, what stands in its place stays.
+                let _ = Worker::start("gallery", Self::work(ctx, make));
             }
             waiting
         })
@@ -88,42 +86,45 @@ where
         });
     }
 
-    fn work(ctx: &Context, make: impl Fn(&Context, J) -> V) {
+    /// Makes one after the other.
+    fn work(ctx: Context, make: impl Fn(&Context, J) -> V + Send + 'static) -> impl FnMut() -> Next + Send {
+        let mut end = None;
         let next = |store: &mut Self| {
             let next = store.queue.pop();
             store.working = next.is_some();
             next
         };
-        while let Some((key, job)) = kept::shared(ctx, next) {
-            let made = make(ctx, job);
-            kept::shared(ctx, |store: &mut Self| store.known.insert(key, made));
-            let end = Instant::now();
-            ctx.request_repaint();
-            if !Self::is_wanted(ctx, end) {
-                return;
+        move || {
+            if let Some(since) = end {
+                match kept::shared(&ctx, |store: &mut Self| store.is_wanted(since)) {
+                    Some(true) => {}
+                    Some(false) => return Next::Never,
+                    None => return Next::After(GLANCE),
+                }
             }
+            let Some((key, job)) = kept::shared(&ctx, next) else { return Next::Never };
+            let made = make(&ctx, job);
+            kept::shared(&ctx, |store: &mut Self| store.known.insert(key, made));
+            end = Some(Instant::now());
+            ctx.request_repaint();
+            Next::Now
         }
     }
 
-    /// Waits for the next frame that asks; without one, what is queued is left until it is asked for again.
-    fn is_wanted(ctx: &Context, since: Instant) -> bool {
-        while since.elapsed() < REST {
-            if kept::shared(ctx, |store: &mut Self| store.asked.is_some_and(|asked| asked > since)) {
-                return true;
-            }
-            thread::sleep(GLANCE);
+    /// True once a frame has asked since a time; false if none does, and what is queued is left until it is asked for
+    /// again; `None` if one may yet.
+    fn is_wanted(&mut self, since: Instant) -> Option<bool> {
+        if self.asked.is_some_and(|asked| asked > since) {
+            return Some(true);
         }
-        kept::shared(ctx, |store: &mut Self| {
-            // Asked for at the last moment.
-            let wanted = store.asked.is_some_and(|asked| asked > since);
-            if !wanted {
-                store.working = false;
-                for (key, _) in std::mem::take(&mut store.queue) {
-                    store.known.remove(&key);
-                }
-            }
-            wanted
-        })
+        if since.elapsed() < REST {
+            return None;
+        }
+        self.working = false;
+        for (key, _) in std::mem::take(&mut self.queue) {
+            self.known.remove(&key);
+        }
+        Some(false)
     }
 }
 
@@ -133,6 +134,7 @@ mod tests {
         Arc,
         atomic::{AtomicUsize, Ordering},
     };
+    use std::thread;
 
     use super::*;
 

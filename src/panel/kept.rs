@@ -5,13 +5,12 @@ use std::{
         Arc, Mutex,
         mpsc::{self, Receiver, RecvTimeoutError},
     },
-    thread,
     time::Duration,
 };
 
 use bevy_egui::egui::{Context, Id};
 
-use crate::caught::lock;
+use crate::{caught::lock, platform};
 
 /// Applies a function to the value of a type. The function must not use the context.
 pub(super) fn with<T, R>(ctx: &Context, of: impl FnOnce(&mut T) -> R) -> R
@@ -106,7 +105,7 @@ impl<Q: Clone + PartialEq, A: Send + 'static> Background<Q, A> {
             let running = self.running.take().or_else(|| Some((question.clone(), start(ctx, work()?))));
             let Some((asked, receiver)) = running else { break };
             self.calculations += u64::from(new);
-            match receiver.recv_timeout(if new { patience } else { Duration::ZERO }) {
+            match platform::receive(&receiver, if new { patience } else { Duration::ZERO }) {
                 Ok(answer) => self.shown = Some((asked, answer)),
                 Err(error) => {
                     self.running = (error == RecvTimeoutError::Timeout).then_some((asked, receiver));
@@ -121,7 +120,7 @@ impl<Q: Clone + PartialEq, A: Send + 'static> Background<Q, A> {
 fn start<A: Send + 'static>(ctx: &Context, work: impl FnOnce() -> A + Send + 'static) -> Receiver<A> {
     let (sender, receiver) = mpsc::channel();
     let ctx = ctx.clone();
-    thread::spawn(move || {
+    platform::once(move || {
         // The receiver is gone once nobody wants the answer any more.
         drop(sender.send(work()));
         ctx.request_repaint();

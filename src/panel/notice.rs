@@ -1,8 +1,9 @@
 //! Messages that a presentation, which has no status line, shows for a moment: how to leave it, and what happened.
 
-use std::{thread, time::Duration};
+use std::time::Duration;
 
 use super::{prelude::*, state::Messages};
+use crate::platform;
 
 /// Time for which a message is shown, in seconds; twice as long for problems.
 const MOMENT: f64 = 5.0;
@@ -66,10 +67,7 @@ fn moment(severity: Option<Severity>) -> f64 {
 /// Redraws the panels after a number of seconds: nothing else wakes an idle window.
 pub(super) fn wake(ctx: &Context, seconds: f64) {
     let (ctx, wait) = (ctx.clone(), Duration::from_secs_f64(seconds.max(0.0)));
-    thread::spawn(move || {
-        thread::sleep(wait);
-        ctx.request_repaint();
-    });
+    platform::later(wait, move || ctx.request_repaint());
 }
 
 fn plate(

@@ -1,12 +1,10 @@
 //! Previews of scenes that are not open: examples, and files in the dialog. A thread reads them and draws them with the
 //! CPU renderer, each once.
 
-use std::{
-    path::PathBuf,
-    time::{Duration, Instant},
-};
+use std::{path::PathBuf, time::Duration};
 
 use bevy_egui::egui::{ColorImage, TextureHandle, TextureOptions};
+use web_time::Instant;
 
 use super::{
     gallery::{Gallery, Wanted},

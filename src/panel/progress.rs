@@ -36,7 +36,7 @@ pub fn load(folder: &Path) -> (Progress, Option<String>) {
 pub fn save(folder: &Path, progress: &Progress, name: &str) -> Result<(), String> {
     let path = folder.join(FILE);
     let write = || -> Result<(), FileError> {
-        std::fs::create_dir_all(folder)?;
+        crate::platform::fs::create_dir_all(folder)?;
         let (mut all, _) = load(folder);
         all.last.clone_from(&progress.last);
         if let Some(past) = progress.of(name) {

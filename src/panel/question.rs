@@ -8,7 +8,7 @@ use super::{
     prelude::*,
     state::{Answer, Offer, Question},
 };
-use crate::text::listed;
+use crate::{platform::fs, text::listed};
 
 /// The open question. Enter gives the first answer, which loses nothing; Escape the last.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -166,7 +166,7 @@ fn recovery(session: &Session, offer: &Offer) -> Words {
         let answers = vec![("Keep the copy", Answer::Cancel), ("Delete it", Answer::Discard)];
         return ("Keep the recovery copy?", text, details, answers);
     }
-    let shown = session.path.as_ref().and_then(|shown| path::absolute(shown).ok());
+    let shown = session.path.as_ref().and_then(|shown| fs::absolute(shown).ok());
     if shown.is_some() && shown != *at {
         text += &format!(" Recovering them closes “{}”.", session.title());
     }

@@ -98,7 +98,7 @@ pub(super) fn write(path: &Path, value: &impl Serialize) -> Result<(), FileError
 pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
     let path = folder.join(FILE);
     let write = || -> Result<(), FileError> {
-        std::fs::create_dir_all(folder)?;
+        crate::platform::fs::create_dir_all(folder)?;
         let mut settings = settings.clone();
         match read::<Settings>(&path) {
             Ok(Some(found)) => settings.keys = found.keys,

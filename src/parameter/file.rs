@@ -21,6 +21,7 @@ use crate::{
     caught::{lock, unpoisoned},
     declared::debug_by,
     files::{self, Shown as _},
+    platform::fs,
 };
 
 /// The files that a parameter may name, and how they are read.
@@ -219,12 +220,12 @@ impl NamedFile {
     #[must_use]
     pub fn allowed(name: &str, folder: &Path, format: &'static FileFormat, outside: &Outside) -> Self {
         let path = folder.join(name);
-        let shipped = format.shipped.iter().find(|(shipped, _)| *shipped == name && !path.exists());
+        let shipped = format.shipped.iter().find(|(shipped, _)| *shipped == name && !fs::is_there(&path));
         if let Some((name, _)) = shipped {
             return Self::shipped(name, format);
         }
         // Nothing is the working folder.
-        let [path, folder] = [path, folder.join(".")].map(|p| std::path::absolute(&p).unwrap_or(p));
+        let [path, folder] = [path, folder.join(".")].map(|p| fs::absolute(&p).unwrap_or(p));
         let folder = (!outside.allows(&path)).then_some(folder);
         Self { name: Cow::Owned(name.to_owned()), content: Content::of(path, folder, format) }
     }
@@ -272,7 +273,7 @@ impl NamedFile {
     /// The file for a scene in this folder: by its name if that leads to it, or else by its path.
     #[must_use]
     pub fn seen_from(&self, folder: &Path) -> Self {
-        let there = std::path::absolute(folder.join(&*self.name)).ok();
+        let there = fs::absolute(folder.join(&*self.name)).ok();
         match self.path() {
             Some(path) if there.as_deref() != Some(path) => {
                 let mut content = self.content.clone();

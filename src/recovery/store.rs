@@ -2,7 +2,6 @@
 
 use std::{
     ffi::OsStr,
-    fs::{self, File, OpenOptions, TryLockError},
     io,
     path::{Path, PathBuf},
     time::{Duration, SystemTime, UNIX_EPOCH},
@@ -13,6 +12,10 @@ use crate::{
     files::{self, Shown as _},
     library::assets,
     parameter::Outside,
+    platform::{
+        self,
+        fs::{self, File, OpenOptions, TryLockError},
+    },
     program,
     registry::Registry,
     scene::{
@@ -88,8 +91,8 @@ impl Store {
                 copy.journal.remove();
             }
         }
-        let seconds = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
-        let name = format!("{seconds}-{}", std::process::id());
+        let seconds = platform::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
+        let name = format!("{seconds}-{}", platform::process());
         let mut attempt = 0;
         let folder = loop {
             let folder =
@@ -130,7 +133,10 @@ fn abandoned(folder: PathBuf) -> Option<Abandoned> {
     // The window may have ended regularly before the lock was acquired.
     let scene = scene.and_then(|_| fs::metadata(folder.join(SCENE)).ok());
     let Some(scene) = scene else {
-        let age = fs::metadata(&folder).and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
+        let age = fs::metadata(&folder)
+            .and_then(|m| m.modified())
+            .ok()
+            .and_then(|t| platform::now().duration_since(t).ok());
         if lock.is_ok() || age.is_some_and(|age| age > STARTING) {
             remove_own(&folder);
         }

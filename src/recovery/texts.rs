@@ -1,4 +1,4 @@
-//! Copies of unsaved texts of the editor, one journal each, written by a thread a second after the first change.
+//! Copies of unsaved texts of the editor, one journal each, written in the background a second after the first change.
 //!
 //! They are in a store of their own, so that a copy of a scene is never taken for that of a shader.
 
@@ -6,16 +6,25 @@ use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
     sync::{
-        Arc,
-        mpsc::{self, Receiver, RecvTimeoutError, Sender},
+        Arc, Mutex,
+        mpsc::{self, Receiver, Sender},
     },
-    thread::{self, JoinHandle},
-    time::{Duration, Instant, SystemTime},
+    time::Duration,
 };
 
-use super::{Abandoned, About, Journal, Store, ago};
-use crate::{files, library::assets, program};
+use web_time::Instant;
 
+use super::{Abandoned, About, Journal, Store, ago};
+use crate::{
+    caught::lock,
+    files,
+    library::assets,
+    platform::{self, Next, Worker, fs},
+    program,
+};
+
+/// Maximum time for which the end of a window waits for the disk.
+const PATIENCE: Duration = Duration::from_secs(60);
 /// Delay between the first change that is not in a copy and its writing.
 const DELAY: Duration = Duration::from_secs(1);
 /// Name of the folder with the copies, in the user's data.
@@ -40,21 +49,46 @@ impl Store {
 /// Keeps copies of texts up to date.
 #[derive(Debug)]
 pub struct TextKeeper {
-    wanted: Option<Sender<Texts>>,
+    work: Option<Work>,
     last: Texts,
-    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Work {
+    worker: Worker,
+    wanted: Arc<Mutex<Wanted>>,
+    /// Closed at the end.
+    ended: Mutex<Receiver<()>>,
+}
+
+#[derive(Debug, Default)]
+struct Wanted {
+    /// The texts that are not in copies yet, and since when.
+    texts: Option<(Texts, Instant)>,
+    closed: bool,
+}
+
+/// The copies.
+struct Copies {
+    store: Store,
+    /// Dropped, and with them their locks, before the end is told.
+    journals: BTreeMap<PathBuf, (Journal, Arc<str>)>,
+    _ended: Sender<()>,
 }
 
 impl TextKeeper {
     /// Starts to keep copies in a store; without one, nothing is kept.
     #[must_use]
     pub fn start(store: Option<Store>) -> Self {
-        let (wanted, texts) = mpsc::channel();
-        let run = |store| {
-            thread::Builder::new().name("recovery of code".to_owned()).spawn(move || run(&store, &texts)).ok()
+        let work = |store| {
+            let (tell, ended) = mpsc::channel();
+            let wanted = Arc::<Mutex<Wanted>>::default();
+            let theirs = wanted.clone();
+            let mut copies = Copies { store, journals: BTreeMap::new(), _ended: tell };
+            let worker = Worker::start("recovery of code", move || step(&theirs, &mut copies)).ok()?;
+            Some(Work { worker, wanted, ended: Mutex::new(ended) })
         };
-        let thread = store.and_then(run);
-        Self { wanted: thread.is_some().then_some(wanted), last: Texts::new(), thread }
+        Self { work: store.and_then(work), last: Texts::new() }
     }
 
     /// Records the texts with unsaved changes. Copies of others are no longer needed.
@@ -63,35 +97,40 @@ impl TextKeeper {
             return;
         }
         self.last = texts.clone();
-        // The thread ends with this value.
-        self.wanted.iter().for_each(|wanted| drop(wanted.send(texts.clone())));
+        if let Some(work) = &self.work {
+            let mut wanted = lock(&work.wanted);
+            let since = wanted.texts.as_ref().map_or_else(Instant::now, |(_, since)| *since);
+            wanted.texts = Some((texts, since));
+            work.worker.wake();
+        }
     }
 }
 
 impl Drop for TextKeeper {
     fn drop(&mut self) {
-        self.wanted = None;
-        self.thread.take().into_iter().for_each(|thread| drop(thread.join()));
+        let Some(work) = &self.work else { return };
+        lock(&work.wanted).closed = true;
+        work.worker.wake();
+        // Closed once the last texts are written.
+        let _ = platform::receive(&lock(&work.ended), PATIENCE);
     }
 }
 
-/// Follows the texts until nobody sends any more; the last ones are written at once.
-fn run(store: &Store, texts: &Receiver<Texts>) {
-    let mut journals: BTreeMap<PathBuf, (Journal, Arc<str>)> = BTreeMap::new();
-    while let Ok(mut now) = texts.recv() {
-        let until = Instant::now() + DELAY;
-        let ended = loop {
-            match texts.recv_timeout(until.saturating_duration_since(Instant::now())) {
-                Ok(next) => now = next,
-                Err(RecvTimeoutError::Timeout) => break false,
-                Err(RecvTimeoutError::Disconnected) => break true,
-            }
-        };
-        update(store, &mut journals, &now);
-        if ended {
-            return;
-        }
+/// Follows the texts until the end; the last ones are written at once.
+fn step(wanted: &Mutex<Wanted>, Copies { store, journals, .. }: &mut Copies) -> Next {
+    let mut wanted = lock(wanted);
+    let closed = wanted.closed;
+    let Some((texts, since)) = wanted.texts.take() else {
+        return if closed { Next::Never } else { Next::Woken };
+    };
+    let left = DELAY.saturating_sub(since.elapsed());
+    if !closed && !left.is_zero() {
+        wanted.texts = Some((texts, since));
+        return Next::After(left);
     }
+    drop(wanted);
+    update(store, journals, &texts);
+    Next::Now
 }
 
 fn update(store: &Store, journals: &mut BTreeMap<PathBuf, (Journal, Arc<str>)>, texts: &Texts) {
@@ -105,9 +144,9 @@ fn update(store: &Store, journals: &mut BTreeMap<PathBuf, (Journal, Arc<str>)>, 
         }
         let title = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let is_file = path != Path::new(OF_SCENE);
-        let absolute = is_file.then(|| std::path::absolute(path).ok()).flatten();
+        let absolute = is_file.then(|| fs::absolute(path).ok()).flatten();
         let absolute = absolute.unwrap_or_else(|| path.clone());
-        let about = About { title, path: Some(absolute), stamp: None, process: std::process::id() };
+        let about = About { title, path: Some(absolute), stamp: None, process: platform::process() };
         let known = journals.remove(path).map(|(journal, _)| journal);
         // Without a place for copies, the text is in the editor all the same.
         let Some(mut journal) = known.or_else(|| store.begin().ok()) else { continue };
@@ -147,7 +186,7 @@ pub fn left(store: &Store) -> Vec<KeptText> {
     let read = |copy: Abandoned| {
         let path = copy.about.path.clone()?;
         let text = String::from_utf8(files::read(&copy.journal.file(), MOST).ok()?).ok()?;
-        let age = SystemTime::now().duration_since(copy.when).unwrap_or_default();
+        let age = platform::now().duration_since(copy.when).unwrap_or_default();
         Some(KeptText { path, text, when: ago(age), copy })
     };
     store.abandoned().into_iter().filter_map(read).collect()

@@ -1,4 +1,4 @@
-//! The thread that keeps a window's copy up to date.
+//! The work in the background that keeps a window's copy up to date.
 //!
 //! Callers never wait for a disk, and the copy never waits for the window: it is written even while the window hangs
 //! in a driver.
@@ -6,16 +6,18 @@
 use std::{
     io,
     path::PathBuf,
-    sync::{Arc, Condvar, Mutex, MutexGuard},
-    thread,
-    time::{Duration, Instant},
+    sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock},
+    time::Duration,
 };
+
+use web_time::Instant;
 
 use super::{About, Journal, Store};
 use crate::{
     caught::{lock, unpoisoned},
     document::{Document, Revision},
     files::{Shown as _, words},
+    platform::{Next, Worker},
     registry::Registry,
     scene::{Scene, save},
 };
@@ -27,10 +29,11 @@ const DELAY: Duration = Duration::from_secs(1);
 #[derive(Clone)]
 pub struct Keeper(Arc<Shared>);
 
+#[derive(Default)]
 struct Shared {
     state: Mutex<State>,
-    /// Signalled when there is work.
-    work: Condvar,
+    /// What writes, woken when there is work.
+    work: OnceLock<Worker>,
     /// Signalled when work was done.
     done: Condvar,
 }
@@ -112,13 +115,12 @@ impl Keeper {
     /// [`Self::problem`].
     #[must_use]
     pub fn start(store: Option<Store>, trouble: impl Fn() + Send + 'static) -> Self {
-        let shared = Arc::new(Shared { state: Mutex::default(), work: Condvar::new(), done: Condvar::new() });
-        let keeper = Self(shared.clone());
-        let writer = Writer { store, journal: None };
-        if let Err(error) =
-            thread::Builder::new().name("recovery".to_owned()).spawn(move || shared.run(writer, &trouble))
-        {
-            keeper.0.lock().problem = Some(words(&error));
+        let keeper = Self(Arc::default());
+        let shared = keeper.0.clone();
+        let mut writer = Writer { store, journal: None };
+        match Worker::start("recovery", move || shared.step(&mut writer, &trouble)) {
+            Ok(worker) => _ = keeper.0.work.set(worker),
+            Err(error) => keeper.0.lock().problem = Some(words(&error)),
         }
         keeper
     }
@@ -184,7 +186,7 @@ impl Keeper {
             state.change += 1;
             state.since.get_or_insert_with(Instant::now);
         }
-        shared.work.notify_all();
+        shared.wake();
         let pending = |state: &mut State| state.settled != state.change;
         let (state, waited) = unpoisoned(shared.done.wait_timeout_while(state, within, pending));
         let Some(document) = &state.wanted else { return Settled::Nothing };
@@ -218,60 +220,61 @@ impl Shared {
     fn changed(&self, mut state: MutexGuard<'_, State>) {
         state.change += 1;
         state.since.get_or_insert_with(Instant::now);
-        self.work.notify_all();
+        self.wake();
     }
 
-    /// The loop of the thread, for the lifetime of the process.
-    fn run(&self, mut writer: Writer, trouble: &dyn Fn()) {
-        loop {
-            let (change, wanted, adopted) = self.next();
-            let written = writer.bring_up_to_date(wanted.as_deref(), adopted);
-            let mut state = self.lock();
-            state.settled = change;
-            state.copy = None;
-            let failed = match written {
-                Ok(copy) => {
-                    (state.copy, state.problem, state.told) = (copy, None, false);
-                    false
-                }
-                Err(error) => {
-                    state.problem = Some(words(&error));
-                    true
-                }
-            };
-            drop(state);
-            self.done.notify_all();
-            if failed {
-                trouble();
-            }
-        }
+    fn wake(&self) {
+        self.work.get().into_iter().for_each(Worker::wake);
     }
 
-    /// Waits until there is work, and a caller waits or enough time has passed.
-    fn next(&self) -> (u64, Option<Arc<Unsaved>>, Option<Journal>) {
+    /// A step of the work, which lasts for the lifetime of the process.
+    fn step(&self, writer: &mut Writer, trouble: &dyn Fn()) -> Next {
+        let (change, wanted, adopted) = match self.next() {
+            Ok(next) => next,
+            Err(wait) => return wait,
+        };
+        let written = writer.bring_up_to_date(wanted.as_deref(), adopted);
         let mut state = self.lock();
-        loop {
-            let waits = state.since.map(|since| DELAY.saturating_sub(since.elapsed()));
-            state = match waits {
-                // Callers that wait have nothing to wait for.
-                None => {
-                    state.urgent = false;
-                    unpoisoned(self.work.wait(state))
-                }
-                Some(wait) if !state.urgent && !wait.is_zero() => {
-                    unpoisoned(self.work.wait_timeout(state, wait)).0
-                }
-                Some(_) => {
-                    state.urgent = false;
-                    state.since = None;
-                    return (state.change, state.wanted.clone(), state.adopted.take());
-                }
-            };
+        state.settled = change;
+        state.copy = None;
+        let failed = match written {
+            Ok(copy) => {
+                (state.copy, state.problem, state.told) = (copy, None, false);
+                false
+            }
+            Err(error) => {
+                state.problem = Some(words(&error));
+                true
+            }
+        };
+        drop(state);
+        self.done.notify_all();
+        if failed {
+            trouble();
+        }
+        Next::Now
+    }
+
+    /// The work, if there is some, and a caller waits or enough time has passed; otherwise what to wait for.
+    fn next(&self) -> Result<(u64, Option<Arc<Unsaved>>, Option<Journal>), Next> {
+        let mut state = self.lock();
+        match state.since.map(|since| DELAY.saturating_sub(since.elapsed())) {
+            // Callers that wait have nothing to wait for.
+            None => {
+                state.urgent = false;
+                Err(Next::Woken)
+            }
+            Some(wait) if !state.urgent && !wait.is_zero() => Err(Next::After(wait)),
+            Some(_) => {
+                state.urgent = false;
+                state.since = None;
+                Ok((state.change, state.wanted.clone(), state.adopted.take()))
+            }
         }
     }
 }
 
-/// State used only by the thread.
+/// State used only by the work.
 struct Writer {
     store: Option<Store>,
     journal: Option<Journal>,
@@ -297,7 +300,7 @@ impl Writer {
                 none.insert(store.begin()?)
             }
         };
-        let about = About { process: std::process::id(), ..about.clone() };
+        let about = About { process: crate::platform::process(), ..about.clone() };
         journal.write(&about, &save::to_json(scene, None, registry))?;
         own.into_iter().for_each(Journal::remove);
         Ok(Some(journal.file()))
@@ -313,7 +316,7 @@ fn no_folder() -> io::Error {
 
 #[cfg(test)]
 mod tests {
-    use std::{fs, sync::mpsc};
+    use std::{fs, sync::mpsc, thread};
 
     use super::*;
     use crate::{
@@ -457,8 +460,7 @@ mod tests {
     #[test]
     fn a_change_of_one_part_is_copied_alone_and_nothing_is_lost() {
         // Without the thread, which would share the kept scene while it writes.
-        let keeper =
-            Keeper(Arc::new(Shared { state: Mutex::default(), work: Condvar::new(), done: Condvar::new() }));
+        let keeper = Keeper(Arc::default());
         let registry = Arc::new(Registry::builtin());
         // The second has no name.
         let name = |i: usize| (i != 1).then(|| format!("ball {i}"));

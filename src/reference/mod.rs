@@ -31,11 +31,11 @@ use std::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
-    time::Instant,
 };
 
 use glam::Vec4;
 use rayon::prelude::*;
+use web_time::Instant;
 
 use crate::{
     channel::Setting,

@@ -7,7 +7,7 @@ use std::{
 };
 
 use super::{Folders, MODELS, Registry, put};
-use crate::{reflection::ModelEntry, watch::Print};
+use crate::{platform::fs, reflection::ModelEntry, watch::Print};
 
 /// A model from a file.
 #[derive(Clone, Debug)]
@@ -88,7 +88,7 @@ impl Registry {
         let below_shaders = || Some(self.folders().shaders.as_ref()?.join(source));
         custom.or_else(|| {
             let files = [self.folders().file_of(source), below_shaders()];
-            files.into_iter().flatten().find(|file| file.is_file())
+            files.into_iter().flatten().find(|file| fs::is_file(file))
         })
     }
 

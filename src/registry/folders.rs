@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::platform::fs;
+
 /// Prefix of the source paths of custom models and their shared files.
 pub(crate) const MODELS: &str = "models/";
 
@@ -44,7 +46,7 @@ impl Folders {
             Some(name) => Some(self.models.as_ref()?.join(name)),
             None => {
                 let own = || self.shaders.iter().chain(&self.extensions).map(|folder| folder.join(source));
-                own().find(|file| file.is_file()).or_else(|| own().next())
+                own().find(|file| fs::is_file(file)).or_else(|| own().next())
             }
         }
     }

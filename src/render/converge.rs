@@ -4,9 +4,10 @@
 //! counts the samples that it has drawn since its last change. Once it has drawn the target number, each was
 //! drawn once, wherever it began.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bevy::ecs::resource::Resource;
+use web_time::Instant;
 
 use crate::{declared::with_defaults, reference::LightSamples};
 

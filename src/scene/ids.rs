@@ -7,6 +7,7 @@ use crate::{
     declared::texts,
     light::LightEntry,
     parameter::Parameter,
+    platform::fs,
     reflection::ModelEntry,
     registry::Registry,
     shading::ShadingEntry,
@@ -128,10 +129,10 @@ fn missing_model(registry: &Registry, id: &str, rule: String) -> String {
 /// Details about an id without a model in the folder of custom models: its file may be missing, or not be a
 /// model.
 fn custom_model_missing(registry: &Registry, id: &str) -> Option<String> {
-    let folder = registry.custom_folder().filter(|folder| folder.is_dir() && custom::is_id(id))?;
+    let folder = registry.custom_folder().filter(|folder| fs::is_dir(folder) && custom::is_id(id))?;
     let file = folder.join(id).with_extension(custom::EXTENSION);
     let file_shown = file.shown();
-    Some(if file.is_file() {
+    Some(if fs::is_file(&file) {
         format!(
             "{file_shown} is not a model: it neither begins with a comment /* lcm … */ nor defines fn response"
         )

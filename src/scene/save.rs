@@ -1,7 +1,7 @@
 //! Writing scene files: readable, in a fixed order, completely or not at all.
 
 use std::{
-    fs, io,
+    io,
     io::Write as _,
     path::{Path, PathBuf},
 };
@@ -16,6 +16,7 @@ use super::{
 use crate::{
     files::{self, Draft, FileError, Kind, Shown as _, words},
     parameter::Outside,
+    platform::fs,
     registry::Registry,
 };
 

@@ -39,7 +39,7 @@ impl LoadError {
 
 /// "; it is a link to room.json, which does not exist" if the path is such a link.
 fn broken_link(path: &FilePath) -> Option<String> {
-    if !std::fs::symlink_metadata(path).ok()?.is_symlink() {
+    if !crate::platform::fs::symlink_metadata(path).ok()?.is_symlink() {
         return None;
     }
     Some(format!("; it is a link to {}, which does not exist", follow(path).ok()?.shown()))
@@ -50,7 +50,7 @@ fn similar_file(path: &FilePath) -> Option<String> {
     let wanted = path.file_name()?.to_str()?.to_lowercase();
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(FilePath::new("."));
     // A folder can be huge; a hint is not worth more than a glance at it.
-    let nearest = std::fs::read_dir(folder)
+    let nearest = crate::platform::fs::read_dir(folder)
         .ok()?
         .take(1000)
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
@@ -64,7 +64,7 @@ fn similar_file(path: &FilePath) -> Option<String> {
 
 /// "; it holds a.json, b.json".
 fn scenes_within(path: &FilePath, registry: &Registry) -> Option<String> {
-    let mut names: Vec<_> = std::fs::read_dir(path)
+    let mut names: Vec<_> = crate::platform::fs::read_dir(path)
         .ok()?
         .take(1000)
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())

@@ -1,11 +1,11 @@
 //! The page with the chapters.
 
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::UNIX_EPOCH;
 
 use maud::{PreEscaped, html};
 
 use super::{Chapter, Lab, PHENOMENA, StudyError, text::values};
-use crate::text::plural;
+use crate::{platform, text::plural};
 
 /// The name of the program in the head of a report, followed by its version.
 pub(super) const GENERATOR: &str = "Lights, Camera, Models! ";
@@ -31,7 +31,7 @@ fn date(days: i64) -> String {
 }
 
 fn today() -> String {
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
+    let seconds = platform::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
     date((seconds / 86_400) as i64)
 }
 

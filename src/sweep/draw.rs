@@ -7,7 +7,6 @@ use std::{
         atomic::{AtomicBool, Ordering},
         mpsc::{self, RecvTimeoutError},
     },
-    thread,
     time::Duration,
 };
 
@@ -23,6 +22,7 @@ use crate::{
     failure::Failure,
     files::Shown as _,
     picture::png::{self, About},
+    platform,
     progress::{Cancelled, Progress},
     reference::{self, Until},
     registry::Registry,
@@ -156,7 +156,7 @@ enum Place {
 
 fn place(sweep: &Sweep, settings: &Settings, folder: &Path, i: usize) -> Result<Place, Failure> {
     let file = folder.join(sweep.file(i));
-    if !file.is_file() {
+    if !platform::fs::is_file(&file) {
         return Ok(Place::Free);
     }
     let stamp = One::new(sweep, settings, i)?.stamp;
@@ -251,9 +251,9 @@ fn each<T: Send>(
 ) -> Result<Vec<T>, Failure> {
     let cancelled = AtomicBool::default();
     let (tell, told) = mpsc::channel::<()>();
-    thread::scope(|scope| {
-        let (cancelled, work) = (&cancelled, &work);
-        let worker = scope.spawn(move || {
+    let (cancelled, work) = (&cancelled, &work);
+    platform::beside(
+        move || {
             let one = |tell: &mut mpsc::Sender<()>, i: usize| {
                 if cancelled.load(Ordering::Relaxed) {
                     return Err(ended(Cancelled));
@@ -269,29 +269,31 @@ fn each<T: Send>(
                 .with_max_len(1)
                 .map_with(tell, one)
                 .collect::<Result<Vec<T>, Failure>>()
-        });
-        let said = |done: usize| format!("{done} of {count} pictures");
-        let mut going = progress.step(0.0, &said(0)).is_ok();
-        let mut done = 0;
-        loop {
-            match told.recv_timeout(PULSE) {
-                Ok(()) => {
-                    done += 1;
-                    going &= progress.step(done as f32 / count.max(1) as f32, &said(done)).is_ok();
+        },
+        || {
+            let said = |done: usize| format!("{done} of {count} pictures");
+            let mut going = progress.step(0.0, &said(0)).is_ok();
+            let mut done = 0;
+            loop {
+                match platform::receive(&told, PULSE) {
+                    Ok(()) => {
+                        done += 1;
+                        going &= progress.step(done as f32 / count.max(1) as f32, &said(done)).is_ok();
+                    }
+                    // A picture may take minutes.
+                    Err(RecvTimeoutError::Timeout) => going &= !(progress.cancelled)(),
+                    Err(RecvTimeoutError::Disconnected) => break,
                 }
-                // A picture may take minutes.
-                Err(RecvTimeoutError::Timeout) => going &= !(progress.cancelled)(),
-                Err(RecvTimeoutError::Disconnected) => break,
+                cancelled.fetch_or(!going, Ordering::Relaxed);
             }
-            cancelled.fetch_or(!going, Ordering::Relaxed);
-        }
-        worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
+        },
+    )
 }
 
 #[cfg(test)]
 mod tests {
-    use std::{fs, path::PathBuf, time::Instant};
+    use std::{fs, path::PathBuf, thread};
+    use web_time::Instant;
 
     use super::*;
     use crate::{

@@ -4,13 +4,16 @@ use std::{
     hash::{DefaultHasher, Hash as _, Hasher as _},
     io,
     path::{Path, PathBuf},
-    time::{Duration, Instant},
+    time::Duration,
 };
+
+use web_time::Instant;
 
 use crate::{
     failure::Failure,
     files::{self, Shown as _, words},
     picture::png::{self, About},
+    platform::fs,
     reference::{Settings, Until},
     registry::Registry,
     scene::{Scene, save::to_json},
@@ -52,7 +55,7 @@ pub(super) fn is_done(file: &Path, stamp: &str, size: [u32; 2]) -> bool {
 
 /// The picture in a file, if it has this stamp and is whole.
 fn found(file: &Path, stamp: &str, size: [u32; 2]) -> Option<Vec<u8>> {
-    if stamp.is_empty() || !file.is_file() {
+    if stamp.is_empty() || !fs::is_file(file) {
         return None;
     }
     png::read_with(file, KEYWORD, stamp, size)
@@ -74,7 +77,7 @@ impl Parts {
         folder.push(END);
         let folder = PathBuf::from(folder);
         // Whoever went on once may have to do so again.
-        let patience = if folder.is_dir() { Duration::ZERO } else { PATIENCE };
+        let patience = if fs::is_dir(&folder) { Duration::ZERO } else { PATIENCE };
         Self { folder, begun: Instant::now(), patience }
     }
 

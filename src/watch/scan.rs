@@ -3,12 +3,14 @@
 use std::{
     collections::{HashMap, HashSet},
     ffi::{OsStr, OsString},
-    fs::{self, Metadata},
     path::{Component, Path, PathBuf},
     time::SystemTime,
 };
 
-use crate::files::Node;
+use crate::{
+    files::Node,
+    platform::fs::{self, Metadata},
+};
 
 /// Maximum number of links followed in a chain.
 const MAX_LINKS: usize = 16;
@@ -75,7 +77,7 @@ pub(super) fn folder(path: &Path) -> Found {
 /// Follows a path name by name and lists the places where a change could redirect it: at the first missing
 /// name, at every link, and at its end if that is a file.
 fn trace(path: &Path, shown: Option<&Path>, places: &mut Vec<Place>, links: usize) {
-    let Ok(absolute) = std::path::absolute(path) else { return };
+    let Ok(absolute) = fs::absolute(path) else { return };
     let mut at = PathBuf::new();
     let mut names = absolute.components().peekable();
     while let Some(name) = names.next() {
@@ -89,7 +91,7 @@ fn trace(path: &Path, shown: Option<&Path>, places: &mut Vec<Place>, links: usiz
         // On Linux a folder reports its own move.
         let is_end = is_last && (shown.is_some() || cfg!(not(target_os = "linux")));
         if is_link || is_end || metadata.is_err() {
-            let Some(folder) = fs::canonicalize(&parent).ok().filter(|f| f.is_dir()) else { return };
+            let Some(folder) = fs::canonicalize(&parent).ok().filter(|f| fs::is_dir(f)) else { return };
             places.push(Place { folder, name: Some(name.to_owned()), shown: shown.map(Path::to_owned) });
         }
         if is_link
@@ -107,7 +109,7 @@ fn trace(path: &Path, shown: Option<&Path>, places: &mut Vec<Place>, links: usiz
 fn walk(shown: &Path, found: &mut Found, seen: &mut HashSet<PathBuf>, depth: usize) {
     let Ok(folder) = fs::canonicalize(shown) else { return };
     // Links may form a cycle.
-    if depth > MAX_DEPTH || !folder.is_dir() || !seen.insert(folder.clone()) {
+    if depth > MAX_DEPTH || !fs::is_dir(&folder) || !seen.insert(folder.clone()) {
         return;
     }
     found.places.push(Place { folder, name: None, shown: Some(shown.to_owned()) });

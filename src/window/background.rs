@@ -1,16 +1,14 @@
 //! Background work of the window: one task at a time, in a separate thread, with progress and cancellation.
 
-use std::{
-    sync::{
-        Arc, Mutex,
-        atomic::{AtomicBool, Ordering},
-    },
-    thread,
+use std::sync::{
+    Arc, Mutex,
+    atomic::{AtomicBool, Ordering},
 };
 
 use crate::{
     caught::{catch, lock},
     panel::state::Running,
+    platform,
     progress::Progress,
 };
 
@@ -49,7 +47,7 @@ impl<L: Clone + Send + 'static, T: Send + 'static> Background<L, T> {
         self.cancelled.store(false, Ordering::Relaxed);
         lock(&self.state).running = Some(Running { label: label.clone(), done: 0.0, step: String::new() });
         let (state, cancelled) = (self.state.clone(), self.cancelled.clone());
-        thread::spawn(move || {
+        platform::once(move || {
             let tell = |done: f32, step: &str| {
                 lock(&state).running = Some(Running { label: label.clone(), done, step: step.to_owned() });
                 wake();
@@ -80,6 +78,8 @@ impl<L: Clone + Send + 'static, T: Send + 'static> Background<L, T> {
 
 #[cfg(test)]
 mod tests {
+    use std::thread;
+
     use super::*;
 
     fn ended<T: Send + 'static>(work: &Background<u8, T>) -> T {

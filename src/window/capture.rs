@@ -3,7 +3,7 @@
 use std::{
     path::PathBuf,
     sync::{Arc, Mutex},
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use bevy::{
@@ -13,6 +13,7 @@ use bevy::{
     window::PrimaryWindow,
     winit::WinitSettings,
 };
+use web_time::Instant;
 
 use super::{ViewOptions, WindowView, watching::complain};
 use crate::files::{Shown as _, words};

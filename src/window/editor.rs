@@ -8,15 +8,16 @@ use std::{
     path::{Path, PathBuf},
     process::{Command, Stdio},
     sync::{Arc, Mutex},
-    thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use bevy::ecs::prelude::*;
+use web_time::Instant;
 
 use crate::{
     caught::lock,
     files::{self, Shown as _},
+    platform,
 };
 
 /// Environment variable with the editor command, split at spaces. `{file}` and `{line}` are replaced by file and line;
@@ -263,7 +264,7 @@ impl Editors {
         let named = variable.filter(|variable| !variable.trim().is_empty()).map(str::to_owned);
         let complaints = self.complaints.clone();
         let file = file.to_owned();
-        thread::spawn(move || {
+        platform::once(move || {
             let Err(why) = start(named, &file, line) else { return };
             let text = format!(
                 "{} could not be opened in an editor: {why}. Open it by hand, or name an editor in the environment \
@@ -284,6 +285,9 @@ impl Editors {
 
 /// Starts the editor and waits for it, since many programs report by their exit status that they cannot open a file.
 fn start(named: Option<String>, file: &Path, line: usize) -> Result<(), String> {
+    if !platform::HAS_PROGRAMS {
+        return Err("a page in a browser cannot start one".to_owned());
+    }
     let of = if named.is_some() { format!(" of {EDITOR_VARIABLE}") } else { String::new() };
     let Some((program, arguments)) = Surroundings::of_process(named).editor(file, line) else {
         return otherwise(file);
@@ -309,5 +313,5 @@ fn otherwise(file: &Path) -> Result<(), String> {
     if cfg!(target_os = "linux") {
         return Err("no editor with a window was found".to_owned());
     }
-    open::that_detached(file).map_err(|e| files::words(&e))
+    platform::open(file).map_err(|e| files::words(&e))
 }

@@ -11,6 +11,7 @@ use crate::{
         effects::run as run_files,
         state::{Effect, Session, Severity},
     },
+    platform,
     registry::Registry,
 };
 
@@ -119,6 +120,9 @@ pub(super) fn carry_out(
             Effect::DocumentChanged => {
                 files.document_changed(session.path.as_deref());
                 camera.home();
+            }
+            Effect::Quit if !platform::OUTLIVES_WINDOW => {
+                session.say(Severity::Info, "Close the tab of the browser to quit.");
             }
             Effect::Quit => {
                 recovery.iter().for_each(|recovery| recovery.farewell.close());

@@ -19,7 +19,7 @@ use std::{
 use bevy::app::{App, AppExit};
 
 use super::watching::complain;
-use crate::{caught, failure::Failure, recovery::Keeper};
+use crate::{caught, failure::Failure, platform, recovery::Keeper};
 
 /// Maximum time that ending waits for the disk.
 pub(super) const PATIENCE: Duration = Duration::from_millis(1500);
@@ -58,6 +58,11 @@ impl Drop for Guard {
 
 /// Runs the window until it is closed. The keeper, if any, preserves unsaved changes.
 pub(super) fn run(app: &mut App, keeper: Option<&Keeper>) -> Result<(), Failure> {
+    if !platform::OUTLIVES_WINDOW {
+        // It runs on after this.
+        app.run();
+        return Ok(());
+    }
     let sentence = || keeper.and_then(|keeper| keeper.settle(PATIENCE).sentence());
     static RUNNING: AtomicBool = AtomicBool::new(false);
     RUNNING.store(true, Ordering::SeqCst);

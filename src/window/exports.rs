@@ -15,6 +15,7 @@ use crate::{
         export::{SIZE, object},
         state::{Question, Session, Severity},
     },
+    platform::{self, fs},
     registry::Registry,
 };
 
@@ -73,7 +74,7 @@ impl Exports {
     pub(super) fn report(&self, session: &mut ResMut<Session>) -> Option<PathBuf> {
         session.bypass_change_detection().facts.export = self.0.running();
         let (form, path, outcome) = self.0.take()?;
-        let folder = if path.is_dir() { path.clone() } else { files::folder_of(&path).to_owned() };
+        let folder = if fs::is_dir(&path) { path.clone() } else { files::folder_of(&path).to_owned() };
         let done = outcome.is_ok().then_some(folder);
         session.exported(form, path, outcome);
         done
@@ -125,6 +126,6 @@ fn written(form: &Form, request: &Request, path: &Path, before: &Before, progres
 
 /// Shows a folder in the file manager. The error is a sentence.
 pub(super) fn reveal(folder: &Path) -> Result<(), String> {
-    ::open::that_detached(folder)
+    platform::open(folder)
         .map_err(|why| format!("The folder {} could not be shown: {}.", folder.shown(), files::words(&why)))
 }

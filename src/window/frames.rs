@@ -1,13 +1,14 @@
 //! Frame times: measured between frames without a pause, in order to include the work of the GPU, which continues after
 //! the last system of a frame.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bevy::{
     prelude::*,
     render::renderer::RenderAdapterInfo,
     winit::{UpdateMode, WinitSettings},
 };
+use web_time::Instant;
 
 use super::{redraw::Settling, watching::complain};
 use crate::{

@@ -6,13 +6,14 @@ use std::{
     path::{Path, PathBuf},
     process::{Command, Stdio},
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use bevy::ecs::prelude::*;
+use web_time::Instant;
 
 use super::background::Background;
-use crate::{files, library::assets::Folders, reflection::law_report::LawReport};
+use crate::{files, library::assets::Folders, platform::fs, reflection::law_report::LawReport};
 
 /// Maximum duration of a check: software Vulkan needs seconds for a model at the limits.
 const LONGEST: Duration = Duration::from_secs(120);
@@ -62,7 +63,7 @@ fn checked(program: &Path, id: &str, folders: &Folders) -> Outcome {
         command.arg("--assets").arg(assets);
     }
     // The folder of a new user does not exist yet.
-    if let Some(models) = folders.models.as_ref().filter(|folder| folder.exists()) {
+    if let Some(models) = folders.models.as_ref().filter(|folder| fs::is_there(folder)) {
         command.arg("--models").arg(models);
     }
     let streams = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());

@@ -8,7 +8,10 @@ use std::{
 use bevy::ecs::prelude::*;
 
 use super::watching::{FileWatch, FilesChanged, GRACE};
-use crate::panel::state::{Effect, LessonSource, Session};
+use crate::{
+    panel::state::{Effect, LessonSource, Session},
+    platform::fs,
+};
 
 /// The watched file or folder of the open lesson.
 #[derive(Default)]
@@ -36,7 +39,7 @@ pub(super) fn follow_lesson(
         }
         if let Some(path) = wanted {
             // A folder also contains the scenes of the lesson.
-            if path.is_dir() {
+            if fs::is_dir(path) {
                 watch.0.watch_folder(path)
             } else {
                 watch.0.watch_file(path)

@@ -4,7 +4,6 @@ use std::{
     io,
     path::{Path, PathBuf},
     sync::{Arc, Mutex},
-    thread,
     time::Duration,
 };
 
@@ -15,7 +14,7 @@ use crate::{
     files::{self, Shown as _},
     library::assets::data_folder,
     panel::manual,
-    program,
+    platform, program,
 };
 
 /// File name.
@@ -27,7 +26,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// [its own](program::own).
 #[must_use]
 pub fn folder() -> PathBuf {
-    program::own(data_folder().unwrap_or_else(|| std::env::temp_dir().join(program::LAB)))
+    program::own(data_folder().unwrap_or_else(|| platform::temporary_folder().join(program::LAB)))
 }
 
 /// Writes the manual of this version to a folder. Returns the file.
@@ -41,7 +40,7 @@ pub fn write(folder: &Path) -> Result<PathBuf, String> {
     if files::read(&path, page.len() as u64).is_ok_and(|known| known == page.as_bytes()) {
         return Ok(path);
     }
-    std::fs::create_dir_all(folder)
+    crate::platform::fs::create_dir_all(folder)
         .map_err(files::FileError::from)
         .and_then(|()| files::write(&path, page.as_bytes()))
         .map_err(|why| format!("The manual could not be written to {}: {why}.", path.shown()))?;
@@ -54,7 +53,7 @@ pub fn write(folder: &Path) -> Result<PathBuf, String> {
 /// # Errors
 /// Returns a message, with the path of the file, if the manual cannot be written or no browser opens it.
 pub fn show() -> Result<String, String> {
-    show_with(&folder(), |path| ::open::that_detached_with_timeout(path, PATIENCE))
+    show_with(&folder(), |path| platform::open_within(path, PATIENCE))
 }
 
 fn show_with(folder: &Path, open: impl FnOnce(&Path) -> io::Result<()>) -> Result<String, String> {
@@ -78,7 +77,7 @@ impl Manuals {
     /// Opens the manual and returns at once. Calls `wake` when the outcome is known.
     pub(super) fn open(&self, wake: impl FnOnce() + Send + 'static) {
         let outcomes = self.outcomes.clone();
-        thread::spawn(move || {
+        platform::once(move || {
             let outcome = show();
             lock(&outcomes).push(outcome);
             wake();

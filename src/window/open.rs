@@ -13,7 +13,7 @@ use super::{
     recovery::Recovery,
     requirements::{RequirementsPlugin, need_display, need_driver},
 };
-use crate::{caught::lock, failure::Failure};
+use crate::{caught::lock, failure::Failure, platform};
 
 /// Opens the window and returns once it is closed. `extend` adds panels, systems and plugins to the app.
 ///
@@ -40,7 +40,7 @@ pub fn view(options: ViewOptions, extend: impl FnOnce(&mut App)) -> Result<(), F
     if failure.is_none() {
         ended?;
     }
-    if let Some((farewell, guard)) = farewell {
+    if let Some((farewell, guard)) = farewell.filter(|_| platform::OUTLIVES_WINDOW) {
         drop(guard);
         farewell.say();
     }
@@ -50,6 +50,12 @@ pub fn view(options: ViewOptions, extend: impl FnOnce(&mut App)) -> Result<(), F
 /// Adds the plugins. The windowing library panics if the display named in the environment does not respond, and offers
 /// no way to check first.
 fn add_with_display<M>(app: &mut App, plugins: impl Plugins<M>) -> Result<(), Failure> {
+    if !platform::OUTLIVES_WINDOW {
+        app.add_plugins(plugins);
+        // Bevy tells the console alone.
+        platform::report_panics();
+        return Ok(());
+    }
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
     let added = panic::catch_unwind(AssertUnwindSafe(|| {

@@ -2,15 +2,14 @@
 //! are drawn off screen. The rest happens in a separate thread.
 
 use std::{
-    borrow::Cow,
     collections::VecDeque,
     path::{Path, PathBuf},
-    sync::{Mutex, atomic::AtomicBool},
-    time::{Duration, Instant},
+    sync::atomic::AtomicBool,
+    time::Duration,
 };
 
-use arboard::{Clipboard, ImageData};
 use bevy::{prelude::*, window::RequestRedraw, winit::EventLoopProxyWrapper};
+use web_time::Instant;
 
 use super::{
     background::Background as Work,
@@ -21,7 +20,6 @@ use super::{
 };
 use crate::{
     caption::{self, Sampled},
-    caught::lock,
     channel::{DebugChannel, Legend, Setting, layers, too_large},
     compare::{self, Pair, Shown, Unequal, cells, compose, size_around, with_legends, with_row_labels},
     export::write::inputs,
@@ -33,6 +31,7 @@ use crate::{
         linear,
         png::{self, About},
     },
+    platform,
     progress::Progress,
     reference::{Settings, Until, not_on_cpu, render_layers},
     registry::Registry,
@@ -556,15 +555,9 @@ impl Job {
     }
 }
 
-/// Copies a picture to the clipboard. Under X11, it stays there while this program runs.
-fn copy(rgb8: &[u8], [width, height]: [u32; 2]) -> Result<(), String> {
-    static CLIPBOARD: Mutex<Option<Clipboard>> = Mutex::new(None);
+/// Copies a picture to the clipboard.
+fn copy(rgb8: &[u8], size: [u32; 2]) -> Result<(), String> {
     let rgba: Vec<u8> = rgb8.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect();
-    let picture = ImageData { width: width as usize, height: height as usize, bytes: Cow::Owned(rgba) };
-    let mut clipboard = lock(&CLIPBOARD);
-    let set = match &mut *clipboard {
-        Some(clipboard) => clipboard.set_image(picture),
-        none => Clipboard::new().and_then(|new| none.insert(new).set_image(picture)),
-    };
-    set.map_err(|error| format!("The picture was not copied: {error}. Save it instead."))
+    let copied = platform::copy_picture(rgba, size);
+    copied.map_err(|error| format!("The picture was not copied: {error}. Save it instead."))
 }

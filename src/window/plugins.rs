@@ -3,10 +3,10 @@
 use std::{path::PathBuf, time::Duration};
 
 use bevy::{
-    app::{PluginGroupBuilder, ScheduleRunnerPlugin, TerminalCtrlCHandlerPlugin},
+    app::{PluginGroupBuilder, ScheduleRunnerPlugin},
     log::{Level, LogPlugin},
     prelude::*,
-    render::{RenderPlugin, pipelined_rendering::PipelinedRenderingPlugin, settings::RenderCreation},
+    render::{RenderPlugin, settings::RenderCreation},
     window::{ExitCondition, PresentMode, WindowResolution},
     winit::WinitPlugin,
 };
@@ -21,7 +21,7 @@ use super::{
 };
 use crate::{
     panel::PanelPlugin,
-    program,
+    platform, program,
     render::{capture::gpu::wgpu_settings, plugin::ScenePlugin},
 };
 
@@ -164,7 +164,7 @@ fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
     };
     let group = DefaultPlugins
         .set(WindowPlugin {
-            primary_window: (!headless).then_some(window),
+            primary_window: (!headless).then(|| platform::placed(window)),
             // Closing the window first asks about unsaved changes.
             close_when_requested: false,
             exit_condition: if headless { ExitCondition::DontExit } else { ExitCondition::OnPrimaryClosed },
@@ -177,10 +177,8 @@ fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
             ..RenderPlugin::default()
         })
         .set(AssetPlugin { watch_for_changes_override: Some(false), ..AssetPlugin::default() })
-        .set(log_plugin(options))
-        .disable::<PipelinedRenderingPlugin>()
-        // Signals are handled elsewhere, even while the window sleeps.
-        .disable::<TerminalCtrlCHandlerPlugin>();
+        .set(log_plugin(options));
+    let group = platform::fitting(group);
     if headless { group.disable::<WinitPlugin>() } else { group.set(WinitPlugin { run_on_any_thread: true }) }
 }
 

@@ -9,7 +9,7 @@ use std::{
         atomic::{AtomicBool, Ordering},
     },
     thread,
-    time::{Duration, SystemTime},
+    time::Duration,
 };
 
 use bevy::prelude::*;
@@ -27,6 +27,7 @@ use crate::{
         files::Files as _,
         state::{Action, KeptCode, Offer, OpenCode, Question, RecoveryChoice, Session, Severity},
     },
+    platform::{self, fs},
     recovery::{
         Abandoned, About, Keeper, Store, ago,
         texts::{self, KeptText, OF_SCENE, TextKeeper, Texts},
@@ -157,7 +158,7 @@ impl Recovery {
     /// they are only mentioned.
     fn search(&mut self, store: Option<&Store>, file: Option<&path::Path>, ask: bool) {
         let mut copies = store.map(Store::abandoned).unwrap_or_default();
-        let file = file.and_then(|file| path::absolute(file).ok());
+        let file = file.and_then(|file| fs::absolute(file).ok());
         copies.sort_by_key(|copy| file.is_none() || copy.about.path != file);
         if ask {
             self.offers = copies.into();
@@ -207,7 +208,7 @@ fn about(session: &Session, files: &DiskFiles) -> About {
     About {
         title: session.own_title(),
         // The next window may start in another folder.
-        path: session.own_path().map(|path| path::absolute(path).unwrap_or_else(|_| path.to_owned())),
+        path: session.own_path().map(|path| fs::absolute(path).unwrap_or_else(|_| path.to_owned())),
         stamp: session.own_path().and_then(|path| files.known(path)),
         process: 0,
     }
@@ -242,7 +243,7 @@ fn offer(mut recovery: ResMut<Recovery>, mut session: ResMut<Session>, registry:
         }
         complain(&problems.join("\n"));
     }
-    let age = SystemTime::now().duration_since(copy.when).unwrap_or(Duration::ZERO);
+    let age = platform::now().duration_since(copy.when).unwrap_or(Duration::ZERO);
     session.questions.ask(Question::Recover(Box::new(Offer {
         title: copy.about.title.clone(),
         path: copy.about.path.clone(),

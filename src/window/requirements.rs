@@ -5,7 +5,7 @@ use std::process;
 use bevy::app::{App, Plugin};
 
 use super::watching::complain;
-use crate::{failure::Failure, render::capture::gpu::find_adapter};
+use crate::{failure::Failure, platform, render::capture::gpu::find_adapter};
 
 /// Reports a missing display or driver, and ends the process with the appropriate exit status before other plugins
 /// panic.
@@ -32,6 +32,10 @@ impl Plugin for RequirementsPlugin {
 
 /// Returns an error without a driver, for which Bevy would panic.
 pub(super) fn need_driver() -> Result<(), Failure> {
+    if !platform::WAITS_FOR_GPU {
+        // The page has looked for one.
+        return Ok(());
+    }
     find_adapter().map(drop).map_err(|e| Failure::NoRenderer(e.to_string()))
 }
 

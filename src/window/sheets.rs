@@ -11,6 +11,7 @@ use crate::{
     failure::Failure,
     files,
     panel::state::{Session, Severity, SheetOf, SheetOptions},
+    platform::fs,
     progress::Progress,
     reference,
     registry::Registry,
@@ -125,7 +126,7 @@ impl Job<'_> {
         let check = |seen: &Scene| self.check(seen);
         plan.write(file, source, &check, progress).map(drop).map_err(|failure| {
             let parts = Parts::beside(file);
-            match parts.folder().is_dir() {
+            match fs::is_dir(parts.folder()) {
                 true => format!(
                     "{failure}; finished pictures are kept in {} for another try",
                     parts.folder().shown()

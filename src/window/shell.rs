@@ -7,10 +7,10 @@ use bevy::{
 
 use bevy_egui::{EguiPostUpdateSet, EguiPreUpdateSet};
 
-use super::{Acting, frames, input, redraw};
+use super::{Acting, frames, input, redraw, watching::waker};
 use crate::{
     panel::state::{Action, Session},
-    program,
+    platform, program,
 };
 
 /// The window on the desktop. It sleeps while nothing changes.
@@ -22,6 +22,7 @@ pub struct ShellPlugin {
 
 impl Plugin for ShellPlugin {
     fn build(&self, app: &mut App) {
+        platform::listen_for_files(waker(app.world()));
         app.insert_resource(redraw::sleepy())
             .init_resource::<redraw::Settling>()
             .insert_resource(frames::FrameClock::new(self.verbose))
@@ -45,14 +46,20 @@ impl Plugin for ShellPlugin {
                         .before(EguiPostUpdateSet::PostProcessOutput),
                 ),
             )
-            .add_systems(Last, (frames::measure, input::rescale_pointer));
+            .add_systems(Last, (frames::measure, input::rescale_pointer, shown.run_if(run_once)));
     }
+}
+
+/// The first frame is drawn.
+fn shown() {
+    platform::shown();
 }
 
 fn window_title(session: Res<Session>, mut window: Single<&mut Window, With<PrimaryWindow>>) {
     let mark = if session.shows_unsaved() { " •" } else { "" };
     let title = format!("{}{mark} – {}", session.window_title(), program::title());
     if window.title != title {
+        platform::titled(&title, session.shows_unsaved());
         window.title = title;
     }
 }
@@ -75,7 +82,7 @@ fn file_dropped(mut drops: MessageReader<FileDragAndDrop>, mut acting: Acting) {
         FileDragAndDrop::DroppedFile { path_buf, .. } => Some(path_buf.clone()),
         FileDragAndDrop::HoveredFile { .. } | FileDragAndDrop::HoveredFileCanceled { .. } => None,
     };
-    let dropped: Vec<_> = drops.read().filter_map(file).collect();
+    let dropped: Vec<_> = drops.read().filter_map(file).chain(platform::brought()).collect();
     if !dropped.is_empty() {
         acting.apply(Action::Drop(dropped));
     }

@@ -2,7 +2,6 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    io::{self, Write as _},
     path::{Path, PathBuf},
     time::Duration,
 };
@@ -17,6 +16,7 @@ use crate::{
     files::{self, Shown as _},
     panel::state::{Effect, Session, Severity},
     parameter::NamedFile,
+    platform,
     render::{entities::CurrentScene, schedule::LabFrame},
     watch::Watcher,
 };
@@ -174,8 +174,7 @@ pub(super) fn complain(text: &str) {
     complain_in_colour(&files::printable(text));
 }
 
-/// Writes to standard error a text whose only control characters are its own colours. A failure to write is no reason
-/// to panic.
+/// Writes to standard error a text whose only control characters are its own colours.
 pub(super) fn complain_in_colour(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    platform::tell(text);
 }

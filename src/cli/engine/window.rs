@@ -47,7 +47,7 @@ pub(super) fn open(
             let target = files::follow(path).unwrap_or_else(|_| path.clone());
             files::tidy(files::folder_of(&target)).iter().map(ToString::to_string).collect()
         }
-        Source::Default | Source::Inside(_) | Source::Stdin => Vec::new(),
+        Source::Default | Source::Example(_) | Source::Inside(_) | Source::Stdin => Vec::new(),
     };
     let wanted = match &source {
         Source::Inside(inside) => inside.about.size,
@@ -125,7 +125,7 @@ fn lesson_source(
         return Ok(LessonSource::Shipped(i));
     }
     let name = lesson.shown().to_string();
-    if !lesson.exists() {
+    if !crate::platform::fs::is_there(lesson) {
         let known: Vec<_> = LESSONS.iter().map(|lesson| lesson.id.as_str()).collect();
         let near = did_you_mean(&name, known.iter().map(|id| (*id, *id)));
         let all = format!("; the lessons are {}", listed(&known, "and"));

@@ -1,8 +1,9 @@
 //! What the panel shows: the materials, read by a thread, and their pictures, drawn by another one, each once.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bevy_egui::egui::{ColorImage, TextureHandle, TextureOptions};
+use web_time::Instant;
 
 use super::super::{
     gallery::{Gallery, Wanted},

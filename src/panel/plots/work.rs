@@ -1,9 +1,9 @@
-//! Curves are calculated in a thread of their own, the coarse ones at once, the fine ones when nothing has changed for a
+//! Curves are calculated in the background, the coarse ones at once, the fine ones when nothing has changed for a
 //! moment. It stops when the plots are no longer shown.
 
 use std::{
     sync::{
-        Condvar, LazyLock, Mutex, MutexGuard,
+        LazyLock, Mutex, MutexGuard,
         atomic::{AtomicU64, Ordering},
     },
     thread,
@@ -11,12 +11,14 @@ use std::{
 };
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use web_time::Instant;
 
 use super::request::{Drawn, Key, NoCurve, Recipe};
 use crate::{
     caught::{catch, lock},
     curves::{Detail, Kind, Setup},
     panel::{prelude::*, state::Slot},
+    platform::{Next, Worker as Background},
     progress::Progress,
 };
 
@@ -66,13 +68,13 @@ struct State {
     /// The number of jobs so far.
     jobs: u64,
     done: Vec<Done>,
-    working: bool,
+    /// What calculates, while it does.
+    working: Option<Background>,
 }
 
 #[derive(Default)]
 struct Shared {
     state: Mutex<State>,
-    changed: Condvar,
     /// The last pass of the window in which the plots were shown.
     pass: AtomicU64,
 }
@@ -89,7 +91,7 @@ impl Worker {
 
     /// True while something is calculated.
     pub(super) fn is_busy(&self) -> bool {
-        self.0.lock().working
+        self.0.lock().working.is_some()
     }
 
     /// The results since the last call.
@@ -103,10 +105,9 @@ impl Worker {
         state.kind = Some(job.setup.kind);
         state.job = Some(job);
         state.jobs += 1;
-        self.0.changed.notify_all();
-        if !std::mem::replace(&mut state.working, true) {
-            let (ctx, shared) = (ctx.clone(), self.0.clone());
-            thread::spawn(move || shared.work(&ctx));
+        match &state.working {
+            Some(working) => working.wake(),
+            None => state.working = Background::start("plots", self.0.clone().work(ctx.clone())).ok(),
         }
     }
 }
@@ -120,31 +121,40 @@ impl Shared {
         ctx.cumulative_pass_nr() > self.pass.load(Ordering::Relaxed) + PASSES
     }
 
-    fn work(&self, ctx: &Context) {
-        loop {
+    /// Calculates one job after the other.
+    fn work(self: Arc<Self>, ctx: Context) -> impl FnMut() -> Next + Send {
+        // The job whose fine curves wait, and since when.
+        let mut coarse: Option<(Job, u64, Instant)> = None;
+        move || {
+            if let Some((job, number, since)) = coarse.take() {
+                let newer = || self.is_closed(&ctx) || self.lock().jobs != number;
+                let left = REST.saturating_sub(since.elapsed());
+                if !newer() && !left.is_zero() {
+                    coarse = Some((job, number, since));
+                    return Next::After(left);
+                }
+                if !newer() {
+                    self.calculate(&ctx, &job, Detail::Fine, &newer);
+                }
+            }
             let (job, number) = {
                 let mut state = self.lock();
-                let Some(job) = state.job.take().filter(|_| !self.is_closed(ctx)) else {
-                    state.working = false;
-                    break;
+                let Some(job) = state.job.take().filter(|_| !self.is_closed(&ctx)) else {
+                    state.working = None;
+                    drop(state);
+                    // What was cancelled is asked for again if the plots are shown.
+                    ctx.request_repaint();
+                    return Next::Never;
                 };
                 (job, state.jobs)
             };
             // A coarse curve that is old is better than none while a knob is dragged.
-            let other = || self.is_closed(ctx) || self.lock().kind != Some(job.setup.kind);
-            if !self.calculate(ctx, &job, Detail::Coarse, &other) {
-                continue;
+            let other = || self.is_closed(&ctx) || self.lock().kind != Some(job.setup.kind);
+            if self.calculate(&ctx, &job, Detail::Coarse, &other) {
+                coarse = Some((job, number, Instant::now()));
             }
-            let state = self.lock();
-            let rested = self.changed.wait_timeout_while(state, REST, |state| state.jobs == number);
-            drop(rested);
-            let newer = || self.is_closed(ctx) || self.lock().jobs != number;
-            if !newer() {
-                self.calculate(ctx, &job, Detail::Fine, &newer);
-            }
+            Next::Now
         }
-        // What was cancelled is asked for again if the plots are shown.
-        ctx.request_repaint();
     }
 
     /// False if it was cancelled.

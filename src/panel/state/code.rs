@@ -5,12 +5,14 @@
 
 use std::{
     mem,
-    path::{self, Path, PathBuf},
+    path::{Path, PathBuf},
     sync::Arc,
 };
 
 use super::{CODE_TAB, CodeCommand, Effect, Note, Session, Severity};
-use crate::{custom::source_path, files::Shown as _, recovery::texts::OF_SCENE, registry::Registry};
+use crate::{
+    custom::source_path, files::Shown as _, platform::fs, recovery::texts::OF_SCENE, registry::Registry,
+};
 
 /// Greatest size of a text in the editor, bytes.
 pub const MOST_CODE: usize = 256 << 10;
@@ -319,7 +321,7 @@ impl Session {
 
     /// Withdraws the offers to continue with texts of a file that has been saved since they were kept.
     pub(in crate::panel) fn outdate_kept(&mut self, path: &Path) {
-        let Ok(path) = path::absolute(path) else { return };
+        let Ok(path) = fs::absolute(path) else { return };
         let count = self.code.kept.len();
         self.code.kept.retain(|kept| kept.path != path);
         if self.code.kept.len() < count {

@@ -8,6 +8,7 @@ use crate::{
     custom,
     document::Selection,
     parameter::{Parameter, Value},
+    platform::fs,
     registry::Registry,
     scene::{Key, formats},
 };
@@ -31,7 +32,7 @@ impl Session {
         if let Some(scene) = paths.iter().find(is_scene) {
             return self.carry_out(Action::Open(scene.clone()), registry);
         }
-        if let Some(lesson) = paths.iter().find(|path| ends_in(path, &["md"]) || path.is_dir()) {
+        if let Some(lesson) = paths.iter().find(|path| ends_in(path, &["md"]) || fs::is_dir(path)) {
             let open = LessonCommand::Open(LessonSource::File(lesson.clone()));
             return self.carry_out(Action::Lesson(open), registry);
         }
@@ -99,8 +100,8 @@ impl Session {
         if !ends_in(path, &[custom::EXTENSION]) {
             return false;
         }
-        let folder = registry.custom_folder().and_then(|folder| folder.canonicalize().ok());
-        let here = path.parent().and_then(|parent| parent.canonicalize().ok());
+        let folder = registry.custom_folder().and_then(|folder| fs::canonicalize(folder).ok());
+        let here = path.parent().and_then(|parent| fs::canonicalize(parent).ok());
         let id = path.file_stem().and_then(|stem| registry.model(stem.to_str()?)).map(|m| m.declaration.id);
         match id.filter(|_| folder.is_some() && folder == here) {
             Some(id) => {

@@ -6,6 +6,7 @@ use super::{Action, Effect, ExportCommand, Note, Pick, Session, Severity};
 use crate::{
     export::{Form, form},
     files::{self, Shown as _},
+    platform::fs,
     scene::variant::LETTERS,
     sweep::Format,
 };
@@ -43,7 +44,7 @@ impl Session {
 
     /// Reports a written file or folder, and offers to show the folder.
     pub(super) fn note_file(&mut self, text: String, path: &Path) {
-        let folder = if path.is_dir() { path } else { files::folder_of(path) };
+        let folder = if fs::is_dir(path) { path } else { files::folder_of(path) };
         let reveal = Action::Do(Effect::Reveal(folder.to_owned()));
         self.note(Note::new(Severity::Info, text).offering("Open the folder", reveal));
     }

@@ -8,6 +8,7 @@ use crate::{
     files::{self, Shown as _},
     optics::TermSelection,
     parameter::{NamedFile, Outside, Parameter, Value, Values},
+    platform::fs,
     registry::Registry,
     scene::{Key, Part, Scene, examples::EXAMPLES, formats},
 };
@@ -177,7 +178,7 @@ impl Session {
     pub(super) fn chosen(&self, parameter: &Parameter, path: &Path) -> Option<Value> {
         let format = parameter.kind.format()?;
         let folder = self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
-        let below = std::path::absolute(folder).ok().filter(|_| self.path.is_some());
+        let below = fs::absolute(folder).ok().filter(|_| self.path.is_some());
         let written = below.and_then(|folder| path.strip_prefix(folder).ok()).unwrap_or(path);
         Some(Value::File(NamedFile::chosen(&written.to_string_lossy(), folder, format)))
     }
@@ -274,7 +275,7 @@ impl Session {
 
     pub(super) fn remember_file(&mut self, path: &Path) {
         // The next start may be in another folder.
-        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let path = fs::absolute(path).unwrap_or_else(|_| path.to_owned());
         self.settings.recent_files.retain(|p| *p != path);
         self.settings.recent_files.insert(0, path);
         self.settings.recent_files.truncate(RECENT_FILES);

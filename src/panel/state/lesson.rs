@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Past, Pin, Progress};
-use crate::lesson::shipped::LESSONS;
+use crate::{lesson::shipped::LESSONS, platform::fs};
 
 /// The origin of a lesson.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -20,9 +20,7 @@ impl LessonSource {
     pub fn name(&self) -> String {
         match self {
             Self::Shipped(i) => LESSONS.get(*i).map_or_else(String::new, |lesson| lesson.id.clone()),
-            Self::File(path) => {
-                std::path::absolute(path).unwrap_or_else(|_| path.clone()).display().to_string()
-            }
+            Self::File(path) => fs::absolute(path).unwrap_or_else(|_| path.clone()).display().to_string(),
         }
     }
 

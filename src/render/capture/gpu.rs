@@ -4,7 +4,7 @@ use std::{path::Path, sync::OnceLock, time::Duration};
 
 use bevy::{
     a11y::AccessibilityPlugin,
-    app::{PluginsState, TerminalCtrlCHandlerPlugin},
+    app::PluginsState,
     asset::RenderAssetUsages,
     camera::{Hdr, RenderTarget},
     light::cluster::GlobalClusterSettings,
@@ -13,11 +13,10 @@ use bevy::{
     render::{
         RenderApp, RenderPlugin,
         camera::CameraRenderGraph,
-        pipelined_rendering::PipelinedRenderingPlugin,
         render_asset::RenderAssets,
         render_resource::*,
         renderer::{RenderAdapterInfo, RenderDevice, RenderQueue, initialize_renderer},
-        settings::{Backends, RenderCreation, RenderResources, WgpuSettings},
+        settings::{RenderCreation, RenderResources, WgpuSettings},
         texture::GpuImage,
     },
     tasks::block_on,
@@ -31,6 +30,7 @@ use crate::{
     caught::catch,
     channel::{DebugChannel, Setting},
     optics::TermSelection,
+    platform::{self, backends},
     reference::{Settings, draw_wires},
     reflection::ends::Endless,
     registry::Registry,
@@ -60,6 +60,9 @@ pub enum GpuError {
          one that needs no GPU, or use `--renderer cpu`, which needs no driver"
     )]
     NoAdapter,
+    /// A page in a browser has no time for it.
+    #[error("a page in a browser draws on the GPU in its window alone")]
+    NoWaiting,
     /// The driver does not start.
     #[error(
         "the graphics driver did not start; it may lack memory; use `--renderer cpu`, which needs no driver"
@@ -135,17 +138,6 @@ pub fn find_adapter() -> Result<AdapterFacts, GpuError> {
         .ok_or(GpuError::NoAdapter)
 }
 
-/// The graphics APIs to use: `WGPU_BACKEND` if set; otherwise Vulkan on Linux (requesting OpenGL as well
-/// would print warnings on machines without it) and all elsewhere.
-#[must_use]
-pub fn backends() -> Backends {
-    Backends::from_env().unwrap_or(if cfg!(target_os = "linux") {
-        Backends::VULKAN
-    } else {
-        Backends::PRIMARY
-    })
-}
-
 /// The settings of the renderer, with or without windows.
 #[must_use]
 pub fn wgpu_settings() -> WgpuSettings {
@@ -156,6 +148,9 @@ pub fn wgpu_settings() -> WgpuSettings {
 /// drawing a picture.
 pub(super) fn device() -> Result<RenderResources, GpuError> {
     static DEVICE: OnceLock<Option<RenderResources>> = OnceLock::new();
+    if !platform::WAITS_FOR_GPU {
+        return Err(GpuError::NoWaiting);
+    }
     if DEVICE.get().is_none() {
         find_adapter()?;
     }
@@ -236,7 +231,7 @@ impl GpuRenderer {
         let resources = device()?;
         let mut app = App::new();
         app.add_plugins(
-            DefaultPlugins
+            platform::fitting(DefaultPlugins.build())
                 .set(WindowPlugin {
                     primary_window: None,
                     exit_condition: ExitCondition::DontExit,
@@ -249,10 +244,8 @@ impl GpuRenderer {
                 })
                 .set(AssetPlugin { watch_for_changes_override: Some(false), ..AssetPlugin::default() })
                 .disable::<WinitPlugin>()
-                .disable::<PipelinedRenderingPlugin>()
                 .disable::<LogPlugin>()
                 // There is no user input.
-                .disable::<TerminalCtrlCHandlerPlugin>()
                 .disable::<AccessibilityPlugin>(),
         )
         .add_plugins(ScenePlugin);

@@ -1,7 +1,7 @@
 //! Complete pictures: draws frames until nothing is missing, in batches if the shapes do not all fit into
 //! memory at once.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bevy::{
     camera::Camera3dDepthLoadOp,
@@ -18,6 +18,7 @@ use bevy::{
     },
     shader::ShaderCacheError,
 };
+use web_time::Instant;
 
 use super::gpu::{GpuError, GpuRenderer, PATIENCE};
 use crate::{

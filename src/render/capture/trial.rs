@@ -5,7 +5,7 @@ use std::{
     io::{self, BufRead, Write},
     sync::{Arc, Mutex},
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use bevy::{
@@ -19,6 +19,7 @@ use bevy::{
     },
     shader::ValidateShader,
 };
+use web_time::Instant;
 
 use super::gpu::{GpuError, GpuRenderer, Output};
 use crate::{

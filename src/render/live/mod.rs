@@ -17,10 +17,10 @@ mod trying;
 use std::{
     collections::{BTreeMap, BTreeSet, HashMap, HashSet},
     path::Path,
-    time::Instant,
 };
 
 use bevy::{prelude::*, render::error_handler::RenderErrorHandler};
+use web_time::Instant;
 
 use super::{
     drawn::Drawn,

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::{Key, LiveShaders, Registry, Visible};
 use crate::{
     library::status::{STAND_IN, ShaderStatus, Trouble},
+    platform::fs,
     shader::check::ShaderProblem,
 };
 
@@ -15,7 +16,7 @@ impl LiveShaders {
         let mut add = |problem: &ShaderProblem, stale: Option<String>| {
             let i = troubles.iter().position(|t| t.problem == *problem).unwrap_or_else(|| {
                 // Sources compiled into another crate may exist only on its author's disk.
-                let there = |path: &PathBuf| !registry.is_foreign(&problem.file) || path.is_file();
+                let there = |path: &PathBuf| !registry.is_foreign(&problem.file) || fs::is_file(path);
                 let path = registry.folders().file_of(&problem.file).filter(there);
                 troubles.push(Trouble { problem: problem.clone(), path, stale: Vec::new() });
                 troubles.len() - 1

@@ -1,6 +1,6 @@
 //! Tries shaders, and exchanges the valid ones.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bevy::{
     prelude::*,
@@ -9,6 +9,7 @@ use bevy::{
         renderer::{RenderAdapter, RenderDevice},
     },
 };
+use web_time::Instant;
 
 use super::{
     super::{

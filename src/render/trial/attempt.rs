@@ -19,6 +19,7 @@ use super::{
 };
 use crate::{
     caught::catch,
+    platform,
     shader::{check::locate, compose::Composed, limits, pitfall},
 };
 
@@ -159,6 +160,10 @@ fn build(
     fragment: Module,
     device: &RenderDevice,
 ) -> Result<(), wgpu::Error> {
+    if !platform::WAITS_FOR_GPU {
+        // The composer has validated it.
+        return Ok(());
+    }
     let wgpu_device = device.wgpu_device();
     // Scopes belong to the thread, so all of this happens here and now.
     let internal = wgpu_device.push_error_scope(wgpu::ErrorFilter::Internal);

@@ -12,10 +12,11 @@ use std::{
     process::{Child, Command, ExitStatus, Stdio},
     sync::{Arc, Condvar, Mutex, MutexGuard, mpsc},
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use serde::{Deserialize, Serialize};
+use web_time::Instant;
 
 use super::verdict::Verdict;
 /// The command of the program that tries shaders.

@@ -2,6 +2,7 @@
 
 use super::{Parsed, SceneFormat, SceneWriter, Source, Target};
 use crate::{
+    platform::fs,
     registry::Registry,
     scene::{Scene, error::LoadError, read, schema, syntax::check_syntax, write::to_json},
     text::{
@@ -57,7 +58,7 @@ impl SceneWriter for Json {
         let reference = match target.old {
             Some(old) => schema_of(old),
             None => {
-                let beside = target.folder.join(schema::FILE_NAME).is_file();
+                let beside = fs::is_file(target.folder.join(schema::FILE_NAME));
                 beside.then(|| format!("./{}", schema::FILE_NAME))
             }
         };

@@ -9,8 +9,6 @@
 //! recurse at least four times as deep as allowed here (tested by `hostile`); the shipped shaders stay five
 //! times below.
 
-use std::thread;
-
 use naga::{Module, Span};
 
 use super::{
@@ -88,10 +86,7 @@ pub fn check_module(module: &Module) -> Option<(Span, String)> {
 /// Calls a function on a stack large enough for anything within the limits; `None` if it panics, or if the
 /// stack cannot be allocated.
 pub(super) fn on_stack<T: Send>(call: impl FnOnce() -> T + Send) -> Option<T> {
-    thread::scope(|scope| {
-        let thread = thread::Builder::new().name("shader".to_owned()).stack_size(STACK);
-        thread.spawn_scoped(scope, call).ok()?.join().ok()
-    })
+    crate::platform::on_stack("shader", STACK, call)
 }
 
 #[cfg(test)]

@@ -5,4 +5,5 @@ mod features;
 mod lengths;
 pub(crate) mod modules;
 mod packaging;
+mod platform;
 mod window;

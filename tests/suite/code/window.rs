@@ -15,7 +15,15 @@ use crate::{
 /// The feature, as attributes name it.
 const FEATURE: &str = "feature = \"window\"";
 /// The files that may name it.
-const BOUNDARIES: [&str; 5] = ["lib.rs", "prelude.rs", "program.rs", "testing/mod.rs", "cli/engine/mod.rs"];
+const BOUNDARIES: [&str; 7] = [
+    "lib.rs",
+    "prelude.rs",
+    "program.rs",
+    "testing/mod.rs",
+    "cli/engine/mod.rs",
+    "platform/browser/mod.rs",
+    "platform/desktop/mod.rs",
+];
 /// The only lines that name it in another way than before a module or an import: what serves the window alone is not
 /// dead, and messages say what is missing.
 const OTHERS: [&str; 2] = [
@@ -143,6 +151,8 @@ fn nothing_outside_uses_what_the_feature_brings() {
         "cli/engine/present",
         "cli/engine/window",
         "panel",
+        "platform/browser/window",
+        "platform/desktop/window",
         "render",
         "testing/gpu",
         "window",

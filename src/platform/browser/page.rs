@@ -1,0 +1,53 @@
+//! The page around the program, and what it does for it.
+
+#![allow(unsafe_code, reason = "the macro makes it of the declarations")]
+
+use std::panic;
+
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen(module = "/src/platform/browser/page.js")]
+extern "C" {
+    /// The part of the address from `?` on.
+    pub(super) fn query() -> String;
+    /// Writes a line to the console.
+    pub(super) fn tell(line: &str);
+    /// Writes a line to the console, and tells the page that the program has ended by it.
+    fn failed(line: &str);
+    /// The paths of the files that the page has kept.
+    #[wasm_bindgen(js_name = keptPaths)]
+    fn kept_paths() -> Vec<String>;
+    /// The content of one of them.
+    #[wasm_bindgen(js_name = keptBytes)]
+    fn kept_bytes(path: &str) -> Vec<u8>;
+    /// Keeps a file.
+    pub(super) fn keep(path: &str, bytes: &[u8]);
+    /// Keeps a file no longer.
+    pub(super) fn forget(path: &str);
+    /// Hands a file to the browser as a download.
+    pub(super) fn download(name: &str, bytes: &[u8]);
+    /// Calls a function after a time.
+    pub(super) fn after(milliseconds: f64, call: &JsValue);
+    /// Hears of files that are dropped on the page: their names, their bytes, and whether they are the last.
+    pub(super) fn listen(brought: &Closure<dyn FnMut(String, Vec<u8>, bool)>);
+    /// The title of the page, and whether it asks before it is closed.
+    pub(super) fn titled(title: &str, unsaved: bool);
+    /// Lets the canvas take the place of what the page has shown so far.
+    pub(super) fn shown();
+    /// Copies a picture to the clipboard.
+    #[wasm_bindgen(js_name = copyPicture)]
+    pub(super) fn copy_picture(rgba: Vec<u8>, width: u32, height: u32);
+}
+
+/// The files that the page has kept.
+pub(super) fn kept() -> impl Iterator<Item = (String, Vec<u8>)> {
+    kept_paths().into_iter().map(|path| {
+        let bytes = kept_bytes(&path);
+        (path, bytes)
+    })
+}
+
+/// Makes the page say that the program has panicked.
+pub fn report_panics() {
+    panic::set_hook(Box::new(|info| failed(&info.to_string())));
+}

@@ -1,0 +1,3 @@
+//! Temporary files and folders.
+
+pub use tempfile::{Builder, NamedTempFile, PersistError, TempDir};
