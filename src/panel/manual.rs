@@ -12,9 +12,9 @@ macro_rules! pages {
 }
 
 /// The pages with their ids, which are the paths of the files.
-pub const PAGES: [(&str, &str); 37] = pages! {
+pub const PAGES: [(&str, &str); 38] = pages! {
     "README" "installing" "window" "keys" "scenes" "reflection-models" "measured" "shading-and-lights" "comparing" "lessons"
-    "command-line" "python" "figures" "worked-examples" "study" "exporting" "performance" "custom-models" "extending"
+    "command-line" "python" "browser" "figures" "worked-examples" "study" "exporting" "performance" "custom-models" "extending"
     "extending/reflection-model" "extending/light-type" "extending/object-type" "extending/shading-model"
     "extending/parameters" "extending/parameter-kind" "extending/scene-field" "extending/panel" "extending/systems"
     "extending/scene-format" "extending/metric" "extending/command" "extending/channel" "extending/plot-kind"

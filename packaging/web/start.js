@@ -1,0 +1,67 @@
+// Loads the laboratory, and tells how far that is.
+
+const before = document.getElementById("before");
+const bar = document.getElementById("bar");
+const said = document.getElementById("said");
+
+function say(text) {
+    said.textContent = text;
+}
+
+/** Says why there is no laboratory, in its place. */
+function refuse(text) {
+    bar.hidden = true;
+    before.hidden = false;
+    say(text);
+}
+
+addEventListener("lab-shown", () => {
+    before.hidden = true;
+    document.getElementById("lab").focus();
+});
+addEventListener("lab-told", (event) => {
+    if (!before.hidden) say(event.detail);
+});
+addEventListener("lab-failed", (event) => {
+    refuse(`The laboratory has stopped: ${event.detail}. Reload the page to start it again.`);
+});
+
+const megabytes = (bytes) => (bytes / 1e6).toFixed(1);
+
+/** The program, unpacked while it arrives. */
+async function program() {
+    const response = await fetch("lab.bin");
+    if (!response.ok) throw new Error(`lab.bin: ${response.status} ${response.statusText}`);
+    const whole = Number(response.headers.get("Content-Length"));
+    let done = 0;
+    const count = new TransformStream({
+        transform(bytes, onward) {
+            done += bytes.length;
+            if (whole > 0) bar.value = done / whole;
+            say(`${megabytes(done)} of ${megabytes(Math.max(whole, done))} MB`);
+            onward.enqueue(bytes);
+        },
+    });
+    const unpacked = response.body.pipeThrough(count).pipeThrough(new DecompressionStream("gzip"));
+    return new Response(unpacked, { headers: { "Content-Type": "application/wasm" } });
+}
+
+async function start() {
+    if (!globalThis.isSecureContext) {
+        return refuse("Browsers give pages a graphics card over https or from this computer alone: open this page so.");
+    }
+    const adapter = await navigator.gpu?.requestAdapter();
+    if (!adapter) {
+        return refuse("The laboratory draws with WebGPU, which this browser does not offer. Chrome and Edge from 113, "
+            + "Safari from 26 and Firefox from 141 do on most computers.");
+    }
+    const { default: run } = await import("./lab.js");
+    await run({ module_or_path: program() });
+    // From now on, the site needs no network.
+    navigator.serviceWorker?.register("offline.js").catch((why) => console.warn(why));
+}
+
+start().catch((why) => {
+    console.error(why);
+    if (!before.hidden) refuse(`The laboratory could not be loaded: ${why.message ?? why}`);
+});
