@@ -285,36 +285,6 @@ fn a_metric_that_sees_less_of_highlights_ends_nearer_to_the_body() {
 }
 
 #[test]
-fn choices_are_tried_and_named() {
-    let registry = Registry::builtin();
-    let model = registry.model("microfacet").expect("built in");
-    let default = model.parameter("distribution").expect("declared").default_value();
-    let other = ["ggx", "beckmann"].map(|id| Value::Choice(id.into())).into_iter().find(|v| *v != default);
-    let other = other.expect("one of them");
-    let wanted = [("distribution", other.clone()), ("alpha_x", number(0.25)), ("alpha_y", number(0.25))];
-    let scene = scene(("microfacet", &wanted), ("lambert", &[]));
-    let ranking = each::match_each(&scene, [model], What::Lobe.into(), &registry, &Progress::NONE);
-    let found = &ranking.matched[0].found;
-    assert!(found.values.contains(&("distribution", other)), "{found:?}");
-    assert!(found.after < 0.01 * found.before, "{found:?}");
-}
-
-#[test]
-fn what_was_matched_before_the_user_cancelled_is_kept() {
-    let registry = Registry::builtin();
-    let scene = scene(("phong", &PHONG), ("phong", &[]));
-    let models = ["lambert", "phong", "ward"].map(|id| registry.model(id).expect("built in"));
-    let second = std::cell::Cell::new(false);
-    let tell = |_: f32, step: &str| second.set(second.get() || step.starts_with("Phong"));
-    let progress = Progress { tell: &tell, cancelled: &|| second.get() };
-    let ranking = each::match_each(&scene, models, What::Lobe.into(), &registry, &progress);
-    assert_eq!(ranking.matched.iter().map(|matched| matched.model).collect::<Vec<_>>(), ["lambert"]);
-    assert_eq!(ranking.unfinished, ["phong", "ward"]);
-    let whole = each::match_each(&scene, models, What::Lobe.into(), &registry, &Progress::NONE);
-    assert!(whole.unfinished.is_empty() && whole.matched[0].model == "phong", "{whole:?}");
-}
-
-#[test]
 fn every_opaque_model_is_matched_and_stays_opaque() {
     let registry = Registry::builtin();
     let ids: Vec<_> = each::candidates(&registry).map(|model| model.declaration.id).collect();
@@ -325,15 +295,6 @@ fn every_opaque_model_is_matched_and_stays_opaque() {
     let model = registry.model("openpbr").expect("built in");
     let opens = model.parameters.iter().filter(|p| !each::keeps_opaque(model, p)).map(|p| p.name);
     assert_eq!(opens.collect::<Vec<_>>(), ["transmission_weight"]);
-}
-
-#[test]
-fn two_searches_find_the_same_to_the_bit() {
-    let scene = scene(("ward", &[("alpha_x", number(0.1))]), ("blinn_phong", &[]));
-    let [first, second] =
-        [0, 1].map(|_| matched(&scene, What::Lobe, &["k_d", "k_s", "alpha"]).expect("a match"));
-    assert_eq!(first, second);
-    assert!(first.evaluations > 100 && first.after < first.before, "{first:?}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! built without optimisation, these would take minutes.
 
 use lights_camera_models::{
-    matching::{Match, MatchError, Request, What, match_view, parameters},
+    matching::{Match, MatchError, Request, What, each, match_view, parameters},
     parameter::Value,
     progress::Progress,
     registry::Registry,
@@ -151,4 +151,43 @@ fn a_coat_is_found_among_numbers_that_are_free() {
     let some = matched(&scene, What::Lobe, &free[..3]).expect("a match");
     assert!(together.after <= some.after + 1e-5 * some.before, "{together:?}\n{some:?}");
     assert!(together.after < 1e-4 * together.before, "{together:?}");
+}
+
+#[test]
+fn choices_are_tried_and_named() {
+    let registry = Registry::builtin();
+    let model = registry.model("microfacet").expect("built in");
+    let default = model.parameter("distribution").expect("declared").default_value();
+    let other = ["ggx", "beckmann"].map(|id| Value::Choice(id.into())).into_iter().find(|v| *v != default);
+    let other = other.expect("one of them");
+    let wanted = [("distribution", other.clone()), ("alpha_x", number(0.25)), ("alpha_y", number(0.25))];
+    let scene = scene(("microfacet", &wanted), ("lambert", &[]));
+    let ranking = each::match_each(&scene, [model], What::Lobe.into(), &registry, &Progress::NONE);
+    let found = &ranking.matched[0].found;
+    assert!(found.values.contains(&("distribution", other)), "{found:?}");
+    assert!(found.after < 0.01 * found.before, "{found:?}");
+}
+
+#[test]
+fn what_was_matched_before_the_user_cancelled_is_kept() {
+    let registry = Registry::builtin();
+    let scene = scene(("phong", &PHONG), ("phong", &[]));
+    let models = ["lambert", "phong", "ward"].map(|id| registry.model(id).expect("built in"));
+    let second = std::cell::Cell::new(false);
+    let tell = |_: f32, step: &str| second.set(second.get() || step.starts_with("Phong"));
+    let progress = Progress { tell: &tell, cancelled: &|| second.get() };
+    let ranking = each::match_each(&scene, models, What::Lobe.into(), &registry, &progress);
+    assert_eq!(ranking.matched.iter().map(|matched| matched.model).collect::<Vec<_>>(), ["lambert"]);
+    assert_eq!(ranking.unfinished, ["phong", "ward"]);
+    let whole = each::match_each(&scene, models, What::Lobe.into(), &registry, &Progress::NONE);
+    assert!(whole.unfinished.is_empty() && whole.matched[0].model == "phong", "{whole:?}");
+}
+
+#[test]
+fn two_searches_find_the_same_to_the_bit() {
+    let scene = scene(("ward", &[("alpha_x", number(0.1))]), ("blinn_phong", &[]));
+    let [first, second] =
+        [0, 1].map(|_| matched(&scene, What::Lobe, &["k_d", "k_s", "alpha"]).expect("a match"));
+    assert_eq!(first, second);
+    assert!(first.evaluations > 100 && first.after < first.before, "{first:?}");
 }

@@ -24,8 +24,14 @@ const SIZE: u32 = 48;
 /// Number of models whose shaders, in all shading models, stay ready beside those of as many others.
 const AT_A_TIME: usize = SPARE / 4 / 2 - 1;
 
+/// Samples of lights with extent: pictures with the same ones are equal, however few they are.
+const SAMPLES: u32 = 16;
+
 fn renderer() -> GpuRenderer {
-    GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed")
+    let mut renderer =
+        GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed");
+    renderer.set_light_samples(SAMPLES);
+    renderer
 }
 
 fn frame(renderer: &mut GpuRenderer) -> Vec<u8> {
