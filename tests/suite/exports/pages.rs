@@ -24,7 +24,8 @@ use serde_json::{Value, json};
 
 use crate::{
     helpers::browser::{Browser, rgb},
-    helpers::support::{lcm, root, shipped_scenes},
+    helpers::pages::PAGES,
+    helpers::support::{lcm, root},
 };
 
 const WIDTH: u32 = 384;
@@ -52,10 +53,10 @@ fn shipped(name: &str) -> PathBuf {
 
 #[test]
 fn every_shipped_scene_is_a_page_within_the_limit() {
-    for path in shipped_scenes() {
-        let page = page(&scene(&path)).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    for (path, export) in PAGES.iter() {
+        let page = &export.files[0].bytes;
         assert!(page.len() <= html::LIMIT, "{}: {}", path.display(), page.len());
-        let page = String::from_utf8(page).expect("UTF-8");
+        let page = str::from_utf8(page).expect("UTF-8");
         // Nothing is loaded from anywhere.
         assert!(page.contains("Content-Security-Policy\" content=\"default-src 'none';"));
         for reference in ["http:", "https:", "src=", "href=", "url(", "@import", "import ", "fetch("] {
