@@ -151,7 +151,7 @@ impl Browser {
             }
             assert!(begin.elapsed() < PATIENCE, "{script}: {value}");
             thread::sleep(pause);
-            pause = (2 * pause).min(Duration::from_millis(100));
+            pause = (pause * 2).min(Duration::from_millis(100));
         }
     }
 
