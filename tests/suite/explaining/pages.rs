@@ -15,7 +15,7 @@ use lights_camera_models::{
     reference::Settings,
     registry::Registry,
     scene::{
-        Scene, has_extent,
+        Scene,
         load::{self, Defaults},
         save,
     },
@@ -264,6 +264,8 @@ fn an_explanation_makes_a_page_little_larger() {
 
 #[cfg(target_os = "linux")]
 mod seen {
+    use lights_camera_models::scene::has_extent;
+
     use super::*;
     use crate::helpers::browser::Browser;
 
