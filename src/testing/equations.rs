@@ -7,7 +7,7 @@ use crate::{
     explain::{Geometry, Line, Model, agrees, reading},
     optics::{Frame, Terms, colour::Encoding},
     parameter::Values,
-    reflection::ModelEntry,
+    reflection::{ModelEntry, Surface},
 };
 
 /// Digits of numbers that a line must reproduce; the terms themselves are calculated with 32 bits and must
@@ -28,6 +28,7 @@ pub fn followed(model: &ModelEntry) -> Outcome {
     let mut seed = 29;
     for i in 0..SURFACES {
         let values = if i == 0 { Values::default() } else { random_values(model, &mut seed) };
+        let explained = Explained::of(model, &values);
         for j in 0..DIRECTIONS {
             let frame = Frame::new(any_direction(&mut seed), any_direction(&mut seed));
             let to_room = |d: glam::Vec3| d.x * frame.t + d.y * frame.b + d.z * frame.n;
@@ -40,7 +41,7 @@ pub fn followed(model: &ModelEntry) -> Outcome {
             };
             l = l.normalize();
             let geometry = Geometry::of(to_room(l).normalize(), to_room(v).normalize(), frame);
-            at(model, &values, &geometry)?;
+            explained.at(&geometry)?;
         }
     }
     Ok(())
@@ -51,22 +52,37 @@ pub fn followed(model: &ModelEntry) -> Outcome {
 /// # Errors
 /// Returns the errors of [`followed`].
 pub fn at(model: &ModelEntry, values: &Values, geometry: &Geometry) -> Outcome {
-    let surface = model.instantiate(values, Encoding::Srgb);
-    let response = surface.response(geometry.l, geometry.v, &geometry.frame);
-    let explained = Model::of(model, values, Encoding::Srgb, Arc::clone(&surface));
-    let lines = explained.lines(Some(geometry), &response, DIGITS);
-    let wrong = |line: &Line, why: &str| {
-        let numbers = line.numbers.as_deref().unwrap_or("no numbers");
-        let all: Vec<_> =
-            lines.iter().map(|l| format!("{} | {:?} | {:?}", l.text, l.numbers, l.rgb())).collect();
-        format!("{}: {why}: {numbers}; value {:?}\n{}", line.text, line.value, all.join("\n"))
-    };
-    for line in &lines {
-        if let Err(why) = follows(line) {
-            return Err(wrong(line, &why));
-        }
+    Explained::of(model, values).at(geometry)
+}
+
+/// A surface and its explanation, which are the same for all directions: some models take long to be made.
+struct Explained {
+    surface: Arc<dyn Surface>,
+    model: Model,
+}
+
+impl Explained {
+    fn of(model: &ModelEntry, values: &Values) -> Self {
+        let surface = model.instantiate(values, Encoding::Srgb);
+        Self { model: Model::of(model, values, Encoding::Srgb, Arc::clone(&surface)), surface }
     }
-    every_term(model, &lines, &response)
+
+    fn at(&self, geometry: &Geometry) -> Outcome {
+        let response = self.surface.response(geometry.l, geometry.v, &geometry.frame);
+        let lines = self.model.lines(Some(geometry), &response, DIGITS);
+        let wrong = |line: &Line, why: &str| {
+            let numbers = line.numbers.as_deref().unwrap_or("no numbers");
+            let all: Vec<_> =
+                lines.iter().map(|l| format!("{} | {:?} | {:?}", l.text, l.numbers, l.rgb())).collect();
+            format!("{}: {why}: {numbers}; value {:?}\n{}", line.text, line.value, all.join("\n"))
+        };
+        for line in &lines {
+            if let Err(why) = follows(line) {
+                return Err(wrong(line, &why));
+            }
+        }
+        every_term(self.model.id, &lines, &response)
+    }
 }
 
 /// Checks that a line yields its own value.
@@ -90,16 +106,13 @@ pub fn follows(line: &Line) -> Result<(), String> {
 }
 
 /// Checks that every non-zero term has a line in the equation.
-fn every_term(model: &ModelEntry, lines: &[Line], response: &Terms) -> Outcome {
+fn every_term(id: &str, lines: &[Line], response: &Terms) -> Outcome {
     for (symbol, value) in
         [("I_d", response.diffuse), ("I_s", response.specular), ("I_t", response.transmitted)]
     {
         let said = lines.iter().any(|line| line.defines() == symbol && !line.text.is_empty());
         if value != glam::Vec3::ZERO && !said {
-            return Err(format!(
-                "{symbol} is {value}, and the equation of {} has no line for it",
-                model.declaration.id
-            ));
+            return Err(format!("{symbol} is {value}, and the equation of {id} has no line for it"));
         }
     }
     Ok(())

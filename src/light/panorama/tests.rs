@@ -298,18 +298,15 @@ fn both_formats_keep_their_pixels() {
 fn a_smaller_picture_has_the_light_of_the_larger_one() {
     // More light near the pole, where the solid angles of rows differ most.
     let steep = |row: usize| [1.0, 2.0, if row < 4 { 1000.0 * (4 - row) as f32 } else { 1.0 }];
-    let light = |width: usize| {
-        let numbers = numbers(width, |_, row| steep(row * 4096 / width));
-        let picture = Panorama::new(&numbers).expect("a picture");
-        let rows = picture.rows as f64;
-        let sum = |j: usize| {
-            let solid = TAU * ((PI * j as f64 / rows).cos() - (PI * (j + 1) as f64 / rows).cos());
-            picture.radiance(direction(0.3, (j as f64 + 0.5) / rows)).as_dvec3() * solid
-        };
-        (picture.columns, (0..picture.rows).map(sum).sum::<glam::DVec3>())
+    let numbers = numbers(4096, |_, row| steep(row));
+    let picture = Panorama::new(&numbers).expect("a picture");
+    let rows = picture.rows as f64;
+    let sum = |j: usize| {
+        let solid = TAU * ((PI * j as f64 / rows).cos() - (PI * (j + 1) as f64 / rows).cos());
+        picture.radiance(direction(0.3, (j as f64 + 0.5) / rows)).as_dvec3() * solid
     };
-    let (columns, found) = light(4096);
-    assert_eq!(columns, MAX_COLUMNS);
+    let found = (0..picture.rows).map(sum).sum::<glam::DVec3>();
+    assert_eq!(picture.columns, MAX_COLUMNS);
     let exact: glam::DVec3 = (0..2048)
         .map(|j| {
             let solid = TAU * ((PI * j as f64 / 2048.0).cos() - (PI * (j + 1) as f64 / 2048.0).cos());
@@ -319,8 +316,7 @@ fn a_smaller_picture_has_the_light_of_the_larger_one() {
     assert!((found / exact - 1.0).abs().max_element() < 1e-6, "{found} {exact}");
     // By hand: the four rows at the pole have solid angles in the ratio 1 : 3 : 5 : 7. The wrong twin, each
     // row counted once, gives 2500.
-    let numbers = numbers(4096, |_, row| steep(row));
-    let top = Panorama::new(&numbers).expect("a picture").radiance(Vec3::Y).z;
+    let top = picture.radiance(Vec3::Y).z;
     assert!((top - (4000.0 + 3.0 * 3000.0 + 5.0 * 2000.0 + 7.0 * 1000.0) / 16.0).abs() < 0.1, "{top}");
     // Widths that are not multiples.
     let wide = self::numbers(1502, |column, _| [if column == 740 { 1502.0 } else { 0.0 }, 1.0, 1.0]);

@@ -361,41 +361,67 @@ fn a_picture_with_so_many_samples_is_one_picture_whatever_the_threads() {
     assert!(all.chunks(2).all(|both| both == &all[..2]));
 }
 
-/// Runs the program on a terminal for some seconds, then interrupts it; returns its output.
+/// Runs the program on a terminal until it has said all of some words, or for some seconds, then interrupts it; returns its
+/// output.
 #[cfg(target_os = "linux")]
-fn on_terminal(folder: &Path, seconds: u32, arguments: &str) -> String {
-    // Whoever runs the tests may ignore some signals, and programs respect that.
+fn on_terminal(folder: &Path, seconds: u32, words: &[&str], arguments: &str) -> String {
+    use std::io::Read as _;
+
+    // Whoever runs the tests may ignore some signals, and programs respect that. `timeout` hands on those that it gets.
     let command = format!(
-        "timeout --foreground -s INT {seconds} env --default-signal=INT {} {arguments}",
+        "echo $$; exec timeout --foreground -s INT {seconds} env --default-signal=INT {} {arguments}",
         env!("CARGO_BIN_EXE_lcm")
     );
-    let mut script = std::process::Command::new("script");
-    script.args(["-qec", &command, "/dev/null"]).current_dir(folder).stdin(Stdio::null());
-    let output = script.output().expect("script is a part of every Linux");
-    String::from_utf8_lossy(&output.stdout).into_owned()
+    let mut script = std::process::Command::new("script")
+        .args(["-qec", &command, "/dev/null"])
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("script is a part of every Linux");
+    let mut output = script.stdout.take().expect("piped");
+    let (mut said, mut part, mut asked) = (Vec::new(), [0; 4096], words.is_empty());
+    loop {
+        let count = output.read(&mut part).expect("readable");
+        if count == 0 {
+            break;
+        }
+        said.extend_from_slice(&part[..count]);
+        let text = String::from_utf8_lossy(&said);
+        if !asked && words.iter().all(|word| text.contains(word)) {
+            asked = true;
+            let process = text.lines().next().unwrap_or_default().trim();
+            // It may have ended by itself.
+            std::process::Command::new("kill").args(["-INT", process]).status().expect("kill");
+        }
+    }
+    script.wait().expect("it ends");
+    String::from_utf8_lossy(&said).into_owned()
 }
 
 #[test]
 #[cfg(target_os = "linux")]
 fn long_work_has_a_bar_on_a_terminal_that_goes_on_by_samples() {
     let folder = folder();
+    let says = |seconds: u32, words: &[&str], arguments: &str| {
+        let said = on_terminal(folder.path(), seconds, words, arguments);
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+        said
+    };
+    let (samples, left) = (" of 1000000 samples, ", " left; Ctrl+C ends it");
     let long = "--renderer cpu --size 320x180 --light-samples 1000000";
-    let said = on_terminal(folder.path(), 6, &format!("render softbox.json -o p.png {long}"));
-    assert!(said.contains("drawing softbox.json, ") && said.contains(" of 1000000 samples, "), "{said}");
-    assert!(said.contains(" left; Ctrl+C ends it") && said.contains('░'), "{said}");
-    let said = on_terminal(folder.path(), 6, &format!("render two.json --layout wipe -o p.png {long}"));
-    assert!(said.contains("drawing two.json, view A, ") && said.contains(" left; Ctrl+C ends it"), "{said}");
-    let said = on_terminal(folder.path(), 6, &format!("render point.json softbox.json -o many {long}"));
-    assert!(said.contains("2 of 2, softbox.json, ") && said.contains(" of 1000000 samples, "), "{said}");
+    let bar = ["drawing softbox.json, ", samples, left, "░"];
+    says(6, &bar, &format!("render softbox.json -o p.png {long}"));
+    let view = ["drawing two.json, view A, ", left];
+    says(6, &view, &format!("render two.json --layout wipe -o p.png {long}"));
+    says(6, &["2 of 2, softbox.json, ", samples], &format!("render point.json softbox.json -o many {long}"));
     let noise = "--renderer cpu --size 320x180 --noise 0.01 --light-samples 1000000";
-    let said = on_terminal(folder.path(), 6, &format!("render softbox.json -o p.png {noise}"));
-    assert!(said.contains(" samples, noise ") && said.contains(" %, until 0.01 %"), "{said}");
+    let until = [" samples, noise ", " %, until 0.01 %"];
+    says(6, &until, &format!("render softbox.json -o p.png {noise}"));
     let gold = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/compare_gold.json");
-    let said = on_terminal(folder.path(), 3, &format!("match {gold} --on picture"));
-    assert!(said.contains("matching, ") && said.contains(" left; Ctrl+C ends it"), "{said}");
-    let said = on_terminal(folder.path(), 3, &format!("match {gold} --on picture --each"));
-    assert!(said.contains(" % matching, ") && said.contains(" left; Ctrl+C ends it"), "{said}");
-    let said = on_terminal(folder.path(), 6, &format!("render --quiet softbox.json -o p.png {long}"));
+    says(3, &["matching, ", left], &format!("match {gold} --on picture"));
+    says(3, &[" % matching, ", left], &format!("match {gold} --on picture --each"));
+    let said = says(6, &[], &format!("render --quiet softbox.json -o p.png {long}"));
     assert!(!said.contains("samples"), "{said}");
     let left = names(folder.path());
     assert_eq!(left, ["many", "point.json", "softbox.json", "two.json"], "nothing is left of what was ended");

@@ -3,4 +3,5 @@
 mod fits;
 pub(crate) mod matching;
 mod metrics;
+mod searches;
 mod views;

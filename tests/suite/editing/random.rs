@@ -419,10 +419,11 @@ impl Desk {
         let removed = self.anything();
         let now = self.state();
         self.check("an edit");
-        for (id, part_type, name) in before {
+        let unnamed = self.unnamed();
+        for (id, part_type, name) in &before {
             // Until it is named, or changes its type.
-            let now = self.unnamed().remove(&(id, part_type.as_str()));
-            assert!(now.as_ref().is_none_or(|now| *now == name), "{name} is {now:?}");
+            let now = unnamed.get(&(*id, part_type.as_str()));
+            assert!(now.is_none_or(|now| now == name), "{name} is {now:?}");
         }
         let steps = self.session.document.done();
         if now == self.states[done] && steps == done {

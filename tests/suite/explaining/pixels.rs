@@ -4,7 +4,7 @@ use std::fs;
 
 use glam::Vec3;
 use lights_camera_models::{
-    explain::{self, ExplainError, Explanation, Place, Spot},
+    explain::{self, ExplainError, Explainer, Explanation, Place, Spot},
     light::Incident,
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     reference::{self, Settings},
@@ -121,15 +121,18 @@ fn every_number_leads_to_the_code_of_the_picture() {
             scene.display.tone_mapping = tones[(random(&mut seed) * 8.0) as usize % 8];
             scene.display.exposure = 4.0 * random(&mut seed) - 2.0;
             scene.display.background = Background::ALL[(objects + backgrounds) / 12 % Background::ALL.len()];
-            let settings = Settings { terms, ..SMALL };
+            // Twelve pixels of each are compared, whatever its size.
+            let settings = Settings { width: SMALL.width / 2, height: SMALL.height / 2, terms, ..SMALL };
             let picture = reference::render(&scene, &registry, &settings);
             let codes = picture.to_rgb8(&scene.display);
             let pick = |side: u32, seed: &mut u64| ((random(seed) * side as f32) as u32).min(side - 1);
+            // As the window does: meshes are built once.
+            let mut explainer = Explainer::default();
             let mut previous: Option<Explanation> = None;
             for _ in 0..12 {
-                let pixel = [pick(SMALL.width, &mut seed), pick(SMALL.height, &mut seed)];
-                let explained = explain::pixel(&scene, &registry, &settings, pixel).expect("in the picture");
-                let i = (pixel[1] * SMALL.width + pixel[0]) as usize;
+                let pixel = [pick(settings.width, &mut seed), pick(settings.height, &mut seed)];
+                let explained = explainer.pixel(&scene, &registry, &settings, pixel).expect("in the picture");
+                let i = (pixel[1] * settings.width + pixel[0]) as usize;
                 let code = [codes[3 * i], codes[3 * i + 1], codes[3 * i + 2]];
                 let light = picture.pixels[i];
                 wrong(&explained, code, light.truncate())

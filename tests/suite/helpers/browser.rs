@@ -108,12 +108,17 @@ impl Browser {
 
     /// Opens a page of an export, and waits until it has drawn, or reported why it cannot.
     pub fn open(&self, file: &Path, fragment: &str) {
-        // A change of the fragment alone would not reload it.
-        self.ask("POST", "/url", &json!({ "url": "about:blank" }));
-        self.visit(&format!("{}#{fragment}", file.display()));
+        self.begin(file, fragment);
         self.settle();
         let failure = self.run("return document.getElementById('failure').textContent");
         assert_eq!(failure, "", "{}", file.display());
+    }
+
+    /// Opens a page of an export, and waits for no picture.
+    pub fn begin(&self, file: &Path, fragment: &str) {
+        // A change of the fragment alone would not reload it.
+        self.ask("POST", "/url", &json!({ "url": "about:blank" }));
+        self.visit(&format!("{}#{fragment}", file.display()));
     }
 
     /// Runs a script in each page that is opened from now on, before the scripts of the page.
@@ -137,13 +142,16 @@ impl Browser {
     /// Waits until a value satisfies a condition.
     pub fn wait(&self, script: &str, wanted: impl Fn(&Value) -> bool) -> Value {
         let begin = Instant::now();
+        // Each question takes time from a page that is drawing.
+        let mut pause = Duration::from_millis(10);
         loop {
             let value = self.run(script);
             if wanted(&value) {
                 return value;
             }
             assert!(begin.elapsed() < PATIENCE, "{script}: {value}");
-            thread::sleep(Duration::from_millis(20));
+            thread::sleep(pause);
+            pause = (pause * 2).min(Duration::from_millis(100));
         }
     }
 

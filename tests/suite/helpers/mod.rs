@@ -2,6 +2,7 @@
 
 pub(crate) mod browser;
 pub(crate) mod keyboard;
+pub(crate) mod pages;
 pub(crate) mod pictures;
 pub(crate) mod screen;
 pub(crate) mod skipped;

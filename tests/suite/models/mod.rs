@@ -9,6 +9,7 @@ mod interpret;
 mod laws;
 mod mistakes;
 mod openpbr_transmission;
+mod parameters;
 mod precision;
 mod solids;
 mod swallowed;

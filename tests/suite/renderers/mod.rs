@@ -16,3 +16,4 @@ mod reference;
 pub(crate) mod reload;
 mod rows;
 mod tangents;
+mod until;
