@@ -159,7 +159,7 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
         }
         return;
     }
-    let Some(numbers) = session.facts.comparison.as_ref() else { return };
+    let Some(numbers) = session.numbers() else { return };
     let mut left = room;
     let entries = numbers.entries().filter(|(name, ..)| wanted(name));
     let laid_out = entries.map(|(name, value, help)| {

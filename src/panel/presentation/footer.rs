@@ -267,7 +267,7 @@ fn numbers(ui: &Ui, session: &Session, size: f32, room: f32) -> String {
     let with = LETTERS.get(session.compared_with()).copied().unwrap_or("B");
     let mut line = format!("{with} compared with A:");
     let reason = session.incomparable().or_else(|| session.unconverged());
-    let Some(numbers) = session.facts.comparison.as_ref().filter(|_| reason.is_none()) else {
+    let Some(numbers) = session.numbers().filter(|_| reason.is_none()) else {
         let said = reason.unwrap_or_else(|| line + " …");
         return match session.shown_for_map() {
             Some(shown) => format!("{} {shown}", sentence(&said)),

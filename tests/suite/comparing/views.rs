@@ -525,6 +525,39 @@ fn a_channel_is_not_compared_with_a_picture() {
 }
 
 #[test]
+fn a_header_says_that_its_picture_is_behind_and_nothing_is_compared_meanwhile() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "openpbr")));
+    let numbers = vec![["RMSE", "0.000", "help"].map(str::to_owned)];
+    bench.session.facts.comparison = Some(Numbers { all: numbers, ..Numbers::default() });
+    let texts = |bench: &mut Bench| {
+        crate::window::layout::texts(bench).into_iter().map(|(text, _)| text).collect::<Vec<_>>()
+    };
+    for layout in [Layout::SideBySide, Layout::Wipe, Layout::Difference] {
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        bench.session.facts.compiling[1] = true;
+        bench.settle();
+        assert!(bench.says("View B: compiling… · OpenPBR"), "{layout:?}");
+        assert!(!bench.says("View A: compiling…") && !bench.says("RMSE"), "{layout:?}");
+        assert!(bench.says("Measuring the difference…"), "{layout:?}");
+        assert_eq!(texts(&mut bench).contains(&"Shown: A".to_owned()), layout.is_map(), "{layout:?}");
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let said = texts(&mut bench);
+        assert!(said.iter().any(|text| text == "compiling…"), "{layout:?}: {said:?}");
+        assert!(!said.iter().any(|text| text.contains("RMSE")), "{layout:?}: {said:?}");
+        bench.apply(Action::View(ViewChange::Presenting(false)));
+        bench.session.facts.compiling[1] = false;
+        bench.settle();
+        assert!(bench.says("RMSE 0.000") && !bench.says("compiling…"), "{layout:?}");
+    }
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::Single)));
+    bench.session.facts.compiling[1] = true;
+    bench.settle();
+    assert!(bench.says("View B: compiling… · OpenPBR"));
+}
+
+#[test]
 fn numbers_and_map_wait_for_pictures_that_have_not_converged() {
     let mut bench = bench();
     bench.key(Key::B, CTRL);
