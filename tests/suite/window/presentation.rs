@@ -584,6 +584,50 @@ fn equations_of_two_views_above_each_other_have_the_letters_of_the_views() {
     assert!(stacked > 0, "nothing is tested");
 }
 
+/// A presentation of a scene with several models, and of a view with one model, in a window of this size.
+fn with_one_equation(model: &str, size: (f32, f32)) -> Bench {
+    let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+    let mut other = scene.objects[0].clone();
+    other.reflection_model = Some("lambert".to_owned());
+    other.position.x += 2.5;
+    scene.objects.push(other);
+    let mut bench = Bench::new(Session::new(scene));
+    bench.size = size.into();
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, model)));
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    bench
+}
+
+#[test]
+fn an_equation_of_one_view_alone_has_its_letter_and_says_if_definitions_are_missing() {
+    let mut bench = with_one_equation("strauss", (880.0, 745.0));
+    let texts = bench.texts();
+    let count = |text: &str| texts.iter().filter(|t| *t == text).count();
+    assert_eq!([count("A:"), count("B:")], [1, 2], "{texts:?}");
+    let strauss = bench.registry.model("strauss").expect("built in").declaration.equation;
+    let shown = definitions_shown(&bench);
+    for (_, text) in definitions(strauss) {
+        assert!(shown.iter().any(|s| s == text), "{text} is not among {shown:?}");
+    }
+    let mut cut = 0;
+    for size in [(880.0, 745.0), (600.0, 745.0), (420.0, 745.0)] {
+        for model in ["strauss", "oren_nayar", "disney", "openpbr"] {
+            let mut bench = with_one_equation(model, size);
+            let equation = bench.registry.model(model).expect("built in").declaration.equation;
+            let shown = definitions_shown(&bench);
+            let all = definitions(equation);
+            let missing = all.iter().filter(|(_, text)| !shown.iter().any(|s| s == text)).count();
+            let texts = bench.texts();
+            assert!(texts.iter().filter(|text| *text == "B:").count() == 2, "{model}, {size:?}");
+            let says = texts.iter().any(|text| text.starts_with(&format!("… and {missing} more definition")));
+            assert_eq!(says, missing > 0, "{model}, {size:?}: {missing} of {} are missing", all.len());
+            cut += missing;
+        }
+    }
+    assert!(cut > 0, "nothing is tested");
+}
+
 #[test]
 fn no_definition_of_a_presentation_is_broken_within_brackets() {
     for (size, scale) in [((1280.0, 720.0), 100), ((1280.0, 720.0), 200), ((1920.0, 1080.0), 100)] {
