@@ -15,11 +15,12 @@ use crate::{
     text::sentence,
 };
 
-/// Maximum height of all equations, as a fraction of the screen.
-const MOST: f32 = 0.34;
+/// Maximum height of all equations, as a fraction of the screen: of two views, and of more, whose pictures are smaller.
+const MOST: [f32; 2] = [0.34, 0.2];
 /// Sizes of equations, of which the first is used at which all definitions have room.
 const SCALES: [f32; 3] = [1.0, 0.8, SMALLEST];
-/// Size of equations for which there is no room otherwise. Without room even then, they end early, and say so.
+/// Size of equations for which there is no room otherwise. Without room even then, those of two views end early, and
+/// say so; those of more views give way to the pictures.
 const SMALLEST: f32 = 0.64;
 /// Height of a line of text, as a multiple of its font size.
 const LINE: f32 = 1.3;
@@ -38,7 +39,7 @@ struct Set {
     side: usize,
     block: Block,
     at: Pos2,
-    /// True if the letter of the view stands before it.
+    /// True if the letters of its views stand before it.
     lettered: bool,
 }
 
@@ -75,7 +76,7 @@ impl Footer {
     pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
         let views = match session.document.comparison.layout {
             Layout::Single => vec![session.active()],
-            _ => vec![0, session.compared_with().min(session.document.variants.len())],
+            _ => session.views_shown(),
         };
         let seen = |view: &usize| (*view != session.active()).then(|| session.document.seen(*view, registry));
         let seen: Vec<_> = views.iter().map(|view| seen(view).flatten()).collect();
@@ -94,7 +95,7 @@ impl Footer {
     fn laid_out(ui: &mut Ui, whole: Rect, mut sides: Vec<Side>) -> Self {
         let (height, padding) = (whole.height(), padding(whole));
         let most = whole.width() - 2.0 * padding.x;
-        let several = sides.len() > 1;
+        let (several, many) = (sides.len() > 1, sides.len() > 2);
         let gap = 2.0 * padding.x;
         let column = (most + gap) / sides.len() as f32 - gap;
         let left: Vec<_> = (0..sides.len()).map(|i| padding.x + i as f32 * (column + gap)).collect();
@@ -103,16 +104,17 @@ impl Footer {
         fit(&mut sides, |side| !words(side).cut);
         let words = sides.iter().map(|side| words(side).size.y).fold(0.0, f32::max);
         let mut trial = ui.new_child(UiBuilder::new().id_salt("footer trial").max_rect(whole).invisible());
-        let indent = letter(ui, "A:", height).size().x + padding.x;
-        let (limit, line) = (MOST * height, LINE * CAPTION * height);
+        let letters = (0..sides.len()).map(|i| letter(ui, &letters(&sides, i), height).size().x);
+        let indent = letters.fold(0.0, f32::max) + padding.x;
+        let (limit, line) = (MOST[usize::from(many)] * height, LINE * CAPTION * height);
         let room = Room { column, most, left: &left, indent, space: padding.y, limit, line };
         let all = SCALES.into_iter().find_map(|scale| {
             let font = FontId::proportional(scale * BODY * height);
             trial.style_mut().text_styles.insert(TextStyle::Body, font);
             room.for_all(&trial, &sides, scale == SMALLEST).map(|all| (all, scale))
         });
-        let ((equations, high), scale) =
-            all.unwrap_or_else(|| (room.for_the_first(&trial, &sides), SMALLEST));
+        let cut = || if many { Default::default() } else { room.for_the_first(&trial, &sides) };
+        let ((equations, high), scale) = all.unwrap_or_else(|| (cut(), SMALLEST));
         let mut at = padding.y;
         if high > 0.0 {
             at += high + padding.y;
@@ -133,9 +135,9 @@ impl Footer {
         let place = whole.with_min_y(whole.bottom() - self.height);
         ui.painter().rect_filled(place, 0.0, palette.panel);
         for Set { side, block, at, lettered } in &self.equations {
-            let Side { equation, model, parts } = &self.sides[*side];
-            if let Some(part) = parts.first().filter(|_| *lettered) {
-                let galley = letter(ui, &part.text, height);
+            let Side { equation, model, .. } = &self.sides[*side];
+            if *lettered {
+                let galley = letter(ui, &letters(&self.sides, *side), height);
                 let first = galley.rows.first().and_then(|row| row.row.glyphs.first());
                 let top = at.y + block.baseline - first.map_or(0.0, |glyph| glyph.pos.y);
                 ui.painter().galley(place.min + vec2(padding.x, top), galley, palette.text);
@@ -169,7 +171,14 @@ impl Footer {
     }
 }
 
-/// The letter of a view before its equation, on a screen of this height.
+/// The letters before the equation of a view: those of all views with its model.
+fn letters(sides: &[Side], side: usize) -> String {
+    let same = sides.iter().filter(|other| other.model == sides[side].model);
+    let letters = same.filter_map(|other| Some(other.parts.first()?.text.trim_end_matches(':')));
+    letters.collect::<Vec<_>>().join(", ") + ":"
+}
+
+/// Letters before an equation, on a screen of this height.
 fn letter(ui: &Ui, text: &str, height: f32) -> Arc<Galley> {
     let font = FontId::new(CAPTION * height, theme::semibold());
     theme::elided(ui, text, font, Palette::here(ui).text, f32::INFINITY)
@@ -194,7 +203,7 @@ struct Room<'a> {
     most: f32,
     /// Left edges of all sides.
     left: &'a [f32],
-    /// Width of the letter before one of several equations above each other.
+    /// Width of the letters before one of several equations above each other.
     indent: f32,
     /// Space around equations.
     space: f32,
@@ -218,7 +227,9 @@ impl Room<'_> {
         let wide: Vec<_> = blocks(self.most - indent).collect();
         let fits = narrow.iter().all(|(_, b)| b.size.x <= self.column + 1.0);
         let above = wide.iter().map(|(_, b)| b.size.y + self.space).sum::<f32>() - self.space;
-        if wanted.len() > 1 && fits {
+        // Otherwise an equation would stand in the column of one view alone.
+        let apart = sides.iter().filter(|side| !side.equation.is_empty()).count() == wanted.len();
+        if wanted.len() > 1 && apart && fits {
             let beside = self.beside(sides, narrow);
             if beside.1 <= above.min(self.limit) {
                 return Some(beside);
@@ -280,11 +291,10 @@ fn shown(block: &Block) -> usize {
     block.columns.last().map_or(0, |(range, ..)| range.end)
 }
 
-/// The sides whose equations are shown: one that all share appears once.
+/// The sides whose equations are shown: the first one with each model.
 fn wanted(sides: &[Side]) -> Vec<usize> {
-    let mut wanted: Vec<usize> = (0..sides.len()).filter(|i| !sides[*i].equation.is_empty()).collect();
-    wanted.truncate(if shared(sides) { 1 } else { sides.len() });
-    wanted
+    let is_first = |i: usize| sides[..i].iter().all(|other| other.model != sides[i].model);
+    (0..sides.len()).filter(|i| !sides[*i].equation.is_empty() && is_first(*i)).collect()
 }
 
 /// An equation in as many columns as suit it, preferably not higher than `limit`.

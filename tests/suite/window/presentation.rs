@@ -530,12 +530,14 @@ fn captions(bench: &mut Bench) -> [Vec<(String, egui::Rect)>; 2] {
     let last = |text: &str| said.iter().rfind(|(t, _)| t == text).map(|(_, r)| *r);
     let (a, b) = (last("A:").expect("A"), last("B:").expect("B"));
     let numbers = said.iter().find(|(t, _)| t.starts_with("B compared with A")).expect("numbers").1;
+    // Further views have captions, too.
+    let end = last("C:").map_or(f32::INFINITY, |c| c.left());
     let within = |from: f32, to: f32| {
         let here = said.iter().filter(|(_, r)| r.top() > a.top() - 10.0 && r.bottom() < numbers.top() + 5.0);
         // Letters have room at their left.
         here.filter(|(_, r)| r.left() > from - 8.0 && r.left() < to - 8.0).cloned().collect::<Vec<_>>()
     };
-    [within(a.left(), b.left()), within(b.left(), f32::INFINITY)]
+    [within(a.left(), b.left()), within(b.left(), end)]
 }
 
 #[test]
@@ -570,6 +572,7 @@ fn equations_of_two_views_above_each_other_have_the_letters_of_the_views() {
     let mut stacked = 0;
     for (file, scale) in [("compare_gold.json", 200), ("compare_diffuse_models.json", 200)] {
         let mut bench = shipped(file, scale);
+        bench.apply(Action::Compare(CompareCommand::Remove(2)));
         bench.apply(Action::View(ViewChange::Presenting(true)));
         let count = |bench: &mut Bench, text: &str| bench.texts().iter().filter(|t| *t == text).count();
         let letters = [count(&mut bench, "A:"), count(&mut bench, "B:")];
@@ -626,6 +629,48 @@ fn an_equation_of_one_view_alone_has_its_letter_and_says_if_definitions_are_miss
         }
     }
     assert!(cut > 0, "nothing is tested");
+}
+
+#[test]
+fn an_equation_that_some_of_four_views_share_stands_once_beside_their_letters() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    for model in ["lambert", "phong", "lambert"] {
+        bench.apply(Action::Compare(CompareCommand::Add));
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, model)));
+    }
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    let texts = bench.texts();
+    for letters in ["A, C:", "B, D:"] {
+        assert_eq!(texts.iter().filter(|text| *text == letters).count(), 1, "{letters} of {texts:?}");
+    }
+    let speculars = definitions_shown(&bench).iter().filter(|text| text.starts_with("I_s = ")).count();
+    assert_eq!(speculars, 1, "that of Phong");
+}
+
+#[test]
+fn three_and_four_views_of_a_presentation_are_large_and_each_has_its_caption() {
+    for (views, width) in [(3, 1280.0), (3, 880.0), (4, 1280.0), (4, 880.0)] {
+        let mut bench = bench((width, 720.0), "blinn_phong");
+        for model in ["ward", "strauss", "openpbr"].into_iter().take(views - 1) {
+            bench.apply(Action::Compare(CompareCommand::Add));
+            bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, model)));
+        }
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let what = format!("{views} views, {width} points");
+        let cells = bench.area.cells.clone();
+        assert_eq!(cells.len(), views, "{what}");
+        for cell in &cells {
+            assert!(cell.rect.size().min_elem() > 0.25 * 720.0, "{what}: {:?}", cell.rect);
+            assert!(bench.area.rect.contains_rect(cell.rect), "{what}: {:?}", cell.rect);
+        }
+        let texts = bench.texts();
+        for letter in ["A:", "B:", "C:", "D:"].iter().take(views) {
+            assert!(texts.iter().any(|text| text == letter), "{what}: {letter} of {texts:?}");
+        }
+        let shown = definitions_shown(&bench);
+        let totals = shown.iter().filter(|text| text.starts_with("I = ")).count();
+        assert!(totals == 0 || totals == views, "{what}: the equations of all or of none: {shown:?}");
+    }
 }
 
 #[test]
