@@ -495,6 +495,35 @@ fn badges_legends_banner_and_hint_of_a_presentation_hide_no_object() {
 }
 
 #[test]
+fn plates_of_a_presentation_are_in_their_places_in_the_first_frame_that_shows_them() {
+    let places = |bench: &Bench| {
+        let cells: Vec<_> = bench.area.cells.iter().map(|cell| cell.rect).collect();
+        (cells, bench.area.written.clone())
+    };
+    let mut moved = 0;
+    for file in ["compare_gouraud_phong.json", "compare_gold.json", "compare_flat_derivative.json"] {
+        for scale in [100, 150, 200] {
+            for channel in [None, Some(DebugChannel::Normals)] {
+                let mut bench = shipped(file, scale);
+                bench.apply(Action::View(ViewChange::Presenting(true)));
+                let before = places(&bench);
+                if channel.is_none() {
+                    let all = Clipping::GRID[0] * Clipping::GRID[1];
+                    bench.session.facts.clipping[0] = Clipping::new(vec![50; all]);
+                }
+                drop(bench.session.apply(Action::View(ViewChange::Channel(channel)), &bench.registry));
+                bench.frame(Vec::new());
+                let first = places(&bench);
+                bench.settle();
+                assert_eq!(first, places(&bench), "{file}, {scale} %, {channel:?}");
+                moved += usize::from(first.0 != before.0);
+            }
+        }
+    }
+    assert!(moved > 0, "nothing is tested");
+}
+
+#[test]
 fn the_picture_of_a_presentation_stays_as_it_is_when_nothing_clips_any_more() {
     let mut bench = shipped("compare_gouraud_phong.json", 200);
     bench.apply(Action::View(ViewChange::Presenting(true)));
