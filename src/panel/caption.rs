@@ -33,9 +33,12 @@ pub fn models_shown(session: &Session) -> BTreeSet<&str> {
 #[must_use]
 pub fn parts(session: &Session, registry: &Registry) -> Vec<Part> {
     let parts = parts_of(session.scene(), session.terms(), registry);
-    // The picture is out of date until then.
-    let compiling = session.facts.compiling.then(|| Part::new(0, "compiling…"));
-    compiling.into_iter().chain(parts).collect()
+    compiling(session, session.active()).into_iter().chain(parts).collect()
+}
+
+/// The words before the caption of a view whose picture is behind.
+pub(super) fn compiling(session: &Session, view: usize) -> Option<Part> {
+    session.compiles(view).then(|| Part::new(0, "compiling…"))
 }
 
 /// The reflection model of a scene.

@@ -19,7 +19,7 @@ use place::{Arranging, Frame, HEADER};
 pub use place::Arrangement;
 
 use super::{
-    caption::Lines,
+    caption::{Lines, compiling},
     keys, knob, matching,
     prelude::*,
     state::{Cell, MatchCommand},
@@ -236,13 +236,15 @@ fn up_to(parts: &[Part], rank: u8) -> Vec<Part> {
     within.map(|part| Part { rank: 0, ..part.clone() }).collect()
 }
 
-/// A view in words: its name, unless the description already contains it, and its description.
+/// A view in words: that its picture is behind, its name, unless the description already contains it, and its
+/// description.
 fn in_parts(session: &Session, view: usize, registry: &Registry) -> Vec<Part> {
     let shown = view_parts(&session.document, (view, session.terms_of(view)), registry);
     let said = line(&shown).to_lowercase();
     let name = view.checked_sub(1).and_then(|i| session.document.variants.get(i)?.name.as_deref());
     let name = name.filter(|name| !said.contains(&name.to_lowercase()));
-    name.map(|name| Part::new(0, name)).into_iter().chain(shown).collect()
+    let name = name.map(|name| Part::new(0, name));
+    compiling(session, view).into_iter().chain(name).chain(shown).collect()
 }
 
 /// The menu of actions for a view.

@@ -145,8 +145,13 @@ impl<'a> Overlaid<'_, 'a> {
         }
     }
 
-    /// Paints the legend of a view's debug channel, if there is one.
+    /// Paints the legend of a view's debug channel, if there is one. A difference has no lines and dots to explain.
     fn channel(&mut self, ui: &mut Ui, placer: &mut Placer, view: usize) {
+        let session = self.context.session();
+        let in_map = !session.document.variants.is_empty() && session.document.comparison.layout.is_map();
+        if in_map && session.channel_of(view).is_some_and(DebugChannel::has_wires) {
+            return;
+        }
         if let Some(place) = channels::legend(ui, placer, view, self.context) {
             self.places.push(place);
             self.written.push(place);

@@ -30,7 +30,7 @@ mod register;
 pub mod schedule;
 mod seen;
 pub mod show;
-mod shown;
+pub(crate) mod shown;
 mod solids;
 pub mod stage;
 pub mod straight;

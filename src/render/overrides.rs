@@ -46,6 +46,13 @@ impl Overrides {
         })
     }
 
+    /// True if objects need the same shaders with both.
+    #[must_use]
+    pub fn has_shaders_of(&self, other: &Self) -> bool {
+        (&self.reflection_model, &self.shading_model, &self.parameters)
+            == (&other.reflection_model, &other.shading_model, &other.parameters)
+    }
+
     /// The scene as the view shows it, except for the terms.
     #[must_use]
     pub fn applied(&self, scene: &Scene, registry: &Registry) -> Scene {

@@ -64,7 +64,8 @@ impl Question {
     /// The inputs of a comparison of views as they are on screen; `None` while one of them changes or converges.
     fn of(views: &ShownViews, [a, b]: [ShownView<'_>; 2], session: &Session) -> Option<Self> {
         // Objects that wait for a shader still have their previous appearance.
-        let rest = a.drawing.rests() && b.drawing.rests() && !session.facts.compiling;
+        let compiles = [0, session.compared_with()].into_iter().any(|view| session.compiles(view));
+        let rest = a.drawing.rests() && b.drawing.rests() && !compiles;
         let textures = [a.texture()?.clone(), b.texture()?.clone()];
         let letters = |area| letters_of_map(area, a.view.size.y as f32, session.view.presenting);
         rest.then(|| Self {

@@ -10,6 +10,7 @@ use bevy::{prelude::*, window::PrimaryWindow};
 use super::{
     order::Loading,
     redraw::{SETTLING_FRAMES, Settling},
+    views::ShownViews,
     watching::{FileWatch, FilesChanged, complain, complain_in_colour, waker},
 };
 use crate::files::Shown as _;
@@ -22,8 +23,10 @@ use crate::{
     panel::state::{Session, Severity},
     registry::Registry,
     render::{
-        live::LiveShaders,
+        live::{LiveShaders, NeededShaders},
+        overrides::Overrides,
         schedule::{LabFrame, LabSystems},
+        stage::ViewCopy,
         swap::AwaitsShader,
         trial::{
             Bench,
@@ -41,13 +44,24 @@ pub struct ShaderFilesPlugin {
     pub trial_program: Option<PathBuf>,
 }
 
-/// Reports to the panels if the picture lags behind the scene because a shader is not ready.
+/// Reports to the panels which pictures lag behind the scene because a shader is not ready.
 fn feed_compiling(
-    waiting: Query<(), With<AwaitsShader>>,
+    waiting: Query<Option<&ViewCopy>, With<AwaitsShader>>,
+    views: ShownViews,
+    needed: NeededShaders,
     mut session: ResMut<Session>,
     settling: Option<ResMut<Settling>>,
 ) {
-    let compiling = !waiting.is_empty();
+    let shown = session.views_shown();
+    let is_behind = |view: usize| {
+        let wanted = Overrides::of_view(needed.scene(), view);
+        match views.find(view) {
+            Some(now) if now.has_shaders_of(wanted.as_ref()) => waiting.iter().any(|copy| now.shows(copy)),
+            // Its camera gets the overrides later in this frame, and the objects their shaders in the next one.
+            _ => needed.lacks_one(wanted.as_ref()),
+        }
+    };
+    let compiling = std::array::from_fn(|view| shown.contains(&view) && is_behind(view));
     let known = &mut session.bypass_change_detection().facts.compiling;
     if std::mem::replace(known, compiling) != compiling
         && let Some(mut settling) = settling
@@ -175,4 +189,51 @@ fn tell(live: Res<LiveShaders>, mut session: ResMut<Session>, mut troubled: Loca
         }
     }
     session.shaders = status.clone();
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::{camera::RenderTarget, ecs::system::RunSystemOnce as _};
+
+    use super::*;
+    use crate::{
+        render::{entities::CurrentScene, shown::Shown, view::View},
+        scene::{Comparison, Scene, Variant, comparison::Layout},
+        window::{WindowView, views::OtherView},
+    };
+
+    #[test]
+    fn a_view_is_behind_until_its_camera_has_the_overrides_and_its_objects_have_their_shaders() {
+        let scene = |model: &str| Scene {
+            variants: vec![Variant { reflection_model: Some(model.to_owned()), ..Variant::default() }],
+            comparison: Comparison { layout: Layout::SideBySide, ..Comparison::default() },
+            ..Scene::default()
+        };
+        let mut live = LiveShaders::default();
+        live.announce();
+        let mut world = World::new();
+        world.insert_resource(Registry::builtin());
+        world.insert_resource(CurrentScene(scene("openpbr")));
+        world.insert_resource(Session::new(scene("openpbr")));
+        world.insert_resource(live);
+        world.init_resource::<Shown>();
+        let behind = |world: &mut World| {
+            world.run_system_once(feed_compiling).expect("it runs");
+            world.resource::<Session>().facts.compiling
+        };
+        let view = || (View::for_display(UVec2::ONE), RenderTarget::None { size: UVec2::ONE });
+        world.spawn((WindowView, view()));
+        assert_eq!(behind(&mut world), [false, true, false, false], "B has no camera yet");
+        let overrides = Overrides::of_view(&scene("openpbr"), 1).expect("it is a variant");
+        let b = world.spawn((OtherView(1), view(), overrides)).id();
+        assert_eq!(behind(&mut world), [false; 4]);
+        let copy = world.spawn((AwaitsShader, ViewCopy { view: b })).id();
+        assert_eq!(behind(&mut world), [false, true, false, false], "an object waits in B");
+        world.despawn(copy);
+        let object = world.spawn(AwaitsShader).id();
+        assert_eq!(behind(&mut world), [true, false, false, false], "an object waits in A");
+        world.despawn(object);
+        world.insert_resource(CurrentScene(scene("glass")));
+        assert_eq!(behind(&mut world), [false, true, false, false], "the camera has the model of before");
+    }
 }

@@ -23,6 +23,7 @@ use crate::{
         noise::Noise,
         overrides::Overrides,
         show::{ShownPicture, Shows},
+        stage::ViewCopy,
         view::{Drawing, View, background_of, texture_of},
     },
     scene::{Scene, variant::MAX_VARIANTS},
@@ -124,11 +125,23 @@ pub(super) struct ShownView<'a> {
     pub(super) view: &'a View,
     pub(super) drawing: &'a Drawing,
     target: &'a RenderTarget,
+    overrides: Option<&'a Overrides>,
 }
 
 impl<'a> ShownView<'a> {
     pub(super) fn texture(&self) -> Option<&'a Handle<Image>> {
         texture_of(self.target)
+    }
+
+    /// True if it shows objects with the models of these overrides.
+    pub(super) fn has_shaders_of(&self, wanted: Option<&Overrides>) -> bool {
+        let none = Overrides::default();
+        self.overrides.unwrap_or(&none).has_shaders_of(wanted.unwrap_or(&none))
+    }
+
+    /// True if it shows this drawable: an object, or its copy for a view.
+    pub(super) fn shows(&self, copy: Option<&ViewCopy>) -> bool {
+        copy.map(|copy| copy.view) == self.overrides.map(|_| self.entity)
     }
 }
 
@@ -139,7 +152,14 @@ pub(super) struct ShownViews<'w, 's> {
     views: Query<
         'w,
         's,
-        (Entity, &'static View, &'static Drawing, &'static RenderTarget, Option<&'static OtherView>),
+        (
+            Entity,
+            &'static View,
+            &'static Drawing,
+            &'static RenderTarget,
+            Option<&'static Overrides>,
+            Option<&'static OtherView>,
+        ),
         Or<(With<WindowView>, With<OtherView>)>,
     >,
 }
@@ -159,8 +179,9 @@ impl ShownViews<'_, '_> {
     pub(super) fn find(&self, number: usize) -> Option<ShownView<'_>> {
         let own = self.area().map_or(0, first);
         let is = |other: Option<&OtherView>| other.map_or(own, |other| other.0) == number;
-        let (entity, view, drawing, target, _) = self.views.iter().find(|(.., other)| is(*other))?;
-        Some(ShownView { entity, view, drawing, target })
+        let (entity, view, drawing, target, overrides, _) =
+            self.views.iter().find(|(.., other)| is(*other))?;
+        Some(ShownView { entity, view, drawing, target, overrides })
     }
 }
 

@@ -143,9 +143,9 @@ const SPACE: f32 = 14.0;
 /// Shows the requested statistics of the comparison, leaving out those that do not fit.
 fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> bool) {
     let palette = Palette::here(ui);
-    // Once, in place of the main statistics.
+    // Once, in place of the main statistics, unless it stands in place of the map.
     if let Some(reason) = session.no_difference() {
-        if wanted("RMSE") {
+        if wanted("RMSE") && session.shown_for_map().is_none() {
             let later = "The difference is calculated once both pictures rest, with all samples of light with extent.";
             let help = if session.incomparable().is_some() { &reason } else { later };
             // In small letters, the row has room for two lines.
@@ -159,7 +159,7 @@ fn numbers(ui: &mut Ui, session: &Session, room: f32, wanted: impl Fn(&str) -> b
         }
         return;
     }
-    let Some(numbers) = session.facts.comparison.as_ref() else { return };
+    let Some(numbers) = session.numbers() else { return };
     let mut left = room;
     let entries = numbers.entries().filter(|(name, ..)| wanted(name));
     let laid_out = entries.map(|(name, value, help)| {

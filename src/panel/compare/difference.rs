@@ -79,7 +79,7 @@ fn amplification(ui: &mut Ui, session: &Session, now: &mut Comparison) {
     let label = if ui.available_width() < AMPLIFICATION { "×" } else { "amplify ×" };
     ui.label(theme::small(ui, label)).on_hover_text(&help);
     // Equal views have no largest difference.
-    let largest = session.facts.comparison.as_ref().map(|numbers| numbers.largest.unwrap_or(0.0));
+    let largest = session.numbers().map(|numbers| numbers.largest.unwrap_or(0.0));
     let used = now.amplification.or_else(|| Some(fitting_amplification(now.values, largest?)));
     let mut factor = used.unwrap_or(min as f32);
     let mut field = egui::DragValue::new(&mut factor).range(min..=max).speed(0.2).max_decimals(0);

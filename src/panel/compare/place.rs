@@ -95,7 +95,7 @@ impl Frame<'_> {
 }
 
 /// A rectangle's left and right half.
-pub(super) fn halves(rect: Rect) -> [Rect; 2] {
+fn halves(rect: Rect) -> [Rect; 2] {
     let middle = rect.center().x;
     [rect.with_max_x(middle - 0.5 * GAP), rect.with_min_x(middle + 0.5 * GAP)]
 }

@@ -1,18 +1,16 @@
 //! All views beside each other.
 
-use super::place::{Arranging, GAP, halves};
+use super::place::{Arranging, Frame, GAP};
 use crate::panel::{prelude::*, state::Cell};
 
 pub(super) static ARRANGING: Arranging = Arranging {
     arrange: |all, frame| {
-        let picture = frame.picture;
-        let lines = if frame.views.len() > 2 { 2 } else { 1 };
-        let height = (picture.height() - (lines - 1) as f32 * GAP) / lines as f32;
+        let columns = columns(frame);
+        let size = place(frame, columns);
         let shown = frame.views.iter().copied().map(Some).chain([None]);
-        for (i, view) in shown.enumerate().take(2 * lines) {
-            let top = picture.top() + (i / 2) as f32 * (height + GAP);
-            let line = Rect::from_min_size(pos2(picture.left(), top), vec2(picture.width(), height));
-            let place = halves(line)[i % 2];
+        for (i, view) in shown.enumerate().take(columns * lines(frame, columns)) {
+            let at = vec2((i % columns) as f32, (i / columns) as f32) * (size + Vec2::splat(GAP));
+            let place = Rect::from_min_size(frame.picture.min + at, size);
             let rect = frame.below_header(place);
             match view {
                 Some(view) => {
@@ -25,3 +23,21 @@ pub(super) static ARRANGING: Arranging = Arranging {
     },
     ..Arranging::PLAIN
 };
+
+/// The number of lines of views in so many columns.
+fn lines(frame: &Frame, columns: usize) -> usize {
+    frame.views.len().div_ceil(columns)
+}
+
+/// Size of the place of each view, with its header, in so many columns.
+fn place(frame: &Frame, columns: usize) -> Vec2 {
+    let counts = vec2(columns as f32, lines(frame, columns) as f32);
+    (frame.picture.size() + Vec2::splat(GAP)) / counts - Vec2::splat(GAP)
+}
+
+/// The number of columns: two, or in a presentation all views in one line if their pictures are larger there.
+fn columns(frame: &Frame) -> usize {
+    let all = frame.views.len().max(2);
+    let least = |columns: usize| (place(frame, columns) - vec2(0.0, frame.high)).min_elem();
+    if frame.session.view.presenting && least(all) > least(2) { all } else { 2 }
+}

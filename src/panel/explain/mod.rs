@@ -84,14 +84,15 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         text = text.size(SENTENCE * theme::scale_here(ui));
     }
     ui.add(Label::new(text).wrap().selectable(true));
-    for (severity, text) in remarks(&explained, session, registry) {
+    let other = probe::other(ui.ctx());
+    for (severity, text) in remarks(&explained, other.as_deref(), session, registry) {
         icon::remark(ui, [16.0, 18.0], severity, Label::new(text).wrap().selectable(true));
     }
     if level == Level::Sentence {
         return;
     }
     ui.add_space(2.0);
-    match probe::other(ui.ctx()) {
+    match other {
         Some(other) => {
             let mut sides = [&*explained, &*other];
             sides.sort_by_key(|side| side.view);
@@ -230,13 +231,18 @@ fn levels(ui: &mut Ui) {
     }
 }
 
-/// Remarks shown before the numbers.
-fn remarks(explained: &Explained, session: &Session, registry: &Registry) -> Vec<(Severity, String)> {
+/// Remarks shown before the numbers, which may be those of two views.
+fn remarks(
+    explained: &Explained,
+    other: Option<&Explained>,
+    session: &Session,
+    registry: &Registry,
+) -> Vec<(Severity, String)> {
     let explanation = &explained.explanation;
     let unseen = unseen(explained, session, registry);
     let mut all: Vec<_> = unseen.into_iter().map(|text| (Severity::Info, text)).collect();
     let mut say = |severity, text: &str| all.push((severity, text.to_owned()));
-    if session.facts.compiling {
+    if [Some(explained), other].into_iter().flatten().any(|side| session.compiles(side.view)) {
         let text = "Compiling: until the shader is ready, the picture shows what was there before. The numbers are those of \
                     the model that is chosen.";
         say(Severity::Info, text);

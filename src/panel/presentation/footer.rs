@@ -1,5 +1,5 @@
-//! The footer of a presentation of several views: the equation and the caption of each compared view, and below them
-//! the statistics of their difference.
+//! The footer of a presentation of several views: the equation and the caption of each view, and below them the
+//! statistics of the difference.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -15,10 +15,15 @@ use crate::{
     text::sentence,
 };
 
-/// Maximum height of all equations, as a fraction of the screen; larger ones become smaller, and end early.
-const MOST: f32 = 0.34;
-/// Size of equations for which there is no room otherwise.
-const SMALLER: f32 = 0.8;
+/// Maximum height of all equations, as a fraction of the screen: of two views, and of more, whose pictures are smaller.
+const MOST: [f32; 2] = [0.34, 0.2];
+/// Sizes of equations, of which the first is used at which all definitions have room.
+const SCALES: [f32; 3] = [1.0, 0.8, SMALLEST];
+/// Size of equations for which there is no room otherwise. Without room even then, those of two views end early, and
+/// say so; those of more views give way to the pictures.
+const SMALLEST: f32 = 0.64;
+/// Height of a line of text, as a multiple of its font size.
+const LINE: f32 = 1.3;
 
 /// The texts about a view.
 #[derive(Clone, Debug)]
@@ -34,7 +39,7 @@ struct Set {
     side: usize,
     block: Block,
     at: Pos2,
-    /// True if the letter of the view stands before it.
+    /// True if the letters of its views stand before it.
     lettered: bool,
 }
 
@@ -71,7 +76,7 @@ impl Footer {
     pub fn of(ui: &mut Ui, whole: Rect, session: &Session, registry: &Registry) -> Self {
         let views = match session.document.comparison.layout {
             Layout::Single => vec![session.active()],
-            _ => vec![0, session.compared_with().min(session.document.variants.len())],
+            _ => session.views_shown(),
         };
         let seen = |view: &usize| (*view != session.active()).then(|| session.document.seen(*view, registry));
         let seen: Vec<_> = views.iter().map(|view| seen(view).flatten()).collect();
@@ -90,35 +95,37 @@ impl Footer {
     fn laid_out(ui: &mut Ui, whole: Rect, mut sides: Vec<Side>) -> Self {
         let (height, padding) = (whole.height(), padding(whole));
         let most = whole.width() - 2.0 * padding.x;
-        let several = sides.len() > 1;
+        let (several, many) = (sides.len() > 1, sides.len() > 2);
         let gap = 2.0 * padding.x;
-        let half = if several { 0.5 * (most - gap) } else { most };
-        let left = [padding.x, padding.x + half + gap];
+        let column = (most + gap) / sides.len() as f32 - gap;
+        let left: Vec<_> = (0..sides.len()).map(|i| padding.x + i as f32 * (column + gap)).collect();
         let words =
-            |side: &Side| Lines::of(ui, side.parts.clone(), CAPTION * height, Palette::here(ui).text, half);
+            |side: &Side| Lines::of(ui, side.parts.clone(), CAPTION * height, Palette::here(ui).text, column);
         fit(&mut sides, |side| !words(side).cut);
         let words = sides.iter().map(|side| words(side).size.y).fold(0.0, f32::max);
         let mut trial = ui.new_child(UiBuilder::new().id_salt("footer trial").max_rect(whole).invisible());
-        let indent = letter(ui, "A:", height).size().x + padding.x;
-        let room = Room { half, most, left, indent, space: padding.y, limit: MOST * height };
-        let mut in_size = |scale: f32| {
+        let letters = (0..sides.len()).map(|i| letter(ui, &letters(&sides, i), height).size().x);
+        let indent = letters.fold(0.0, f32::max) + padding.x;
+        let (limit, line) = (MOST[usize::from(many)] * height, LINE * CAPTION * height);
+        let room = Room { column, most, left: &left, indent, space: padding.y, limit, line };
+        let all = SCALES.into_iter().find_map(|scale| {
             let font = FontId::proportional(scale * BODY * height);
             trial.style_mut().text_styles.insert(TextStyle::Body, font);
-            room.for_all(&trial, &sides).map(|all| (all, scale))
-        };
-        let all = in_size(1.0).or_else(|| in_size(SMALLER));
-        let ((equations, high), scale) = all.unwrap_or_else(|| (room.for_the_first(&trial, &sides), SMALLER));
+            room.for_all(&trial, &sides, scale == SMALLEST).map(|all| (all, scale))
+        });
+        let cut = || if many { Default::default() } else { room.for_the_first(&trial, &sides) };
+        let ((equations, high), scale) = all.unwrap_or_else(|| (cut(), SMALLEST));
         let mut at = padding.y;
         if high > 0.0 {
             at += high + padding.y;
         }
-        let captions = (0..sides.len()).map(|i| pos2(left[i], at)).collect();
+        let captions = left.iter().map(|left| pos2(*left, at)).collect();
         at += words + padding.y;
         let numbers = several.then_some(at);
         if several {
-            at += 1.3 * CAPTION * height + padding.y;
+            at += line + padding.y;
         }
-        Self { sides, equations, scale, captions: (captions, half), numbers, height: at }
+        Self { sides, equations, scale, captions: (captions, column), numbers, height: at }
     }
 
     /// Paints the footer at the lower end of the screen.
@@ -128,9 +135,9 @@ impl Footer {
         let place = whole.with_min_y(whole.bottom() - self.height);
         ui.painter().rect_filled(place, 0.0, palette.panel);
         for Set { side, block, at, lettered } in &self.equations {
-            let Side { equation, model, parts } = &self.sides[*side];
-            if let Some(part) = parts.first().filter(|_| *lettered) {
-                let galley = letter(ui, &part.text, height);
+            let Side { equation, model, .. } = &self.sides[*side];
+            if *lettered {
+                let galley = letter(ui, &letters(&self.sides, *side), height);
                 let first = galley.rows.first().and_then(|row| row.row.glyphs.first());
                 let top = at.y + block.baseline - first.map_or(0.0, |glyph| glyph.pos.y);
                 ui.painter().galley(place.min + vec2(padding.x, top), galley, palette.text);
@@ -139,6 +146,15 @@ impl Footer {
             ui.push_id(("equation", side), |ui| {
                 columns(ui, block, equation, model, place.min + at.to_vec2(), self.scale * height);
             });
+            let more = equation.len() - shown(block);
+            if more > 0 {
+                let text = format!("… and {}", plural(more, "more definition"));
+                let font = FontId::proportional(CAPTION * height);
+                let alone = self.equations.len() == 1;
+                let room = if alone { whole.width() - padding.x - at.x } else { self.captions.1 };
+                let galley = theme::elided(ui, &text, font, palette.text, room);
+                ui.painter().galley(place.min + vec2(at.x, at.y + block.size.y), galley, palette.text);
+            }
         }
         let (corners, width) = &self.captions;
         for (side, at) in self.sides.iter().zip(corners) {
@@ -155,7 +171,14 @@ impl Footer {
     }
 }
 
-/// The letter of a view before its equation, on a screen of this height.
+/// The letters before the equation of a view: those of all views with its model.
+fn letters(sides: &[Side], side: usize) -> String {
+    let same = sides.iter().filter(|other| other.model == sides[side].model);
+    let letters = same.filter_map(|other| Some(other.parts.first()?.text.trim_end_matches(':')));
+    letters.collect::<Vec<_>>().join(", ") + ":"
+}
+
+/// Letters before an equation, on a screen of this height.
 fn letter(ui: &Ui, text: &str, height: f32) -> Arc<Galley> {
     let font = FontId::new(CAPTION * height, theme::semibold());
     theme::elided(ui, text, font, Palette::here(ui).text, f32::INFINITY)
@@ -173,34 +196,41 @@ fn fit(sides: &mut [Side], fits: impl Fn(&Side) -> bool) {
 }
 
 /// The room for equations.
-struct Room {
-    /// Width for one of two equations side by side.
-    half: f32,
+struct Room<'a> {
+    /// Width for one of several equations side by side.
+    column: f32,
     /// Width for one equation.
     most: f32,
-    /// Left edges of both sides.
-    left: [f32; 2],
-    /// Width of the letter before one of several equations above each other.
+    /// Left edges of all sides.
+    left: &'a [f32],
+    /// Width of the letters before one of several equations above each other.
     indent: f32,
     /// Space around equations.
     space: f32,
     /// Maximum height of all equations.
     limit: f32,
+    /// Height of a line of text.
+    line: f32,
 }
 
-impl Room {
+impl Room<'_> {
     /// The equations and their total height: side by side, or stacked if that is lower; `None` if they are too high.
-    fn for_all(&self, ui: &Ui, sides: &[Side]) -> Option<(Vec<Set>, f32)> {
+    /// With `broken`, better with bad line breaks than too high.
+    fn for_all(&self, ui: &Ui, sides: &[Side], broken: bool) -> Option<(Vec<Set>, f32)> {
         let wanted = wanted(sides);
-        let blocks = |width: f32| wanted.iter().map(move |i| (*i, block(ui, &sides[*i].equation, width)));
-        let lettered = sides.len() > 1 && !shared(sides);
+        let limit = if broken { self.limit } else { f32::INFINITY };
+        let blocks =
+            |width: f32| wanted.iter().map(move |i| (*i, block(ui, &sides[*i].equation, width, limit)));
+        let lettered = lettered(sides);
         let indent = if lettered { self.indent } else { 0.0 };
-        let narrow: Vec<_> = blocks(self.half).collect();
+        let narrow: Vec<_> = blocks(self.column).collect();
         let wide: Vec<_> = blocks(self.most - indent).collect();
-        let fits = narrow.iter().all(|(_, b)| b.size.x <= self.half + 1.0);
+        let fits = narrow.iter().all(|(_, b)| b.size.x <= self.column + 1.0);
         let above = wide.iter().map(|(_, b)| b.size.y + self.space).sum::<f32>() - self.space;
-        if wanted.len() > 1 && fits {
-            let beside = self.beside(narrow);
+        // Otherwise an equation would stand in the column of one view alone.
+        let apart = sides.iter().filter(|side| !side.equation.is_empty()).count() == wanted.len();
+        if wanted.len() > 1 && apart && fits {
+            let beside = self.beside(sides, narrow);
             if beside.1 <= above.min(self.limit) {
                 return Some(beside);
             }
@@ -218,25 +248,29 @@ impl Room {
     /// The first definitions of each equation, as many as there is room for but at least one, and their height.
     fn for_the_first(&self, ui: &Ui, sides: &[Side]) -> (Vec<Set>, f32) {
         let wanted = wanted(sides);
-        let width = if wanted.len() > 1 { self.half } else { self.most };
+        let indent = if wanted.len() == 1 && lettered(sides) { self.indent } else { 0.0 };
+        let width = if wanted.len() > 1 { self.column } else { self.most - indent };
         let first = |i: usize| {
             let all = &sides[i].equation;
-            let fits = |b: &Block| b.size.x <= width + 1.0 && b.size.y <= self.limit;
-            let more = (2..=all.len()).map(|count| block(ui, &all[..count], width)).take_while(fits);
-            (i, more.last().unwrap_or_else(|| block(ui, &all[..1], width)))
+            let limit = |b: &Block| if shown(b) < all.len() { self.limit - self.line } else { self.limit };
+            let fits = |b: &Block| b.size.x <= width + 1.0 && b.size.y <= limit(b);
+            let begun = |count: usize| block(ui, &all[..count], width, self.limit - self.line);
+            (i, (2..=all.len()).map(begun).take_while(fits).last().unwrap_or_else(|| begun(1)))
         };
-        self.beside(wanted.iter().map(|i| first(*i)).collect())
+        self.beside(sides, wanted.iter().map(|i| first(*i)).collect())
     }
 
-    /// Equations side by side, with their first lines on one baseline, and their height.
-    fn beside(&self, blocks: Vec<(usize, Block)>) -> (Vec<Set>, f32) {
+    /// Equations side by side, with their first lines on one baseline, and their height. One alone has the letter of
+    /// its view.
+    fn beside(&self, sides: &[Side], blocks: Vec<(usize, Block)>) -> (Vec<Set>, f32) {
         let baseline = blocks.iter().map(|(_, b)| b.baseline).fold(0.0, f32::max);
-        let (mut height, several) = (0.0f32, blocks.len() > 1);
+        let (mut height, lettered) = (0.0f32, blocks.len() == 1 && lettered(sides));
         let set = |(side, block): (usize, Block)| {
             let lower = baseline - block.baseline;
-            height = height.max(lower + block.size.y);
-            let at = pos2(self.left[if several { side } else { 0 }], self.space + lower);
-            Set { side, block, at, lettered: false }
+            let more = if shown(&block) < sides[side].equation.len() { self.line } else { 0.0 };
+            height = height.max(lower + block.size.y + more);
+            let left = if lettered { self.left[0] + self.indent } else { self.left[side] };
+            Set { side, block, at: pos2(left, self.space + lower), lettered }
         };
         (blocks.into_iter().map(set).collect(), height)
     }
@@ -247,18 +281,28 @@ fn shared(sides: &[Side]) -> bool {
     sides.windows(2).all(|pair| pair[0].model == pair[1].model)
 }
 
-/// The sides whose equations are shown: one that both share appears once.
-fn wanted(sides: &[Side]) -> Vec<usize> {
-    let mut wanted: Vec<usize> = (0..sides.len()).filter(|i| !sides[*i].equation.is_empty()).collect();
-    wanted.truncate(if shared(sides) { 1 } else { sides.len() });
-    wanted
+/// True if an equation that has no column of its own needs the letter of its view.
+fn lettered(sides: &[Side]) -> bool {
+    sides.len() > 1 && !shared(sides)
 }
 
-/// An equation in as many columns as suit it.
-fn block(ui: &Ui, equation: &[Definition], width: f32) -> Block {
+/// The number of definitions in a block.
+fn shown(block: &Block) -> usize {
+    block.columns.last().map_or(0, |(range, ..)| range.end)
+}
+
+/// The sides whose equations are shown: the first one with each model.
+fn wanted(sides: &[Side]) -> Vec<usize> {
+    let is_first = |i: usize| sides[..i].iter().all(|other| other.model != sides[i].model);
+    (0..sides.len()).filter(|i| !sides[*i].equation.is_empty() && is_first(*i)).collect()
+}
+
+/// An equation in as many columns as suit it, preferably not higher than `limit`.
+fn block(ui: &Ui, equation: &[Definition], width: f32, limit: f32) -> Block {
     let sizes = Sizes { column: true, even: true, level: true };
     let blocks = (1..=4).map(|columns| Block::of(ui, equation, columns, width, sizes));
-    let order = |a: &Block, b: &Block| a.broken.cmp(&b.broken).then(a.size.y.total_cmp(&b.size.y));
+    let weight = |b: &Block| (b.size.y > limit, b.broken);
+    let order = |a: &Block, b: &Block| weight(a).cmp(&weight(b)).then(a.size.y.total_cmp(&b.size.y));
     blocks.min_by(order).unwrap_or_default()
 }
 
@@ -267,7 +311,7 @@ fn numbers(ui: &Ui, session: &Session, size: f32, room: f32) -> String {
     let with = LETTERS.get(session.compared_with()).copied().unwrap_or("B");
     let mut line = format!("{with} compared with A:");
     let reason = session.incomparable().or_else(|| session.unconverged());
-    let Some(numbers) = session.facts.comparison.as_ref().filter(|_| reason.is_none()) else {
+    let Some(numbers) = session.numbers().filter(|_| reason.is_none()) else {
         let said = reason.unwrap_or_else(|| line + " …");
         return match session.shown_for_map() {
             Some(shown) => format!("{} {shown}", sentence(&said)),

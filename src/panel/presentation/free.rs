@@ -49,12 +49,14 @@ impl Needed {
         if known.key == key(ui, whole, session) { known.needed } else { Self::default() }
     }
 
-    /// Keeps the room that plates took in this frame for the next ones.
+    /// Keeps the room that plates took. If that is more than before, the frame is laid out once more.
     pub(in crate::panel) fn keep(self, ui: &Ui, whole: Rect, session: &Session) {
         let before = Self::so_far(ui, whole, session);
         let needed = self.or(before);
         if needed != before {
             kept::set(ui.ctx(), Known { key: key(ui, whole, session), needed });
+            ui.ctx().request_discard("plates need more room");
+            // There is a limit to how often that is done in a frame.
             ui.ctx().request_repaint();
         }
     }

@@ -1,6 +1,6 @@
 //! The views of a comparison: the active view, and adding and removing views.
 
-use super::{Converging, Session, Severity};
+use super::{Converging, Numbers, Session, Severity};
 use crate::{
     channel::DebugChannel,
     document::{Edit, Extent, Selection},
@@ -75,6 +75,31 @@ impl Session {
         }
     }
 
+    /// The view that is on screen where one is shown at a time.
+    #[must_use]
+    pub fn shown_alone(&self) -> usize {
+        match self.active() {
+            0 if self.view.blinking => self.document.comparison.with.min(self.document.variants.len()),
+            _ if self.view.blinking => 0,
+            active => active,
+        }
+    }
+
+    /// The views on screen.
+    #[must_use]
+    pub fn views_shown(&self) -> Vec<usize> {
+        match self.document.comparison.layout {
+            Layout::Single => vec![self.shown_alone()],
+            _ => self.document.comparison.views(self.document.variants.len()),
+        }
+    }
+
+    /// True while the picture of a view is behind, because a shader is not ready.
+    #[must_use]
+    pub fn compiles(&self, view: usize) -> bool {
+        self.facts.compiling.get(view).copied().unwrap_or_default()
+    }
+
     /// The reason why the compared views lack statistics and a difference map, if they do.
     #[must_use]
     pub fn incomparable(&self) -> Option<String> {
@@ -101,12 +126,19 @@ impl Session {
         (least.missing() > 0).then(|| format!("Not converged yet: {}", least.samples()))
     }
 
+    /// Statistics of the compared views; `None` unless both pictures are up to date.
+    #[must_use]
+    pub fn numbers(&self) -> Option<&Numbers> {
+        let is_behind = [0, self.compared_with()].into_iter().any(|view| self.compiles(view));
+        self.facts.comparison.as_ref().filter(|_| !is_behind)
+    }
+
     /// The reason why the views on screen have no statistics and no difference map yet; `None` if they have, or if there
     /// is only one.
     #[must_use]
     pub fn no_difference(&self) -> Option<String> {
         let several = self.document.comparison.views(self.document.variants.len()).len() > 1;
-        let is_due = several && self.facts.comparison.is_none();
+        let is_due = several && self.numbers().is_none();
         let measuring = || is_due.then(|| "Measuring the difference…".to_owned());
         self.incomparable().or_else(|| self.unconverged()).or_else(measuring)
     }

@@ -19,8 +19,8 @@ pub struct Facts {
     pub eye: Vec3,
     /// True if the camera has left the observer.
     pub camera_is_free: bool,
-    /// True while an object still has its previous appearance because its shader is not ready.
-    pub compiling: bool,
+    /// Views, view A first, in whose picture an object looks as before because its shader is not ready.
+    pub compiling: [bool; MAX_VARIANTS + 1],
     /// Clipped parts of each view's picture, view A first; `None` if nothing clips.
     pub clipping: [Option<Clipping>; MAX_VARIANTS + 1],
     /// Lights and objects of each view, view A first, whose light is not a finite number.

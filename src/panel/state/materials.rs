@@ -77,7 +77,7 @@ impl Session {
     pub fn is_compiling(&self, material: &Material) -> bool {
         let is_it =
             |(given, at): &(Box<Material>, Revision)| *at == self.document.revision() && **given == *material;
-        self.facts.compiling && self.materials.given.as_ref().is_some_and(is_it)
+        self.compiles(self.active()) && self.materials.given.as_ref().is_some_and(is_it)
     }
 
     fn ask_material(&mut self, registry: &Registry) {

@@ -10,6 +10,7 @@
 //! model is drawn as grey Lambert (see [`custom`](crate::custom)).
 
 mod arriving;
+mod needed;
 mod ready;
 mod report;
 mod trying;
@@ -45,6 +46,7 @@ use crate::{
     shading::ShadingEntry,
 };
 
+pub use needed::NeededShaders;
 pub use ready::SPARE;
 
 /// Exchanges shaders while they are in use.

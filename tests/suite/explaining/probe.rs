@@ -461,6 +461,18 @@ fn of_several_views_the_one_under_the_pointer_is_explained() {
 }
 
 #[test]
+fn a_view_is_explained_with_the_remark_that_its_picture_is_behind() {
+    let mut bench = bench(scene("lambert", "phong"));
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "blinn_phong")));
+    bench.session.facts.compiling[1] = true;
+    for cell in bench.area.cells.clone() {
+        point(&mut bench, cell.rect.center());
+        assert_eq!(bench.says("Compiling: until the shader is ready"), cell.view == 1, "{}", cell.view);
+    }
+}
+
+#[test]
 fn vertices_can_be_chosen_and_per_pixel_shading_compared() {
     let mut bench = bench(scene("phong", "gouraud"));
     point_at_sphere(&mut bench);

@@ -335,10 +335,10 @@ fn the_caption_says_that_the_picture_is_behind_until_it_is_not() {
     let mut bench = bench(100);
     let says = |bench: &mut Bench| texts(bench).iter().any(|(text, _)| text == "compiling…");
     assert!(!says(&mut bench));
-    bench.session.facts.compiling = true;
+    bench.session.facts.compiling[0] = true;
     bench.settle();
     assert!(says(&mut bench));
-    bench.session.facts.compiling = false;
+    bench.session.facts.compiling[0] = false;
     bench.settle();
     assert!(!says(&mut bench));
 }

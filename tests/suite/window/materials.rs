@@ -330,17 +330,17 @@ fn the_tile_says_that_the_shader_is_compiled_until_the_picture_shows_the_materia
         let tile = bench.find("Material: Gold").expect("listed").rect;
         bench.texts_in_sight().iter().any(|(text, at)| text == "compiling…" && tile.contains_rect(*at))
     };
-    bench.session.facts.compiling = true;
+    bench.session.facts.compiling[0] = true;
     bench.settle();
     assert!(!says(&mut bench), "another shader");
     bench.click("Material: Gold");
     assert!(says(&mut bench));
-    bench.session.facts.compiling = false;
+    bench.session.facts.compiling[0] = false;
     bench.settle();
     assert!(!says(&mut bench));
     // A later change is not that of the material.
     bench.apply(Action::ChooseModel("ward".to_owned()));
-    bench.session.facts.compiling = true;
+    bench.session.facts.compiling[0] = true;
     bench.settle();
     assert!(!says(&mut bench));
 }

@@ -495,6 +495,35 @@ fn badges_legends_banner_and_hint_of_a_presentation_hide_no_object() {
 }
 
 #[test]
+fn plates_of_a_presentation_are_in_their_places_in_the_first_frame_that_shows_them() {
+    let places = |bench: &Bench| {
+        let cells: Vec<_> = bench.area.cells.iter().map(|cell| cell.rect).collect();
+        (cells, bench.area.written.clone())
+    };
+    let mut moved = 0;
+    for file in ["compare_gouraud_phong.json", "compare_gold.json", "compare_flat_derivative.json"] {
+        for scale in [100, 150, 200] {
+            for channel in [None, Some(DebugChannel::Normals)] {
+                let mut bench = shipped(file, scale);
+                bench.apply(Action::View(ViewChange::Presenting(true)));
+                let before = places(&bench);
+                if channel.is_none() {
+                    let all = Clipping::GRID[0] * Clipping::GRID[1];
+                    bench.session.facts.clipping[0] = Clipping::new(vec![50; all]);
+                }
+                drop(bench.session.apply(Action::View(ViewChange::Channel(channel)), &bench.registry));
+                bench.frame(Vec::new());
+                let first = places(&bench);
+                bench.settle();
+                assert_eq!(first, places(&bench), "{file}, {scale} %, {channel:?}");
+                moved += usize::from(first.0 != before.0);
+            }
+        }
+    }
+    assert!(moved > 0, "nothing is tested");
+}
+
+#[test]
 fn the_picture_of_a_presentation_stays_as_it_is_when_nothing_clips_any_more() {
     let mut bench = shipped("compare_gouraud_phong.json", 200);
     bench.apply(Action::View(ViewChange::Presenting(true)));
@@ -530,12 +559,14 @@ fn captions(bench: &mut Bench) -> [Vec<(String, egui::Rect)>; 2] {
     let last = |text: &str| said.iter().rfind(|(t, _)| t == text).map(|(_, r)| *r);
     let (a, b) = (last("A:").expect("A"), last("B:").expect("B"));
     let numbers = said.iter().find(|(t, _)| t.starts_with("B compared with A")).expect("numbers").1;
+    // Further views have captions, too.
+    let end = last("C:").map_or(f32::INFINITY, |c| c.left());
     let within = |from: f32, to: f32| {
         let here = said.iter().filter(|(_, r)| r.top() > a.top() - 10.0 && r.bottom() < numbers.top() + 5.0);
         // Letters have room at their left.
         here.filter(|(_, r)| r.left() > from - 8.0 && r.left() < to - 8.0).cloned().collect::<Vec<_>>()
     };
-    [within(a.left(), b.left()), within(b.left(), f32::INFINITY)]
+    [within(a.left(), b.left()), within(b.left(), end)]
 }
 
 #[test]
@@ -570,6 +601,7 @@ fn equations_of_two_views_above_each_other_have_the_letters_of_the_views() {
     let mut stacked = 0;
     for (file, scale) in [("compare_gold.json", 200), ("compare_diffuse_models.json", 200)] {
         let mut bench = shipped(file, scale);
+        bench.apply(Action::Compare(CompareCommand::Remove(2)));
         bench.apply(Action::View(ViewChange::Presenting(true)));
         let count = |bench: &mut Bench, text: &str| bench.texts().iter().filter(|t| *t == text).count();
         let letters = [count(&mut bench, "A:"), count(&mut bench, "B:")];
@@ -582,6 +614,92 @@ fn equations_of_two_views_above_each_other_have_the_letters_of_the_views() {
         stacked += usize::from(is_stacked);
     }
     assert!(stacked > 0, "nothing is tested");
+}
+
+/// A presentation of a scene with several models, and of a view with one model, in a window of this size.
+fn with_one_equation(model: &str, size: (f32, f32)) -> Bench {
+    let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+    let mut other = scene.objects[0].clone();
+    other.reflection_model = Some("lambert".to_owned());
+    other.position.x += 2.5;
+    scene.objects.push(other);
+    let mut bench = Bench::new(Session::new(scene));
+    bench.size = size.into();
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, model)));
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    bench
+}
+
+#[test]
+fn an_equation_of_one_view_alone_has_its_letter_and_says_if_definitions_are_missing() {
+    let mut bench = with_one_equation("strauss", (880.0, 745.0));
+    let texts = bench.texts();
+    let count = |text: &str| texts.iter().filter(|t| *t == text).count();
+    assert_eq!([count("A:"), count("B:")], [1, 2], "{texts:?}");
+    let strauss = bench.registry.model("strauss").expect("built in").declaration.equation;
+    let shown = definitions_shown(&bench);
+    for (_, text) in definitions(strauss) {
+        assert!(shown.iter().any(|s| s == text), "{text} is not among {shown:?}");
+    }
+    let mut cut = 0;
+    for size in [(880.0, 745.0), (600.0, 745.0), (420.0, 745.0)] {
+        for model in ["strauss", "oren_nayar", "disney", "openpbr"] {
+            let mut bench = with_one_equation(model, size);
+            let equation = bench.registry.model(model).expect("built in").declaration.equation;
+            let shown = definitions_shown(&bench);
+            let all = definitions(equation);
+            let missing = all.iter().filter(|(_, text)| !shown.iter().any(|s| s == text)).count();
+            let texts = bench.texts();
+            assert!(texts.iter().filter(|text| *text == "B:").count() == 2, "{model}, {size:?}");
+            let says = texts.iter().any(|text| text.starts_with(&format!("… and {missing} more definition")));
+            assert_eq!(says, missing > 0, "{model}, {size:?}: {missing} of {} are missing", all.len());
+            cut += missing;
+        }
+    }
+    assert!(cut > 0, "nothing is tested");
+}
+
+#[test]
+fn an_equation_that_some_of_four_views_share_stands_once_beside_their_letters() {
+    let mut bench = bench((1280.0, 720.0), "phong");
+    for model in ["lambert", "phong", "lambert"] {
+        bench.apply(Action::Compare(CompareCommand::Add));
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, model)));
+    }
+    bench.apply(Action::View(ViewChange::Presenting(true)));
+    let texts = bench.texts();
+    for letters in ["A, C:", "B, D:"] {
+        assert_eq!(texts.iter().filter(|text| *text == letters).count(), 1, "{letters} of {texts:?}");
+    }
+    let speculars = definitions_shown(&bench).iter().filter(|text| text.starts_with("I_s = ")).count();
+    assert_eq!(speculars, 1, "that of Phong");
+}
+
+#[test]
+fn three_and_four_views_of_a_presentation_are_large_and_each_has_its_caption() {
+    for (views, width) in [(3, 1280.0), (3, 880.0), (4, 1280.0), (4, 880.0)] {
+        let mut bench = bench((width, 720.0), "blinn_phong");
+        for model in ["ward", "strauss", "openpbr"].into_iter().take(views - 1) {
+            bench.apply(Action::Compare(CompareCommand::Add));
+            bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, model)));
+        }
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let what = format!("{views} views, {width} points");
+        let cells = bench.area.cells.clone();
+        assert_eq!(cells.len(), views, "{what}");
+        for cell in &cells {
+            assert!(cell.rect.size().min_elem() > 0.25 * 720.0, "{what}: {:?}", cell.rect);
+            assert!(bench.area.rect.contains_rect(cell.rect), "{what}: {:?}", cell.rect);
+        }
+        let texts = bench.texts();
+        for letter in ["A:", "B:", "C:", "D:"].iter().take(views) {
+            assert!(texts.iter().any(|text| text == letter), "{what}: {letter} of {texts:?}");
+        }
+        let shown = definitions_shown(&bench);
+        let totals = shown.iter().filter(|text| text.starts_with("I = ")).count();
+        assert!(totals == 0 || totals == views, "{what}: the equations of all or of none: {shown:?}");
+    }
 }
 
 #[test]
