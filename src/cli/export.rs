@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     overwrite: bool,
     /// The object for forms that hold one: its name, or its place in the list from 0
-    #[arg(long, value_name = "NAME|INDEX")]
+    #[arg(long, value_name = "NAME|INDEX", allow_negative_numbers = true)]
     object: Option<String>,
     /// Export this view: A, B, C or D, or the name of a variant; by default view A, and of programs and pages all views
     #[arg(long, value_name = "VIEW")]

@@ -136,6 +136,14 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let request = Request { scene: &scene, view, measure, parameters: &free };
     let found = gauged("matching", options, |progress| match_view(&request, registry, progress));
     let found = found.map_err(|error| match error {
+        MatchError::NothingFree { known } if arguments.free.is_empty() && !known.is_empty() => {
+            Failure::Usage(format!(
+                "no parameter of view {} is free by default; name some with --free: {}",
+                LETTERS[view],
+                listed(&known, "and")
+            ))
+        }
+        MatchError::NothingFree { .. } if arguments.free.is_empty() => invalid(&error),
         MatchError::NothingFree { .. }
         | MatchError::NoParameter { .. }
         | MatchError::NoNumber { .. }

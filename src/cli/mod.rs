@@ -500,7 +500,11 @@ fn run_as(
     if let (Some(name), Ok(None)) = (name, &inside) {
         program::set_name(name);
     }
-    let arguments: Vec<_> = arguments.into_iter().collect();
+    let mut arguments: Vec<_> = arguments.into_iter().collect();
+    // `lcm help render --help` asks for one thing twice, which clap does not understand.
+    if arguments.get(1).is_some_and(|word| word == "help") {
+        arguments.retain(|word| word != "--help" && word != "-h");
+    }
     let parsed = named().try_get_matches_from(&arguments).and_then(|found| Cli::from_arg_matches(&found));
     let mut cli = match parsed {
         Ok(cli) => cli,

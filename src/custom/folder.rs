@@ -7,7 +7,6 @@
 use std::{
     collections::{HashMap, HashSet},
     io,
-    mem::discriminant,
     path::{Path, PathBuf},
 };
 
@@ -16,6 +15,7 @@ use rayon::prelude::*;
 use super::{EXTENSION, declare, file, id_of, is_id, is_model, named, problem, read, source_path};
 use crate::files::{self, Shown as _, words};
 use crate::{
+    parameter::Parameter,
     platform::fs,
     registry::{CustomModel, MODELS, Registry},
     shader::{
@@ -90,6 +90,10 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
         registry.sources_mut().edit(named(&path), text);
         return Reading::Missing;
     }
+    if let Err(wrong) = agrees_with_earlier(&path, &text, registry) {
+        let problems = wrong.into_iter().map(|problem| (path.clone(), problem)).collect();
+        return broken(id, problems, registry);
+    }
     let unread = import(&source_path(id), &text, registry);
     if !unread.is_empty() {
         return broken(id, unread, registry);
@@ -104,6 +108,47 @@ pub fn read_model(id: &str, registry: &mut Registry) -> Reading {
             broken(id, problems, registry)
         }
     }
+}
+
+/// Checks that a model's parameters agree with those of the files before it in the folder, known or not. Of two files that
+/// contradict each other the later one is refused, whichever of them a command names.
+fn agrees_with_earlier(path: &Path, text: &str, registry: &Registry) -> Result<(), Vec<ShaderProblem>> {
+    // Other errors are found when the model is read.
+    let Ok(model) = declare(path, text, registry) else { return Ok(()) };
+    // Those of built-in models were compared just now.
+    let is_built_in = |name: &str| {
+        let mut users = registry.material_users().filter(|(id, _)| registry.custom_file(id).is_none());
+        users.any(|(_, all)| all.iter().any(|p| p.name == name))
+    };
+    let own = |model: &CustomModel| {
+        model.entry.parameters.iter().map(|p| p.name).filter(|name| !is_built_in(name)).collect::<Vec<_>>()
+    };
+    let mut names = own(&model);
+    if names.is_empty() {
+        return Ok(());
+    }
+    let files = registry.custom_folder().and_then(|folder| files_in(folder).ok()).unwrap_or_default();
+    // Backwards, since earlier files decide about these too.
+    let mut deciding = Vec::new();
+    for file in files.iter().rev() {
+        if file.file_name() >= path.file_name() || registry.files_seen().contains_key(file) {
+            continue;
+        }
+        let Ok(text) = file::read_model(file, &named(file)) else { continue };
+        if names.iter().any(|name| text.contains(&format!("\"{name}\"")))
+            && let Ok(model) = declare(file, &text, registry)
+        {
+            names.extend(own(&model));
+            deciding.push(model);
+        }
+    }
+    let mut known = registry.clone();
+    for earlier in deciding.into_iter().rev() {
+        if let Ok(earlier) = declare(&earlier.path, &earlier.text, &known) {
+            known.put_declared(earlier);
+        }
+    }
+    declare(path, text, &known).map(drop)
 }
 
 /// The shader and model sources, plus one model of which only the declaration was known.
@@ -260,8 +305,7 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
             broken(id, vec![(path.clone(), problem)], registry);
         }
     }
-    let mut kinds: HashMap<_, _> =
-        registry.material_parameters().map(|p| (p.name, discriminant(&p.kind))).collect();
+    let mut agreed: HashMap<_, _> = registry.material_parameters().map(|p| (p.name, p)).collect();
     for (path, print, found) in found {
         registry.note_seen(&path, print);
         let wrong = match found {
@@ -275,14 +319,13 @@ pub fn declare_rest(registry: &mut Registry) -> Declared {
             }
             Found::Broken(wrong) => wrong,
             Found::Model(model) => {
-                // Each file was checked on its own; together they must agree on parameter types.
-                let agrees = model.entry.parameters.iter().all(|p| {
-                    let kind = discriminant(&p.kind);
-                    *kinds.entry(p.name).or_insert(kind) == kind
-                });
+                // Each file was checked on its own; together they must agree on the types and units of parameters.
+                let fits = |p: &Parameter| agreed.get(p.name).is_none_or(|other| p.clash(other).is_none());
+                let agrees = model.entry.parameters.iter().all(fits);
                 let model = if agrees { Ok(*model) } else { declare(&path, &model.text, registry) };
                 match model {
                     Ok(model) => {
+                        agreed.extend(model.entry.parameters.iter().map(|p| (p.name, p)));
                         registry.put_declared(model);
                         continue;
                     }

@@ -312,6 +312,9 @@ pub fn listed(folder: &Path, extension: &str, most: usize) -> io::Result<(Vec<Pa
     Ok((names, more))
 }
 
+/// What links in a circle are, whoever follows them.
+const CIRCLE: &str = "too many links, each leading to the next";
+
 /// The end of a path, links followed; it need not exist.
 ///
 /// # Errors
@@ -326,12 +329,15 @@ pub fn follow(path: &Path) -> io::Result<PathBuf> {
             Err(_) => return Ok(at),
         }
     }
-    Err(io::Error::other("too many links, each leading to the next"))
+    Err(io::Error::other(CIRCLE))
 }
 
 /// The reason why nothing can be made in a folder, where the system says that it is not there.
 fn missing(folder: &Path) -> io::Error {
-    let folder = if fs::is_dir(folder) {
+    let is_gone = || env::current_dir().is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
+    let folder = if folder.is_relative() && is_gone() {
+        "the working folder has been deleted".to_owned()
+    } else if fs::is_dir(folder) {
         // As in /proc.
         format!("{} is a folder of the system in which no files can be created", folder.shown())
     } else {

@@ -6,6 +6,8 @@ use std::{
     path::Path,
 };
 
+use crate::text::shortened;
+
 /// A text without characters that a terminal would act on instead of displaying: control characters except
 /// line ends and tabs, those that change the text direction, and invisible line ends become escapes such as
 /// `\u{1b}`. File names may contain all of these.
@@ -40,7 +42,8 @@ fn escaped(text: &str, escape: impl Fn(&mut String, char) -> fmt::Result) -> Cow
 
 /// Paths in messages.
 pub trait Shown {
-    /// The path on one line: line ends in a file name cannot forge lines of a message.
+    /// The path on one line: line ends in a file name cannot forge lines of a message. Of a path that no file can have,
+    /// since a name in it is too long, only the beginning.
     fn shown(&self) -> OnOneLine<'_>;
 }
 
@@ -56,7 +59,12 @@ pub struct OnOneLine<'a>(&'a Path);
 
 impl fmt::Display for OnOneLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for c in self.0.to_string_lossy().chars() {
+        /// The longest name that systems have.
+        const LONGEST: usize = 255;
+        let text = self.0.to_string_lossy();
+        let is_endless = self.0.iter().any(|name| name.to_string_lossy().chars().nth(LONGEST).is_some());
+        let text: Cow<str> = if is_endless { Cow::Owned(shortened(&text)) } else { text };
+        for c in text.chars() {
             if is_unfit(c) || matches!(c, '\n' | '\t') {
                 write!(f, "{}", c.escape_default())?;
             } else {
@@ -80,6 +88,10 @@ mod tests {
     fn a_path_takes_one_line() {
         let path = Path::new("scenes/a\nerror: b\t\u{2028}c\u{1b}[31m größe.json");
         assert_eq!(path.shown().to_string(), r"scenes/a\nerror: b\t\u{2028}c\u{1b}[31m größe.json");
+        let name = "ö".repeat(255);
+        assert_eq!(Path::new(&name).shown().to_string(), name);
+        let endless = format!("{name}ö.json");
+        assert_eq!(Path::new(&endless).shown().to_string(), format!("{}…", "ö".repeat(60)));
     }
 
     #[test]

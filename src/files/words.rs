@@ -21,6 +21,7 @@ pub fn words(error: &io::Error) -> String {
         ErrorKind::QuotaExceeded => "the disk quota of this user is exhausted",
         ErrorKind::ResourceBusy => "it is in use by the system",
         ErrorKind::InvalidFilename => "the name is too long",
+        _ if system.starts_with("Too many levels of symbolic links") => super::CIRCLE,
         _ => system,
     };
     own.to_owned()
@@ -41,6 +42,7 @@ mod tests {
             (libc::ENAMETOOLONG, "the name is too long"),
             (libc::ENOSPC, "the disk is full"),
             (libc::EROFS, "the disk is read-only"),
+            (libc::ELOOP, "too many links, each leading to the next"),
             (libc::EIO, "Input/output error"),
         ] {
             assert_eq!(words(&io::Error::from_raw_os_error(number)), expected);

@@ -1,6 +1,6 @@
 //! The chooser of reflection models: a searchable list with name, author and year, grouped by family.
 
-use std::cell::RefCell;
+use std::{cell::RefCell, collections::HashMap};
 
 use bevy_egui::egui::{
     Margin, Modifiers, PopupCloseBehavior, RectAlign, TextEdit, Tooltip, text_edit::TextEditState,
@@ -29,18 +29,39 @@ fn synonyms(model: &ModelEntry) -> impl Iterator<Item = &'static str> {
     all.iter().copied().chain(all.contains(&declared).then_some(other))
 }
 
+/// The short names of parameters, by their labels: `ior` finds each model with a refractive index, whatever its name there.
+pub(super) type ShortNames = HashMap<&'static str, Vec<&'static str>>;
+
+/// The short names in a registry.
+pub(super) fn short_names(registry: &Registry) -> ShortNames {
+    let mut all = ShortNames::new();
+    for p in registry.material_parameters().filter(|p| !p.name.contains('_') && p.name != p.label) {
+        all.entry(p.label).or_default().push(p.name);
+    }
+    all
+}
+
 /// Everything by which a model is found beside its [`words`]: synonyms, then its parameters and their choices. Each with
 /// what people call it.
-pub(super) fn further(model: &ModelEntry) -> impl Iterator<Item = (String, String)> {
+pub(super) fn further(model: &ModelEntry, short: &ShortNames) -> Vec<(String, String)> {
     let of = |parameter: &'static Parameter| {
         let label = parameter.label;
-        let own = (format!("{label} {} {}", parameter.symbol, parameter.name), label.to_owned());
+        let names = short.get(label).map(|names| names.join(" ")).unwrap_or_default();
+        let own = (format!("{label} {} {} {names}", parameter.symbol, parameter.name), label.to_owned());
         let choices = if parameter.kind.is_flag() { &[][..] } else { parameter.kind.options() };
         let choice = move |(id, name): &(&str, &str)| (format!("{name} {id}"), format!("{label}: {name}"));
         std::iter::once(own).chain(choices.iter().map(choice))
     };
     let synonyms = synonyms(model).map(|synonym| (synonym.to_owned(), synonym.to_owned()));
-    synonyms.chain(model.parameters.iter().flat_map(of))
+    synonyms.chain(model.parameters.iter().flat_map(of)).collect()
+}
+
+/// The author of a model, after its id if another has the same name.
+pub(super) fn author_of(model: &ModelEntry, registry: &Registry) -> String {
+    let d = model.declaration;
+    let is_shared =
+        registry.models().iter().any(|m| m.declaration.name == d.name && m.declaration.id != d.id);
+    facts([if is_shared { d.id } else { "" }, d.author])
 }
 
 /// The reason that a search finds a text which only the tooltip shows.
@@ -68,8 +89,8 @@ pub(super) fn reason<'a>(
 }
 
 /// Models that match a search, in the order of the chooser: the model of that very name first, then matching names, then
-/// matching synonyms, then by family and registration order. Every word of the search must begin a word of the name, id, author, family, summary,
-/// a synonym, a parameter or one of its choices.
+/// matching synonyms, then by family and registration order; the other models of a family follow its first. Every word of the
+/// search must begin a word of the name, id, author, family, summary, a synonym, a parameter or one of its choices.
 #[must_use]
 pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
     let mut families = Vec::new();
@@ -78,8 +99,9 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
             families.push(model.declaration.family);
         }
     }
+    let short = short_names(registry);
     let hit = |m: &&ModelEntry| {
-        let all: Vec<_> = words(m).into_iter().chain(further(m)).map(|(text, _)| text).collect();
+        let all: Vec<_> = words(m).into_iter().chain(further(m, &short)).map(|(text, _)| text).collect();
         matches(&format!("{} {}", m.declaration.name, all.join(" ")), search)
     };
     let mut found: Vec<_> = families
@@ -99,6 +121,13 @@ pub fn find<'a>(registry: &'a Registry, search: &str) -> Vec<&'a ModelEntry> {
             _ => 3,
         }
     });
+    let mut headings = Vec::new();
+    for family in found.iter().map(|m| m.declaration.family) {
+        if !headings.contains(&family) {
+            headings.push(family);
+        }
+    }
+    found.sort_by_key(|m| headings.iter().position(|family| *family == m.declaration.family));
     found
 }
 
@@ -326,9 +355,9 @@ const MODELS: Words = Words {
 };
 
 /// The reason why a search finds a model, if its row and the heading above do not show it.
-fn why(model: &ModelEntry, search: &str) -> Option<String> {
+fn why(model: &ModelEntry, short: &ShortNames, search: &str) -> Option<String> {
     let d = model.declaration;
-    let unseen: Vec<_> = further(model).chain(words(model)).collect();
+    let unseen: Vec<_> = further(model, short).into_iter().chain(words(model)).collect();
     reason(&[d.name, d.author, d.family.name()].join(" "), unseen.iter(), search)
 }
 
@@ -345,22 +374,24 @@ pub fn models<'a>(
 ) -> Option<Option<&'a ModelEntry>> {
     // Each row shows why it matches.
     let search = RefCell::new(String::new());
+    let short = short_names(registry);
     let found = |typed: &str| {
         typed.clone_into(&mut search.borrow_mut());
         let plain = first.filter(|_| typed.trim().is_empty()).map(|_| None);
         plain.into_iter().chain(find(registry, typed).into_iter().map(Some)).collect()
     };
     let entry = |model: &Option<&'a ModelEntry>| -> Entry<'a> {
-        let Some(d) = model.map(|m| m.declaration) else {
+        let Some(model) = *model else {
             let current = current.is_none();
             return Entry { name: first.unwrap_or_default(), current, ..Entry::default() };
         };
+        let (d, author) = (model.declaration, author_of(model, registry));
         Entry {
             heading: d.family.name(),
             name: d.name,
-            note: match model.and_then(|m| why(m, &search.borrow())) {
-                Some(reason) => facts([&reason, d.author]),
-                None => d.author.to_owned(),
+            note: match why(model, &short, &search.borrow()) {
+                Some(reason) => facts([&reason, &author]),
+                None => author,
             },
             number: session.model_slots.iter().position(|m| m == d.id).map(|slot| slot + 1),
             current: current == Some(d.id),
@@ -531,7 +562,8 @@ mod tests {
         assert_eq!(ids("disney").first(), Some(&"disney"));
         assert_eq!(ids("ggx").first(), Some(&"microfacet"));
         let microfacet = registry.model("microfacet").expect("built in");
-        let why_of = |model: &ModelEntry, search: &str| why(model, search).unwrap_or_default();
+        let short = short_names(&registry);
+        let why_of = |model: &ModelEntry, search: &str| why(model, &short, search).unwrap_or_default();
         assert_eq!(why_of(microfacet, "microfacet ggx"), "GGX");
         assert_eq!(
             why_of(microfacet, "masking"),
@@ -543,10 +575,35 @@ mod tests {
             (why_of(disney, "sheen").as_str(), why_of(disney, "cloth").as_str()),
             ("sheen", DESCRIPTION)
         );
-        assert_eq!((why(disney, "disney"), why(disney, "isney")), (None, None), "the name shows it");
+        let shown = ["disney", "isney"].map(|search| why(disney, &short, search));
+        assert_eq!(shown, [None, None], "the name shows it");
         assert!(why_of(microfacet, "kelemen").ends_with(": Kelemen"), "a choice, after its parameter");
         assert_eq!(why_of(registry.model("disney").expect("built in"), "sheen_tint"), "sheen tint");
         assert_eq!(why_of(registry.model("openpbr").expect("built in"), "sheen"), "sheen");
+    }
+
+    #[test]
+    fn a_short_name_finds_all_parameters_of_that_label() {
+        let registry = Registry::builtin();
+        let short = short_names(&registry);
+        let found = find(&registry, "ior");
+        for id in ["microfacet", "openpbr", "glass", "thin_glass", "rough_dielectric"] {
+            let model =
+                found.iter().find(|m| m.declaration.id == id).unwrap_or_else(|| panic!("{id} is found"));
+            assert_eq!(why(model, &short, "ior").as_deref(), Some("refractive index"), "{id}");
+        }
+        assert!(found.iter().all(|m| m.declaration.id != "lambert"));
+    }
+
+    #[test]
+    fn each_heading_stands_once() {
+        let registry = Registry::builtin();
+        for search in ["", "beckmann", "roughness", "ggx", "a", "phong"] {
+            let mut headings: Vec<_> = find(&registry, search).iter().map(|m| m.declaration.family).collect();
+            headings.dedup();
+            let twice = headings.iter().enumerate().find(|(i, family)| headings[..*i].contains(family));
+            assert!(twice.is_none(), "{search}: {headings:?}");
+        }
     }
 
     /// WGSL without comments.
@@ -615,11 +672,12 @@ mod tests {
         ] {
             assert_eq!(with.contains(&id), has_it, "{id}: {with:?}");
         }
+        let short = short_names(&registry);
         for search in ["ggx", "trowbridge", "Reitz"] {
             let found = find(&registry, search);
             for id in &with {
                 let model = found.iter().find(|m| m.declaration.id == *id);
-                assert!(model.is_some_and(|m| why(m, search).is_some()), "{id} by {search}");
+                assert!(model.is_some_and(|m| why(m, &short, search).is_some()), "{id} by {search}");
             }
         }
     }

@@ -212,6 +212,7 @@ fn commands(root: &Menu, session: &Session, registry: &Registry) -> Vec<Found> {
         let away = session.view.presenting && command.at_desk;
         !(command.absent || command.held || away || recent(command) || command.id == command::FINDER)
     };
+    let short = chooser::short_names(registry);
     let all = root.commands().into_iter().filter(|(_, command)| offered(command));
     let found = all.map(|(path, command)| {
         let why = command.why_not.as_deref().map(|why| why.trim_end_matches('.').to_owned());
@@ -232,11 +233,11 @@ fn commands(root: &Menu, session: &Session, registry: &Registry) -> Vec<Found> {
             heading: path.first().copied().unwrap_or(command.heading().name()),
             note: match (&why, model) {
                 (Some(why), _) => why.clone(),
-                (None, Some(model)) => facts([&place, model.declaration.author]),
+                (None, Some(model)) => facts([&place, &chooser::author_of(model, registry)]),
                 (None, None) => place,
             },
             said,
-            unsaid: model.into_iter().flat_map(chooser::further).collect(),
+            unsaid: model.map(|model| chooser::further(model, &short)).unwrap_or_default(),
             key: key(command).unwrap_or_default(),
             off: why.is_some(),
             on: matches!(command.mark, Mark::Check(true) | Mark::Radio(true)),

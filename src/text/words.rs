@@ -44,15 +44,19 @@ pub fn nearest<'a>(written: &str, candidates: impl Iterator<Item = (&'a str, &'a
     // Differences in case and separators are the most common: sceneSize, scene-size.
     let plain = |s: &str| s.to_lowercase().replace(['_', '-', ' '], "");
     let wanted = plain(written);
-    let distance = |candidate: &str| {
-        let candidate = plain(candidate);
+    let distance = |spelling: &str, target: &str| {
+        let candidate = plain(spelling);
         let edits = strsim::damerau_levenshtein(&wanted, &candidate);
         // A third of the letters may differ; beyond that it is another word.
         let letters = candidate.chars().count().max(wanted.chars().count());
-        (edits <= (letters + 1) / 3).then_some(edits)
+        // A symbol of a letter or two that is nearly written means nothing.
+        let most = if letters < 3 && spelling != target { 0 } else { (letters + 1) / 3 };
+        (edits <= most).then_some(edits)
     };
     let near = candidates.filter(|(spelling, _)| !spelling.is_empty());
-    near.filter_map(|(spelling, target)| Some((distance(spelling)?, target))).min_by_key(|n| n.0).map(|n| n.1)
+    near.filter_map(|(spelling, target)| Some((distance(spelling, target)?, target)))
+        .min_by_key(|n| n.0)
+        .map(|n| n.1)
 }
 
 /// "; did you mean "lambert"?", or nothing.
@@ -224,6 +228,10 @@ mod tests {
         assert_eq!(nearest("lihgts", known()), Some("lights"));
         assert_eq!(nearest("object", known()), Some("objects"));
         assert_eq!(nearest("banana", known()), None);
+        let symbols = || [("V_d", "abbe_number"), ("k_s", "k_s")].into_iter();
+        assert_eq!(nearest("vd", symbols()), Some("abbe_number"));
+        assert_eq!(nearest("k_d", symbols()), Some("k_s"));
+        assert_eq!(nearest("k_d", symbols().take(1)), None, "a symbol is written as it is");
         assert_eq!(nearest(&"l".repeat(1 << 20), known()), None);
     }
 }

@@ -48,6 +48,13 @@ impl<'a> Caption<'a> {
     pub fn of(field: &Field) -> Self {
         Self::new(field.label(), field.unit, field.help.trim())
     }
+
+    /// The symbol in front of the label; empty if it is only the words of the label, as for a parameter that is declared
+    /// without a symbol.
+    fn shown_symbol(&self) -> &'a str {
+        let words = self.symbol.replace("_{", " ").replace('}', "");
+        if words == self.label { "" } else { self.symbol }
+    }
 }
 
 /// Width of symbol and label in the line of a knob.
@@ -101,21 +108,20 @@ pub(super) fn head<R>(
     right: impl FnOnce(&mut Ui) -> R,
 ) -> (Response, R) {
     let palette = Palette::here(ui);
-    let symbol_column = symbol_column(ui, caption.symbol).max(caption.indent);
+    let symbol = caption.shown_symbol();
+    let symbol_column = symbol_column(ui, symbol).max(caption.indent);
     let colour = if ui.is_enabled() && caption.disabled.is_none() { palette.text } else { palette.weak };
     let room = match words {
         Words::Leave(points) => (ui.available_width() - points).max(symbol_column + 40.0),
         Words::Column | Words::Slim => (COLUMN * ui.available_width()).max(symbol_column + 40.0).floor(),
     };
-    // A parameter without a symbol uses its name as the symbol, which is not repeated.
-    let word = if caption.symbol == caption.label { "" } else { caption.label };
     let font = TextStyle::Body.resolve(ui.style());
     let room = match words {
-        Words::Slim => room.min(symbol_column + longest(ui, word, &font) + GAP),
+        Words::Slim => room.min(symbol_column + longest(ui, caption.label, &font) + GAP),
         _ => room,
     };
     // Wrapped rather than elided, since some labels differ only in their last words.
-    let mut job = egui::text::LayoutJob::simple(word.to_owned(), font, colour, room - symbol_column);
+    let mut job = egui::text::LayoutJob::simple(caption.label.to_owned(), font, colour, room - symbol_column);
     job.wrap.max_rows = ROWS;
     let galley = ui.painter().layout_job(job);
     let line = vec2(ui.available_width(), ui.spacing().interact_size.y.max(galley.size().y));
@@ -133,9 +139,9 @@ pub(super) fn head<R>(
         if linked::is_lit(ui.ctx(), caption.symbol) {
             ui.painter().add(linked::row_ground(rect.expand2(vec2(4.0, 0.0)), &palette));
         }
-        if !caption.symbol.is_empty() {
+        if !symbol.is_empty() {
             let at = pos2(rect.left(), rect.center().y + 5.0);
-            maths::paint_symbol(ui, at, caption.symbol, SYMBOL, colour);
+            maths::paint_symbol(ui, at, symbol, SYMBOL, colour);
         }
         let at = pos2(rect.left() + symbol_column, rect.center().y - galley.size().y / 2.0);
         ui.painter().galley(at, galley, colour);
@@ -215,4 +221,24 @@ pub(super) fn unit(ui: &mut Ui, text: &str) {
     let width = 18.0_f32.max(galley.size().x);
     let (rect, _) = ui.allocate_exact_size(vec2(width, 22.0), Sense::hover());
     ui.painter().galley(pos2(rect.left(), rect.center().y - galley.size().y / 2.0), galley, palette.weak);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_words_of_a_label_are_no_symbol_beside_it() {
+        for (symbol, label, shown) in [
+            ("polish", "polish", ""),
+            ("shine_{depth}", "shine depth", ""),
+            ("α", "alpha", "α"),
+            ("k_d", "diffuse coefficient", "k_d"),
+            ("polish", "degree of polish", "polish"),
+            ("", "exposure", ""),
+        ] {
+            let caption = Caption { symbol, label, ..Caption::default() };
+            assert_eq!(caption.shown_symbol(), shown, "{label}");
+        }
+    }
 }

@@ -200,6 +200,7 @@ mod tests {
     use crate::{
         light::{Declaration, Incident, LightRecord, LightType},
         parameters,
+        platform::fs,
         registry::Register as _,
         shader::Source,
     };
@@ -233,6 +234,24 @@ mod tests {
             assert_eq!(!place(None).contains("built in"), own, "{}", place(None));
             assert!(place(None).starts_with(path));
             assert_eq!(place(Some("/home/mira/added.wgsl")), "/home/mira/added.wgsl");
+        }
+    }
+
+    #[test]
+    fn a_file_in_the_folder_of_another_crate_is_called_by_its_place() {
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::create_dir(folder.path().join("light")).expect("writable");
+        let mut registry = Registry::builtin();
+        registry.add_light_type::<Lamp>();
+        registry.add_shader_folder(folder.path());
+        // The second is only imported.
+        for path in ["light/lamp.wgsl", "light/glow.wgsl"] {
+            let file = folder.path().join(path);
+            fs::write(&file, "fn glow() {}").expect("writable");
+            let on_disk = registry.path_on_disk(path);
+            assert_eq!(on_disk.as_deref(), Some(&*file));
+            let place = place(path, on_disk.as_deref(), &registry);
+            assert!(place.ends_with(path) && !place.contains("built in"), "{place}");
         }
     }
 

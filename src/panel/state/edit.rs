@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::{
     Session, Severity,
-    follow::{follow_model, follow_registry},
+    follow::{follow_model, follow_registry, tell_views},
     messages::Step,
 };
 use crate::{
@@ -69,6 +69,7 @@ impl Session {
         }
         if let Some(departure) = of_view.filter(|_| self.document.revision() != before) {
             self.carry_in_view(departure, registry);
+            tell_views(self, registry);
         }
         if reorders {
             self.desk.travels.forget_views();

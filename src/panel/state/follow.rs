@@ -33,6 +33,11 @@ pub fn follow_registry(session: impl DerefMut<Target = Session>, registry: &Regi
 /// Adapts the document after a step that gave objects another model. The changes belong to that step.
 pub fn follow_model(session: &mut Session, registry: &Registry) {
     follow(&mut *session, registry, true);
+    tell_views(session, registry);
+}
+
+/// Says which values the models of views do not allow, unless it is said already.
+pub fn tell_views(session: &mut Session, registry: &Registry) {
     for said in session.document.beyond_the_range_of_views(registry) {
         if session.messages.iter().all(|known| known.text != said) {
             session.say(Severity::Info, said);
@@ -221,7 +226,7 @@ mod tests {
     use crate::{
         custom,
         document::{Document, Edit},
-        panel::state::Action,
+        panel::state::{Action, CompareCommand},
         scene::{Part, Repeat, Scene, Varied, check, load, save},
     };
 
@@ -394,6 +399,25 @@ mod tests {
             assert_eq!(check::scene(&session.document, &registry), []);
         }
         assert!(*session.document.scene() == start && !session.is_dirty());
+    }
+
+    #[test]
+    fn a_view_that_gets_another_model_says_which_value_it_uses() {
+        let (mut session, mut registry) = begin(&number("polish", 0.0, 100.0), "polish", Value::Number(80.0));
+        put_as("other", &mut registry, &number("polish", 0.0, 1.0));
+        session.apply(Action::Compare(CompareCommand::Add), &registry);
+        assert_eq!(session.active(), 1);
+        session.messages.clear();
+        for id in ["other", "mine", "other"] {
+            session.document.end_gesture();
+            let edit = session.edit_model(id);
+            session.apply(Action::Edit(edit), &registry);
+        }
+        let texts: Vec<_> = session.messages.iter().map(|m| m.text.as_str()).collect();
+        let said =
+            "view B: objects[0].material.polish is 80, but for other it must be between 0 and 1: 1 is used";
+        assert_eq!(texts, [said]);
+        assert_eq!(value(&session, "polish"), Some(&Value::Number(80.0)));
     }
 
     #[test]

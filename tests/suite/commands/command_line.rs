@@ -25,6 +25,10 @@ fn help_and_version_are_results() {
         assert!(!run.out.is_empty());
     }
     assert!(lcm(&["--help"], "").out.contains("Exit status: 0 success"));
+    for words in [&["help"][..], &["help", "render"]] {
+        let twice = lcm(&[words, &["--help"]].concat(), "");
+        assert_eq!((twice.status, twice.out), (Some(0), lcm(words, "").out), "{}", twice.err);
+    }
 }
 
 #[test]
@@ -77,6 +81,7 @@ fn wrong_usage_has_status_2() {
             "k_d is 0.2, but the diffuse coefficient must be between 0.5 and 1",
         ),
         (&["evaluate", "phong", "--set", "kd=0.7"], "phong has no parameter kd; did you mean k_d?"),
+        (&["evaluate", "openpbr", "--set", "k_d=1"], "openpbr has no parameter k_d; it has base_"),
         (&["evaluate", "phong", "--set", "k_d"], "it must be NAME=VALUE"),
         (&["albedo", "fong"], "did you mean \"phong\"?"),
         (&["albedo", "phong", "--set", "k_d=0.2"], "but the diffuse coefficient must be between 0.5 and 1"),

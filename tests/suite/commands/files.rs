@@ -349,6 +349,30 @@ fn a_link_to_nothing_says_so() {
 }
 
 #[test]
+fn a_link_to_itself_and_a_name_without_end_are_said_in_a_few_words() {
+    let folder = folder();
+    let at = folder.path();
+    symlink("loop.json", at.join("loop.json")).expect("linked");
+    let circle = "loop.json could not be read: too many links, each leading to the next\n";
+    refused(&run(&mut lcm(at, ["check", "loop.json"])), 1, circle);
+    let endless = format!("{}… could not be read: the name is too long\n", "x".repeat(60));
+    refused(&run(&mut lcm(at, ["check", &*"x".repeat(5000)])), 1, &endless);
+}
+
+#[test]
+fn a_working_folder_that_is_gone_is_called_so() {
+    let folder = folder();
+    for (command, what) in [
+        ("new a.json", "a.json was not"),
+        ("render --size 8x8 --renderer cpu -o b.png", "b.png could not be"),
+    ] {
+        let script = format!("mkdir gone && cd gone && rmdir ../gone && exec \"$LCM\" {command}");
+        let said = format!("{what} written: the working folder has been deleted\n");
+        refused(&run(&mut shell(folder.path(), &script)), 4, &said);
+    }
+}
+
+#[test]
 fn pictures_go_to_devices_and_pipes() {
     let folder = folder();
     let at = folder.path();

@@ -186,6 +186,14 @@ fn what_cannot_be_matched_has_a_message_and_an_exit_status() {
     refused(&lcm_in(at, &["match", "alone.json"], b""), 1, alone);
     let view = "a.json: --view: there is no view \"D\"; it must be A or B (half)";
     refused(&lcm_in(at, &["match", "a.json", "--view", "D"], b""), 1, view);
+    fs::write(at.join("plain.json"), {
+        let mut plain = Scene { reflection_model: "burley_diffuse".to_owned(), ..scene() };
+        plain.variants[0].reflection_model = Some("lambert".to_owned());
+        lights_camera_models::scene::save::to_json(&plain, None, &Registry::builtin())
+    })
+    .expect("writable");
+    let plain = "error: no parameter of view B is free by default; name some with --free: base_colour\n";
+    refused(&lcm_in(at, &["match", "plain.json"], b""), 2, plain);
     let free = "--free: \"shine\" is free, but view B has no such parameter; free some of base_colour,";
     refused(&lcm_in(at, &["match", "a.json", "--free", "shine"], b""), 2, free);
     refused(&lcm_in(at, &["match", "a.json", "--on", "paper"], b""), 2, "invalid value 'paper'");

@@ -93,6 +93,8 @@ fn wrong_usage_is_reported() {
         2,
         "mitsuba always contains all objects; omit --object",
     );
+    let object = "there is no object \"-1\"; it must be a name, or an index from 0 to 0";
+    refused(&export(folder.path(), &["--as", "wgsl", "--object", "-1"]), 1, object);
     refused(&export(folder.path(), &["room.json", "--as", "mitsuba"]), 1, "room.json");
     refused(&lcm_in(folder.path(), &["exprt"], b""), 2, "did you mean lcm export?");
     assert_eq!(names(folder.path()), Vec::<String>::new());

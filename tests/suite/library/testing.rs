@@ -192,6 +192,18 @@ fn its_equation_is_not_looked_at() {
 }
 
 #[test]
+#[should_panic(expected = "paper: the name is empty")]
+fn nor_is_it_compared_in_two_languages() {
+    testing::assert_parity::<Nameless>();
+}
+
+#[test]
+#[should_panic(expected = "paper: the name is empty")]
+fn nor_on_the_gpu() {
+    testing::assert_parity_on_gpu::<Nameless>();
+}
+
+#[test]
 #[should_panic(expected = "paper: declares that it conserves energy, but reflects 1.5")]
 fn a_model_that_makes_light_fails() {
     testing::assert_laws::<Glowing>();

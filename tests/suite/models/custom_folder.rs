@@ -452,6 +452,53 @@ fn declarations_agree_on_types_in_the_order_of_names() {
 }
 
 #[test]
+fn of_files_with_different_units_the_later_is_refused_everywhere() {
+    let bench = Bench::new();
+    let with_unit = |text: &str| text.replace("\"max\": 9", "\"max\": 9, \"unit\": \"degree\"");
+    for id in ["good", "good_too", "third"] {
+        bench.put(&format!("{id}.wgsl"), &model("polish"));
+    }
+    bench.put("other_unit.wgsl", &with_unit(&model("polish")));
+    // The one that is refused decides about no other.
+    let two = "{ \"name\": \"polish\", \"unit\": \"degree\" }, { \"name\": \"haze\", \"max\": 9 }";
+    bench.put("pair.wgsl", &model("haze").replace("{ \"name\": \"haze\", \"max\": 9 }", two));
+    bench.put("rest.wgsl", &with_unit(&model("haze")));
+    let refused = ["other_unit", "pair"];
+    let mut registry = bench.registry();
+    let problems = declare_rest(&mut registry).problems;
+    let told: Vec<_> = problems.iter().map(|(_, problem)| problem.to_string()).collect();
+    assert_eq!(told.len(), refused.len(), "{told:?}");
+    for (said, id) in told.iter().zip(refused) {
+        assert!(said.starts_with(&format!("models/{id}.wgsl:1:")), "{said}");
+        assert!(said.contains("it is in degree here, but without a unit in good;"), "{said}");
+    }
+    let ids: Vec<_> = registry.custom_models().map(|(model, _)| model.declaration.id).collect();
+    assert_eq!(ids, ["good", "good_too", "rest", "third"]);
+    for id in &ids {
+        // The window reads them so, and commands below.
+        let path = bench.models().join(format!("{id}.wgsl"));
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(custom::read(&path, &text, &registry).is_ok(), "{id}");
+        assert_eq!(read_model(id, &mut bench.registry()), Reading::Read, "{id}");
+        let told = bench.run("check -", &scene(id, &json!({}), None));
+        assert_eq!(told.status, Some(0), "{id}: {}", told.err);
+    }
+    for id in refused {
+        assert!(matches!(read_model(id, &mut bench.registry()), Reading::Broken(_)), "{id}");
+        for command in ["check -", "render - --size 8x8 --renderer cpu -o x.png"] {
+            let told = bench.run(command, &scene(id, &json!({}), Some("good")));
+            assert_eq!(told.status, Some(1), "{command}: {}", told.err);
+            let named = |name: &str| told.err.contains(&format!("{name}.wgsl:1:"));
+            assert!(named(id) && !named("good"), "{command}: {}", told.err);
+        }
+        assert_eq!(bench.run(&format!("models check {id}"), "").status, Some(1));
+    }
+    let listed = bench.run("models", "");
+    assert!(listed.status == Some(1) && !listed.err.contains("good.wgsl"), "{}", listed.err);
+    assert!(refused.iter().all(|id| listed.err.contains(&format!("{id}.wgsl:1:"))), "{}", listed.err);
+}
+
+#[test]
 fn brackets_in_brackets_are_read_on_every_thread() {
     let bench = Bench::new();
     for i in 0..8 {

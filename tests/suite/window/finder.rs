@@ -2,6 +2,7 @@
 
 use bevy_egui::egui::{Event, Key, Modifiers, vec2};
 use lights_camera_models::{
+    custom,
     document::Selection,
     panel::{
         Panels,
@@ -146,6 +147,31 @@ fn a_row_says_why_it_is_found_where_its_name_does_not() {
     ] {
         let texts = notes(letters);
         assert!(texts.iter().any(|text| text.starts_with(why)), "{letters}: {texts:?}");
+    }
+}
+
+#[test]
+fn models_of_one_name_are_told_apart() {
+    let mut bench = bench();
+    let text = "/* lcm { \"name\": \"Sheen cloth\" } */\nfn response(l: vec3<f32>, v: vec3<f32>, frame: Frame, m: \
+                Parameters) -> Terms {\n    return Terms(vec3(0.0), vec3(0.5), vec3(0.0));\n}\n";
+    for id in ["cloth_a", "cloth_b"] {
+        let file = format!("models/{id}.wgsl");
+        let model = custom::read(file.as_ref(), text, &bench.registry).expect("valid");
+        bench.registry.put_custom_model(model);
+    }
+    for (key, modifiers) in [(Key::F, Modifiers::COMMAND), (Key::R, Modifiers::NONE)] {
+        bench.key(key, modifiers);
+        bench.settle();
+        write(&mut bench, "cloth");
+        let texts = bench.texts();
+        for id in ["cloth_a", "cloth_b"] {
+            assert!(
+                texts.iter().any(|text| text.contains(&format!("{id} · unknown author"))),
+                "{id}: {texts:?}"
+            );
+        }
+        bench.key(Key::Escape, Modifiers::NONE);
     }
 }
 
