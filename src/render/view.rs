@@ -464,7 +464,8 @@ mod tests {
         let lit = |app: &mut App, light_type: &str, enabled: bool| {
             let light = Light { light_type: light_type.to_owned(), enabled, ..Light::default() };
             let types = Registry::builtin().light_set([light_type]);
-            *app.world_mut().resource_mut() = Shown { lights: vec![light], types, ..Shown::default() };
+            *app.world_mut().resource_mut::<Shown>() =
+                Shown { lights: vec![light], types, ..Shown::default() };
             app.update();
             app.world().get::<Drawing>(view).expect("a view").converged.total
         };

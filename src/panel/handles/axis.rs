@@ -44,7 +44,7 @@ pub(super) static SORT: Sort = Sort {
                 };
                 around.filter(is_clear).unwrap_or_else(|| {
                     let others = others(session, target.at, lens);
-                    arrows_at_edge(target.at, *middle, STUB * part * ARM, (*extent, &others), lens)
+                    arrows_at_edge(target.at, *middle, STUB * part * ARM, (*extent, &others[..]), lens)
                 })
             }
             (Body::Light(light, _), HandleMode::Move) if light.position.is_some() => {
