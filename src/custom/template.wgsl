@@ -2,8 +2,8 @@
 {
     // The name in the window. The id in scene files is the name of this file, FILE.
     "name": NAME,
-    "author": "name and year",
-    "source": "publication",
+    // "author": "name and year",
+    // "source": "publication",
     "summary": "A matte body under a soft gloss; the two share the light.",
     // One part for each term: total, ambient, diffuse, specular, transmitted. _x is a subscript, ^x a superscript.
     "equation": [

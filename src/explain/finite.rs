@@ -10,6 +10,7 @@ use glam::{Vec2, Vec3};
 
 use super::{
     Part, Seen as Explained,
+    edited_lights::{EditedLights, Lamp},
     numbers::{number, triple},
     pixel,
 };
@@ -17,7 +18,7 @@ use crate::files::Shown as _;
 use crate::{
     channel::colours::{INFINITE, NAN},
     light::{
-        Emitter, Incident, LightRecord,
+        Emitter, Incident, LightEntry, LightRecord,
         extent::{Sample, Seen},
     },
     optics::{Frame, TermSelection, Terms},
@@ -37,6 +38,8 @@ const VIEWS: [f32; 6] = [0.0, 30.0, 45.0, 60.0, 85.0, 89.9];
 const PLANES: [f32; 5] = [0.0, 60.0, 120.0, 180.0, 270.0];
 /// Maximum number of objects at which lights are tried.
 const MOST_OBJECTS: usize = 64;
+/// Maximum number of places at which the WGSL of lights is interpreted.
+const MOST_INTERPRETED: usize = 16;
 /// Maximum number of different surfaces to try.
 const MOST_SURFACES: usize = 512;
 /// Maximum number of pixels traced to their source.
@@ -78,10 +81,11 @@ impl Scope {
     }
 }
 
-/// Results for surfaces, by model, version and parameters: each is tried once.
+/// Results for surfaces, by model, version and parameters: each is tried once. Edited light types are prepared once.
 #[derive(Debug, Default)]
 pub struct Tried {
     surfaces: HashMap<(&'static str, u64, Vec<u32>), Option<String>>,
+    lights: EditedLights,
     too_long: Vec<NotFinite>,
 }
 
@@ -94,11 +98,11 @@ impl Tried {
     }
 }
 
-/// Tries the lights of a scene at its objects and in its room, and its models for directions of light and
-/// viewer. Skips models that the CPU cannot run.
+/// Tries the lights of a scene at its objects and in its room, also those of types whose WGSL was edited, and its models
+/// for directions of light and viewer. Skips what the CPU cannot run.
 #[must_use]
 pub fn probe(scene: &Scene, registry: &Registry, scope: Scope, tried: &mut Tried) -> Vec<NotFinite> {
-    let mut found = lights(scene, registry, scope);
+    let mut found = lights(scene, registry, scope, &mut tried.lights);
     tried.too_long.clear();
     if tried.surfaces.len() > 8 * MOST_SURFACES {
         tried.surfaces.clear();
@@ -134,20 +138,36 @@ fn named(name: Option<&str>) -> String {
 }
 
 /// The active lights that are not finite somewhere, each with the first such position.
-fn lights(scene: &Scene, registry: &Registry, scope: Scope) -> Vec<NotFinite> {
+fn lights(scene: &Scene, registry: &Registry, scope: Scope, edited: &mut EditedLights) -> Vec<NotFinite> {
     let places = places(scene);
+    let few = places.len().div_ceil(MOST_INTERPRETED).max(1);
     let mut found = Vec::new();
     for (i, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.enabled) {
-        let Some(entry) = registry.light(&light.light_type) else { continue };
-        if !scope.has(entry.declaration.wgsl.path, registry) {
+        let Some((entry, emitter, record)) = emitter(light, registry, scene.display.encoding) else {
             continue;
-        }
-        let Some((_, emitter, record)) = emitter(light, registry, scene.display.encoding) else { continue };
-        let odd_at = if entry.declaration.extent { with_extent } else { of_direction };
-        let odd = places.iter().find_map(|p| Some((*p, odd_at(&*emitter, &record, *p)?)));
-        found.extend(odd.map(|(p, odd)| of_light(i, light.name.as_deref(), &light.light_type, p, &odd)));
+        };
+        let wanted = scope.has(entry.declaration.wgsl.path, registry);
+        let mut tried = places.iter().filter(|_| wanted);
+        let odd = tried.find_map(|p| Some((*p, given(entry, &*emitter, &record, *p)?)));
+        let odd = odd.map(|(p, odd)| of_light(i, light.name.as_deref(), &light.light_type, p, &odd));
+        let tried = places.iter().copied().step_by(few);
+        found.extend(odd.or_else(|| of_edited(scene, i, registry, edited, tried)));
     }
     found
+}
+
+/// A light that is not finite at one of these places by the edited WGSL of its type.
+fn of_edited(
+    scene: &Scene,
+    index: usize,
+    registry: &Registry,
+    edited: &mut EditedLights,
+    mut places: impl Iterator<Item = Vec3>,
+) -> Option<NotFinite> {
+    let light = scene.lights.get(index)?;
+    let lamp = edited.lamp(light, registry, scene.display.encoding)?;
+    let (p, odd) = places.find_map(|p| Some((p, interpreted(&lamp, p)?)))?;
+    Some(of_light(index, light.name.as_deref(), &light.light_type, p, &odd))
 }
 
 fn of_light(index: usize, name: Option<&str>, id: &str, p: Vec3, odd: &Odd) -> NotFinite {
@@ -179,9 +199,25 @@ impl Odd {
     }
 }
 
-/// The first quantity that is not finite of a light without extent at a point.
-fn of_direction(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<Odd> {
-    let (value, l) = match emitter.incident(record, p) {
+/// The first quantity without a legal value of a light at a point, by its functions in Rust.
+fn given(entry: &LightEntry, emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<Odd> {
+    match entry.declaration.extent {
+        true => with_extent(|u| emitter.sample(record, p, u), |l| emitter.seen(record, p, l)),
+        false => of_direction(emitter.incident(record, p)),
+    }
+}
+
+/// The same by its functions in WGSL.
+fn interpreted(lamp: &Lamp, p: Vec3) -> Option<Odd> {
+    match lamp.has_extent() {
+        true => with_extent(|u| lamp.sample(p, u), |l| lamp.seen(p, l)),
+        false => of_direction(lamp.incident(p)),
+    }
+}
+
+/// The first quantity that is not finite of light from one direction.
+fn of_direction(incident: Incident) -> Option<Odd> {
+    let (value, l) = match incident {
         Incident::From { l, intensity } => (intensity, l),
         Incident::Uniform { intensity } => (intensity, Vec3::Z),
     };
@@ -191,12 +227,12 @@ fn of_direction(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<
     if value != Vec3::ZERO && !l.is_finite() { Odd::infinite("direction", triple(l)) } else { None }
 }
 
-/// The first quantity without a legal value of a light with extent at a point: in samples, or seen in their directions and
-/// in some others.
-fn with_extent(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<Odd> {
+/// The first quantity without a legal value of a light with extent: in samples, or seen in their directions and in some
+/// others.
+fn with_extent(sample: impl Fn(Vec2) -> Sample, seen: impl Fn(Vec3) -> Seen) -> Option<Odd> {
     let mut directions = directions();
     for u in grid() {
-        let Sample { l, radiance, pdf } = emitter.sample(record, p, u);
+        let Sample { l, radiance, pdf } = sample(u);
         if !radiance.is_finite() {
             return Odd::infinite("radiance in sample", triple(radiance));
         }
@@ -211,7 +247,7 @@ fn with_extent(emitter: &dyn Emitter, record: &LightRecord, p: Vec3) -> Option<O
         }
     }
     directions.into_iter().find_map(|l| {
-        let Seen { radiance, pdf, distance } = emitter.seen(record, p, l);
+        let Seen { radiance, pdf, distance } = seen(l);
         match () {
             () if !radiance.is_finite() => Odd::infinite("radiance in seen", triple(radiance)),
             // Infinite is far away.
@@ -328,10 +364,11 @@ pub fn traced(
     pixels: &[[u32; 2]],
 ) -> Vec<NotFinite> {
     let mut found: Vec<NotFinite> = Vec::new();
+    let mut edited = EditedLights::default();
     for at in pixels.iter().step_by(pixels.len().div_ceil(MOST_PIXELS).max(1)) {
         let explained = pixel(scene, registry, settings, *at).ok();
         let Some(seen) = explained.and_then(|explained| explained.seen) else { continue };
-        for odd in of_pixel(scene, registry, &seen, *at) {
+        for odd in of_pixel(scene, registry, &seen, *at, &mut edited) {
             if !found.iter().any(|known| known.path == odd.path) {
                 found.push(odd);
             }
@@ -340,7 +377,13 @@ pub fn traced(
     found
 }
 
-fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 2]) -> Vec<NotFinite> {
+fn of_pixel(
+    scene: &Scene,
+    registry: &Registry,
+    seen: &Explained,
+    [x, y]: [u32; 2],
+    edited: &mut EditedLights,
+) -> Vec<NotFinite> {
     let mut found = Vec::new();
     let of =
         |what| NotFinite { path: part("objects", seen.object.index), name: seen.object.name.clone(), what };
@@ -348,8 +391,8 @@ fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 
         for lit in spot.lights.iter().filter(|lit| !lit.is_finite()) {
             let light = scene.lights.get(lit.light.index).filter(|_| lit.integral.is_some());
             let of_extent = light.and_then(|light| {
-                let (_, emitter, record) = emitter(light, registry, scene.display.encoding)?;
-                with_extent(&*emitter, &record, spot.position)
+                let (entry, emitter, record) = emitter(light, registry, scene.display.encoding)?;
+                given(entry, &*emitter, &record, spot.position)
             });
             let any = || Odd::infinite("light", triple(lit.arriving)).filter(|_| !lit.arriving.is_finite());
             let Part { index, name, id, .. } = &lit.light;
@@ -362,6 +405,12 @@ fn of_pixel(scene: &Scene, registry: &Registry, seen: &Explained, [x, y]: [u32; 
                 }
             });
         }
+    }
+    if found.is_empty() {
+        // Only the GPU runs an edited light type.
+        let active = scene.lights.iter().enumerate().filter(|(_, light)| light.enabled);
+        let places = || seen.spots.iter().map(|spot| spot.position).chain([seen.position]);
+        found.extend(active.filter_map(|(i, _)| of_edited(scene, i, registry, edited, places())));
     }
     if found.is_empty() {
         // Only the GPU produces it, or the CPU cannot run the model.

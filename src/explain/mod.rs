@@ -39,6 +39,7 @@ use crate::{
 mod arriving;
 mod collect;
 pub mod dark_glass;
+mod edited_lights;
 mod factor_curve;
 pub mod finite;
 mod geometry;

@@ -56,11 +56,28 @@ pub const STAND_IN: &str = " (a grey stand-in)";
 /// grey stand-in for A".
 #[must_use]
 pub fn shown_instead(names: &[impl AsRef<str>]) -> String {
-    let bare: Option<Vec<_>> = names.iter().map(|name| name.as_ref().strip_suffix(STAND_IN)).collect();
-    match bare {
-        Some(bare) => format!("a grey stand-in for {}", listed(&bare, "and")),
-        None => format!("the last good version of {}", listed(names, "and")),
+    let (good, bare) = parted(names);
+    let good = (!good.is_empty()).then(|| format!("the last good version of {}", listed(&good, "and")));
+    let bare = (!bare.is_empty()).then(|| format!("a grey stand-in for {}", listed(&bare, "and")));
+    good.into_iter().chain(bare).collect::<Vec<_>>().join(", and ")
+}
+
+/// The same without names, in short: "the last good version", "a grey stand-in".
+#[must_use]
+pub fn kind_shown_instead(names: &[impl AsRef<str>]) -> &'static str {
+    match parted(names) {
+        (_, bare) if bare.is_empty() => "the last good version",
+        (good, bare) if good.is_empty() && bare.len() == 1 => "a grey stand-in",
+        (good, _) if good.is_empty() => "grey stand-ins",
+        _ => "last good versions and grey stand-ins",
     }
+}
+
+/// The names of models of which the last good version is shown, and of those with a stand-in.
+fn parted(names: &[impl AsRef<str>]) -> (Vec<&str>, Vec<&str>) {
+    let (bare, good): (Vec<_>, Vec<_>) =
+        names.iter().map(AsRef::<str>::as_ref).partition(|name| name.ends_with(STAND_IN));
+    (good, bare.into_iter().map(|name| name.trim_end_matches(STAND_IN)).collect())
 }
 
 #[cfg(test)]
@@ -72,6 +89,11 @@ mod tests {
         let said = |names: &[&str]| shown_instead(names);
         assert_eq!(said(&["A", "B"]), "the last good version of A and B");
         assert_eq!(said(&["A (a grey stand-in)"]), "a grey stand-in for A");
-        assert_eq!(said(&["A (a grey stand-in)", "B"]), "the last good version of A (a grey stand-in) and B");
+        let both = ["A (a grey stand-in)", "B"];
+        assert_eq!(said(&both), "the last good version of B, and a grey stand-in for A");
+        assert_eq!(kind_shown_instead(&both[1..]), "the last good version");
+        assert_eq!(kind_shown_instead(&both[..1]), "a grey stand-in");
+        assert_eq!(kind_shown_instead(&[both[0]; 2]), "grey stand-ins");
+        assert_eq!(kind_shown_instead(&both), "last good versions and grey stand-ins");
     }
 }

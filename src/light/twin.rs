@@ -1,6 +1,9 @@
-//! The WGSL functions of light types.
+//! The WGSL functions of light types, and their arguments for the interpreter.
 
-use super::LightEntry;
+use glam::Vec3;
+
+use super::{LightEntry, LightRecord};
+use crate::{optics::colour::Encoding, parameter::Values};
 
 /// A function of a light type's twin in WGSL: `incident_spot` for `incident` and the id `spot`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,5 +57,37 @@ impl Twin {
             _ => format!("m: {}, ", light.parameter_struct()),
         };
         format!("(light: Light, {own}p: vec3<f32>{}) -> {}", self.more[0], self.result)
+    }
+}
+
+impl LightEntry {
+    /// The parameters of a light as its functions in WGSL take them, and the numbers of its files.
+    pub(crate) fn arguments(&self, values: &Values, encoding: Encoding) -> (Vec<u32>, Vec<u32>) {
+        let mut words = self.words(values, encoding);
+        let mut files = Vec::new();
+        for (at, table) in self.tables(values) {
+            words[at] = files.len() as u32;
+            files.extend(table.numbers.iter().map(|n| n.to_bits()));
+        }
+        (words, files)
+    }
+}
+
+impl LightRecord {
+    /// The arguments of a function of a light type in WGSL: the light, its own parameters, the point.
+    pub(crate) fn arguments(&self, own: &[u32], p: Vec3) -> Vec<u32> {
+        let Self { light_type, position, direction, colour, intensity } = *self;
+        let mut arguments = Vec::new();
+        let mut put = |numbers: &[f32]| arguments.extend(numbers.iter().map(|n| n.to_bits()));
+        put(&position.to_array());
+        put(&[f32::from_bits(light_type)]);
+        put(&direction.to_array());
+        put(&[intensity]);
+        put(&colour.to_array());
+        // Where its parameters begin: they are given to it here.
+        put(&[0.0]);
+        arguments.extend(own);
+        arguments.extend(p.to_array().map(f32::to_bits));
+        arguments
     }
 }

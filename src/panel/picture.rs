@@ -21,7 +21,7 @@ use super::{
 use crate::{
     caption::single,
     channel::DebugChannel,
-    library::status::{ShaderStatus, shown_instead},
+    library::status::{STAND_IN, ShaderStatus, shown_instead},
     optics::TermSelection,
     reflection::Term,
     scene::comparison::Edge,
@@ -403,7 +403,8 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
     }
     names.sort_by_key(|name| *name != shown);
     let few = |all: Vec<&str>| {
-        let more = format!("{} more", all.len().saturating_sub(MOST));
+        let kind = if all.iter().all(|name| name.ends_with(STAND_IN)) { STAND_IN } else { "" };
+        let more = format!("{} more{kind}", all.len().saturating_sub(MOST));
         let shown: Vec<_> = all.iter().take(MOST).copied().collect();
         shown_instead(&if all.len() > MOST { [shown, vec![more.as_str()]].concat() } else { shown })
     };

@@ -6,7 +6,7 @@ use super::{
     state::{Converging, MESSAGES_TAB, SHADER_TAB},
     taking,
 };
-use crate::text::per_cent;
+use crate::{library::status::kind_shown_instead, text::per_cent};
 
 /// The status line.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -127,13 +127,14 @@ fn shader_errors(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if count == 0 || session.edits_troubles() {
         return;
     }
-    let stale = if session.shaders.stale().is_empty() {
-        "nothing in the picture depends on it"
+    let stale = session.shaders.stale();
+    let effect = if stale.is_empty() {
+        "nothing in the picture depends on it".to_owned()
     } else {
-        "the picture shows the last good version"
+        format!("the picture shows {}", kind_shown_instead(&stale))
     };
     icon::sign(ui, [14.0, 16.0], 5.5, Severity::Error);
-    let text = format!("{}: {stale}", plural(count, "shader error"));
+    let text = format!("{}: {effect}", plural(count, "shader error"));
     let text = RichText::new(text).small().color(Palette::here(ui).error);
     let button = ui.add(Button::new(text).frame_when_inactive(false).small());
     let tip = keys::hint(ui.ctx(), "Show where the errors are", "panel.shader");

@@ -233,6 +233,12 @@ pub(crate) const SHARED: [Source; 18] = [
 /// The table from which a single light type reads the numbers of its files: one row, see [`compose_light`].
 pub const FILE_TABLE: &str = "file_table";
 
+/// The room for the numbers of the files of a light in [`FILE_TABLE`]: that of its defaults, at least 1.
+pub(crate) fn numbers_of_files(light: &LightEntry) -> usize {
+    let tables = light.parameters.iter().filter_map(|p| Values::default().table(p));
+    tables.map(|table| table.numbers.len()).sum::<usize>().max(1)
+}
+
 /// The source of a single light type, with a function that calls it. The numbers of its files are not in
 /// `light_words`, but in a table of one row with room for those of its defaults.
 #[must_use]
@@ -245,8 +251,7 @@ pub fn compose_light(sources: &Sources, light: &LightEntry) -> Composed {
         c.push("(lobes)", &part("no_lobes", &[]));
     }
     push_light(&mut c, light);
-    let tables = light.parameters.iter().filter_map(|p| Values::default().table(p));
-    let numbers = tables.map(|table| table.numbers.len()).sum::<usize>().max(1);
+    let numbers = numbers_of_files(light);
     let extent = light.declaration.extent;
     let call = |twin: &Twin| {
         let name = if extent { format!("{}_light", twin.name) } else { twin.name.to_owned() };

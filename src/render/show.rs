@@ -1,17 +1,20 @@
 //! Views in the window: their textures are copied to their positions, and the panels are drawn over them in
-//! one pass.
+//! one pass. Until they are ready, the window has one colour.
 
 use bevy::{
     core_pipeline::{Core2d, Core2dSystems},
     prelude::*,
     render::{
-        RenderApp,
+        Render, RenderApp, RenderSystems,
         extract_component::{ExtractComponent, ExtractComponentPlugin},
         render_asset::RenderAssets,
-        render_resource::{Extent3d, Origin3d, TexelCopyTextureInfo, Texture},
-        renderer::{RenderContext, ViewQuery},
+        render_resource::{
+            CommandEncoderDescriptor, Extent3d, LoadOp, Operations, Origin3d, RenderPassColorAttachment,
+            RenderPassDescriptor, StoreOp, TexelCopyTextureInfo, Texture,
+        },
+        renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         texture::GpuImage,
-        view::ViewTarget,
+        view::{ExtractedWindows, ViewTarget},
     },
 };
 
@@ -23,10 +26,12 @@ impl Plugin for ShowPlugin {
     fn build(&self, app: &mut App) {
         app.add_plugins(ExtractComponentPlugin::<Shows>::default());
         if let Some(render) = app.get_sub_app_mut(RenderApp) {
-            render.add_systems(
-                Core2d,
-                copy.after(Core2dSystems::MainPass).before(bevy_egui::render::prepare_egui_pass),
-            );
+            render
+                .add_systems(
+                    Core2d,
+                    copy.after(Core2dSystems::MainPass).before(bevy_egui::render::prepare_egui_pass),
+                )
+                .add_systems(Render, clear_first.in_set(RenderSystems::PrepareResources));
         }
     }
 }
@@ -81,5 +86,30 @@ fn copy(
             from(window, at),
             Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
         );
+    }
+}
+
+/// Clears a window that is presented for the first time. Its cameras draw nothing before their shaders are compiled, but
+/// Bevy presents it, as Wayland demands: it would show whatever is in the memory until the next frame.
+fn clear_first(
+    windows: Res<ExtractedWindows>,
+    colour: Res<ClearColor>,
+    device: Res<RenderDevice>,
+    queue: Res<RenderQueue>,
+) {
+    for window in windows.values().filter(|window| window.needs_initial_present) {
+        let Some(view) = &window.swap_chain_texture_view else { continue };
+        let ops = Operations { load: LoadOp::Clear(colour.0.to_linear().into()), store: StoreOp::Store };
+        let attachment = RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops };
+        let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
+        drop(encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("empty window"),
+            color_attachments: &[Some(attachment)],
+            depth_stencil_attachment: None,
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        }));
+        queue.submit([encoder.finish()]);
     }
 }

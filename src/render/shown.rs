@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     registry::{LightSet, Registry},
-    scene::{Light, Object, Observer, Repetition},
+    scene::{Light, Object, Observer, Repetition, has_extent},
 };
 
 /// The displayed values of an object, except for its transform.
@@ -30,6 +30,11 @@ impl Shown {
     /// The active lights.
     pub(super) fn shining(&self) -> impl Iterator<Item = &Light> {
         self.lights.iter().filter(|light| light.enabled)
+    }
+
+    /// True if any active light has extent, so that pictures are means of samples.
+    pub(super) fn has_extent(&self, registry: &Registry) -> bool {
+        has_extent(self.shining(), registry)
     }
 }
 

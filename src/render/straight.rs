@@ -92,6 +92,7 @@ fn choose(
     by_chance: Query<(), With<ByChance>>,
     mut commands: Commands,
 ) {
+    // With lights that are switched off: a switch would otherwise change the pipelines, too.
     let sampled = registry.has_extent(shown.types) || !by_chance.is_empty();
     for (camera, known, tone, samples, hdr, view) in &cameras {
         // Means are of half floats.

@@ -259,7 +259,7 @@ fn rest(
     by_chance: Query<Option<&ViewCopy>, With<ByChance>>,
 ) {
     let (all, some) = changes.find();
-    let extent = changes.registry.has_extent(shown.types);
+    let extent = shown.has_extent(&changes.registry);
     let target = convergence.target.max(1);
     // True if a picture begins, and the minimum number of samples missing in another.
     let (mut begins, mut missing) = (false, None::<u32>);
@@ -332,7 +332,7 @@ mod tests {
     use crate::{
         optics::TermSelection,
         reference::LightSamples,
-        scene::{Object, Scene},
+        scene::{Light, Object, Scene},
     };
 
     const SIZE: UVec2 = UVec2::new(64, 48);
@@ -453,6 +453,31 @@ mod tests {
         app.world_mut().entity_mut(body).remove::<ViewCopy>();
         let common: Vec<u32> = totals(&mut app);
         assert_eq!(common, [target, 0]);
+    }
+
+    #[test]
+    fn only_lights_with_extent_that_shine_make_a_view_converge() {
+        let mut app = app(1);
+        let world = app.world_mut();
+        let view = world.query_filtered::<Entity, With<View>>().iter(world).next().expect("there is a view");
+        world.entity_mut(view).insert(Hdr);
+        let lit = |app: &mut App, light_type: &str, enabled: bool| {
+            let light = Light { light_type: light_type.to_owned(), enabled, ..Light::default() };
+            let types = Registry::builtin().light_set([light_type]);
+            *app.world_mut().resource_mut::<Shown>() =
+                Shown { lights: vec![light], types, ..Shown::default() };
+            app.update();
+            app.world().get::<Drawing>(view).expect("a view").converged.total
+        };
+        for (light_type, enabled, total) in [
+            ("environment", true, LightSamples::DEFAULT),
+            ("environment", false, 0),
+            ("rectangle", true, LightSamples::DEFAULT),
+            ("rectangle", false, 0),
+            ("point", true, 0),
+        ] {
+            assert_eq!(lit(&mut app, light_type, enabled), total, "{light_type}, {enabled}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::{
     Outcome,
-    lamp::{arguments, sample, words},
+    lamp::sample,
     noticed,
     sample::{any_direction, place, random},
     words::{run, vectors},
@@ -59,9 +59,9 @@ pub fn all(light: &LightEntry, sources: &Sources) -> Outcome {
         let case = |what: String| Err(format!("{values:?} at {p}, {record:?}, sample {u}: {what}"));
         let emitter = (light.instantiate)(&values, Encoding::Srgb);
         let own = emitter.sample(&record, p, u);
-        let (parameters, files) = words(light, &values);
+        let (parameters, files) = light.arguments(&values, Encoding::Srgb);
         let with = |last: &[f32]| {
-            let mut all = arguments(&record, &parameters, p);
+            let mut all = record.arguments(&parameters, p);
             all.extend(last.iter().map(|n| n.to_bits()));
             all
         };

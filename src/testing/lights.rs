@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::{
     Outcome, extended,
-    lamp::{arguments, sample, words},
+    lamp::sample,
     noticed,
     sample::{place, random},
     words::{run, vectors},
@@ -61,8 +61,8 @@ pub fn parity(light: &LightEntry, sources: &Sources) -> Outcome {
     for _ in 0..4000 {
         let (values, record) = sample(light, &mut seed);
         let p = place(&mut seed);
-        let (own, files) = words(light, &values);
-        let results: [u32; 7] = run(&program, &files, &arguments(&record, &own, p))?;
+        let (own, files) = light.arguments(&values, Encoding::Srgb);
+        let results: [u32; 7] = run(&program, &files, &record.arguments(&own, p))?;
         let ([direction, intensity], everywhere) = (vectors(&results), results[6]);
         let wgsl = (direction, intensity);
         let (l, rust, uniform) = flat((light.instantiate)(&values, Encoding::Srgb).incident(&record, p));

@@ -6,7 +6,7 @@ use super::{
     rows,
 };
 use crate::{
-    explain::{Line, Lit, Pair, Seen, pairs},
+    explain::{Explanation, Line, Lit, Pair, Seen, pairs},
     panel::prelude::*,
 };
 
@@ -18,11 +18,11 @@ pub(super) fn beside(ui: &mut Ui, sides: [&Explained; 2], session: &Session, reg
     ScrollArea::vertical().id_salt("beside").auto_shrink(false).show(ui, |ui| {
         ui.set_max_width(ui.available_width() - 10.0);
         rows::close(ui);
-        halves(ui, false, |ui, i| head(ui, sides[i], session));
-        let seen = sides.map(|side| side.explanation.seen.as_ref());
-        let [Some(a), Some(b)] = seen else {
-            theme::note(ui, "Only one of the views shows an object here.");
-            return;
+        halves(ui, false, |ui, i| head(ui, sides[i], session, registry));
+        let (a, b) = match sides.map(|side| side.explanation.seen.as_ref()) {
+            [Some(a), Some(b)] => (a, b),
+            [None, None] => return drop(theme::note(ui, "Neither view shows an object here.")),
+            _ => return drop(theme::note(ui, "Only one of the views shows an object here.")),
         };
         if a.object.index != b.object.index {
             theme::note(ui, "The views show different objects here.");
@@ -75,18 +75,25 @@ fn shown<'s>(ctx: &Context, seen: &'s Seen) -> Option<&'s Lit> {
     probe::shown_light(ctx, spot).or_else(|| spot.brightest().first().copied())
 }
 
-/// Shows the name of a view, its models and its display code.
-fn head(ui: &mut Ui, explained: &Explained, session: &Session) {
+/// Shows the name of a view, its models or what else is seen, and its display code.
+fn head(ui: &mut Ui, explained: &Explained, session: &Session, registry: &Registry) {
     let letter = LETTERS.get(explained.view).copied().unwrap_or("?");
     let [r, g, b] = explained.explanation.code();
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         rows::chip(ui, [r, g, b], vec2(28.0, 16.0));
         ui.label(theme::strong(ui, format!("View {letter}: red {r}, green {g}, blue {b}")));
-        if let Some(seen) = &explained.explanation.seen {
-            let models = format!("{}, {}", seen.model.declaration.name, seen.shading.name);
-            ui.label(theme::small(ui, models));
-        }
+        let what = match &explained.explanation {
+            Explanation { seen: Some(seen), .. } => {
+                format!("{}, {}", seen.model.declaration.name, seen.shading.name)
+            }
+            Explanation { lamp: Some(lamp), .. } => {
+                let lights = lamp.lights.iter().map(|light| Selection::Light(light.index));
+                lights.map(|light| session.name_of(light, registry)).collect::<Vec<_>>().join(" with ")
+            }
+            _ => "background".to_owned(),
+        };
+        ui.label(theme::small(ui, what));
         let named = explained.view.checked_sub(1).and_then(|i| session.document.variants.get(i));
         if let Some(name) = named.and_then(|variant| variant.name.as_deref()) {
             ui.label(theme::small(ui, name));

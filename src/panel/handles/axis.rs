@@ -9,10 +9,22 @@ use super::{
     paint, plane,
     shape::{ARM, Around, Body, Extent, GAP, LETTER, LETTER_RADIUS, LETTERS, Placed, STUB},
 };
-use crate::panel::{marks::Lens, state::HandleMode};
+use crate::{
+    panel::{
+        marks::Lens,
+        state::{HandleMode, Session},
+    },
+    scene::Object,
+};
 
 /// Minimum projected length of an arrow, in points: an axis seen end on cannot be dragged along.
 const SHORTEST: f32 = 30.0;
+/// Maximum number of other objects that arrows at an edge of the view keep clear of, and the radius in points from which
+/// they are floors and rooms.
+const MOST_OTHERS: usize = 256;
+const WIDEST: f32 = 600.0;
+/// Larger than every distance in a view, in points.
+const FIRST: f32 = 1e5;
 /// Maximum length of an arrow, relative to [`ARM`].
 const LONGEST: f32 = 1.2;
 
@@ -20,13 +32,21 @@ pub(super) static SORT: Sort = Sort {
     id: "axis",
     name: |_, axis, part| format!("move {part} along {}", LETTERS[axis]),
     placed: |around| {
-        let Around { target, lens, middle, part, extent, .. } = around;
+        let Around { target, session, lens, middle, part, extent, .. } = around;
         let clear = extent.filter(|extent| extent.leaves_room(*part, lens));
         match (&target.body, around.mode) {
-            (Body::Object(..), HandleMode::Move) if clear.is_none() => {
-                arrows_at_edge(target.at, *middle, STUB * part * ARM, *extent, lens)
+            (Body::Object(..), HandleMode::Move) => {
+                let around = clear.map(|_| arrows(target.at, [*middle; 2], part * ARM, clear, lens));
+                // Where the view ends beside the object, an arrow would lie on it.
+                let is_clear = |all: &Vec<Placed>| {
+                    let mut arrows = all.iter().filter(|placed| !placed.lines.is_empty());
+                    arrows.all(|arrow| gap(arrow, *middle, *extent) > -1.0)
+                };
+                around.filter(is_clear).unwrap_or_else(|| {
+                    let others = others(session, target.at, lens);
+                    arrows_at_edge(target.at, *middle, STUB * part * ARM, (*extent, &others[..]), lens)
+                })
             }
-            (Body::Object(..), HandleMode::Move) => arrows(target.at, [*middle; 2], part * ARM, clear, lens),
             (Body::Light(light, _), HandleMode::Move) if light.position.is_some() => {
                 arrows(target.at, [*middle; 2], part * ARM, None, lens)
             }
@@ -56,9 +76,33 @@ pub(super) static SORT: Sort = Sort {
     ..Sort::PLAIN
 };
 
-/// Arrows for an object that leaves no room around it, at an edge of the view where they cover the object least. They
-/// are dragged like any others: only the motion of the pointer counts.
-fn arrows_at_edge(at: Vec3, middle: Pos2, arm: f32, extent: Option<Extent>, lens: &Lens) -> Vec<Placed> {
+/// Distance of a handle from an object with that extent around `middle`, in points; negative if the handle covers it.
+fn gap(handle: &Placed, middle: Pos2, extent: Option<Extent>) -> f32 {
+    let of = |p: Pos2| extent.map_or(0.0, |extent| p.distance(middle) - extent.towards(p - middle));
+    handle.points().map(of).fold(f32::INFINITY, f32::min)
+}
+
+/// Discs in the view over the visible objects, except the one at a position.
+fn others(session: &Session, at: Vec3, lens: &Lens) -> Vec<(Pos2, f32)> {
+    let right = session.facts.camera * Vec3::X;
+    let disc = |object: &Object| {
+        let middle = lens.project(object.position)?;
+        let side = lens.project(object.position + 0.5 * object.size * right)?;
+        Some((middle, side.distance(middle)))
+    };
+    let objects = session.document.shown().filter(|object| object.position != at);
+    objects.take(MOST_OTHERS).filter_map(disc).filter(|(_, radius)| *radius < WIDEST).collect()
+}
+
+/// Arrows for an object that leaves no room around it, at an edge of the view where they cover it and the discs over
+/// others least. They are dragged like any others: only the motion of the pointer counts.
+fn arrows_at_edge(
+    at: Vec3,
+    middle: Pos2,
+    arm: f32,
+    (extent, others): (Option<Extent>, &[(Pos2, f32)]),
+    lens: &Lens,
+) -> Vec<Placed> {
     let inset = (LONGEST * arm + LETTER + LETTER_RADIUS).min(0.5 * lens.rect.size().min_elem());
     let inside = lens.rect.shrink(inset);
     // Bottom corners first: badges and captions tend to be at the top.
@@ -75,8 +119,11 @@ fn arrows_at_edge(at: Vec3, middle: Pos2, arm: f32, extent: Option<Extent>, lens
     let mut best: Option<(f32, Vec<Placed>)> = None;
     for origin in places {
         let all = arrows(at, [origin, middle], arm, None, lens);
-        let gap = |p: Pos2| extent.map_or(0.0, |extent| p.distance(middle) - extent.towards(p - middle));
-        let free = all.iter().flat_map(Placed::points).map(gap).fold(f32::INFINITY, f32::min);
+        let beside = |p: Pos2| others.iter().map(move |(other, radius)| p.distance(*other) - radius);
+        let beside = all.iter().flat_map(Placed::points).flat_map(beside).fold(f32::INFINITY, f32::min);
+        let own = all.iter().map(|handle| gap(handle, middle, extent)).fold(f32::INFINITY, f32::min);
+        // Others count where the object itself is not covered.
+        let free = if own < 0.0 { own - FIRST } else { own.min(beside) };
         if free >= 0.0 {
             return all;
         }

@@ -14,7 +14,7 @@ use crate::{
     reference,
     registry::Registry,
     scene::limits::significant,
-    scene::{Light, Object, Observer, Scene, observer::WIDE},
+    scene::{Light, Object, Observer, Scene},
 };
 use block::Block;
 
@@ -39,6 +39,8 @@ const VISIBLE_PART: f32 = 0.05;
 
 /// Distances of a copy from the original, in widths or heights of a copy; farther away it would no longer be beside it.
 const APART: [f32; 8] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
+/// Distances of a copy that stands a little in the original rather than out of the picture, the largest first.
+const CLOSE: [f32; 9] = [0.93, 0.88, 0.83, 0.78, 0.73, 0.68, 0.63, 0.58, 0.53];
 /// Distances at which a copy may cover up to half of the original.
 const OVER: [f32; 2] = [0.45, 0.7];
 /// Width or height of a copy that leaves a small gap, in multiples of the copy's reach.
@@ -54,6 +56,8 @@ pub(super) struct Stand<'a> {
     registry: &'a Registry,
     eye: Vec3,
     turn: Quat,
+    /// Tangents of half the field of view, across and up. Each view in the window shows at least this.
+    opening: [f32; 2],
     /// The space that the objects take.
     taken: Vec<Block>,
     /// The position of the selected object.
@@ -63,7 +67,9 @@ pub(super) struct Stand<'a> {
 impl<'a> Stand<'a> {
     pub(super) fn new(scene: &'a Scene, registry: &'a Registry, eye: Vec3, turn: Quat) -> Self {
         let taken = scene.objects.iter().map(|o| Block::of(o, registry)).collect();
-        Self { scene, registry, eye, turn, taken, aim: None }
+        let angle = scene.view_angle();
+        let up = (0.5 * angle.degrees.to_radians()).tan();
+        Self { scene, registry, eye, turn, opening: [angle.keeps * up, up], taken, aim: None }
     }
 
     /// New lamps light this place if it is in view.
@@ -97,8 +103,8 @@ impl<'a> Stand<'a> {
     }
 
     /// Position of a copy of the object with the given index: beside the original as seen by the camera, at the same
-    /// depth. Prefers being cut off by the edge of the picture over covering the original, and covering the original
-    /// over covering others.
+    /// depth. Prefers being cut off by the edge of the picture over standing in the original, and that over standing in
+    /// others.
     pub(super) fn copy(&self, index: usize) -> Vec3 {
         let objects = &self.scene.objects;
         let Some(original) = objects.get(index) else { return self.middle() };
@@ -131,6 +137,8 @@ impl<'a> Stand<'a> {
         };
         place(&APART, &|p| clear(p) && whole(p))
             .or_else(|| place(&APART, &|p| clear(p) && middle(p)))
+            .or_else(|| place(&CLOSE, &|p| clear(p) && whole(p)))
+            .or_else(|| place(&CLOSE, &|p| clear(p) && middle(p)))
             .or_else(|| place(&OVER, &|p| clear(p) && whole(p)))
             .or_else(|| place(&OVER, &|p| clear(p) && middle(p)))
             .or_else(|| place(&OVER, &|p| another(p) && whole(p)))
@@ -162,7 +170,7 @@ impl<'a> Stand<'a> {
     fn shows(&self, block: &Block) -> bool {
         let seen = self.turn.inverse() * (block.centre - self.eye);
         let [side, rise, deep] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| block.reach(self.turn * axis));
-        let [across, up] = self.opening();
+        let [across, up] = self.opening;
         let near = -seen.z - deep;
         let boxed = seen.x.abs() + side <= across * near && seen.y.abs() + rise <= up * near;
         near > 0.1 && (boxed || self.sees(block.centre, block.radius))
@@ -224,7 +232,7 @@ impl<'a> Stand<'a> {
     /// True if a light is in the picture, away from its edges.
     fn sees_light(&self, p: Vec3) -> bool {
         // A narrow view is not all edge.
-        let margin = (0.2 * self.opening()[1]).min(0.08);
+        let margin = (0.2 * self.opening[1]).min(0.08);
         self.sees(p, margin * p.distance(self.eye))
     }
 
@@ -236,7 +244,7 @@ impl<'a> Stand<'a> {
     /// Position of a light without size: beside `copied` if it is a copy, otherwise where it is noticed most.
     fn light(&self, copied: Option<Vec3>) -> Vec3 {
         let distance = (self.middle() - self.eye).length();
-        let [across, up] = self.opening();
+        let [across, up] = self.opening;
         // Over the shoulder or from below, on the side with the least light, where the new light is most noticeable.
         let depth = 0.7 * distance;
         let beside = |[side, rise]: [f32; 2]| {
@@ -346,12 +354,6 @@ impl<'a> Stand<'a> {
         top / exposure_factor(display.exposure)
     }
 
-    /// Tangents of half the field of view, across and up. A window shows at least this.
-    fn opening(&self) -> [f32; 2] {
-        let up = (0.5 * self.scene.observer.field_of_view.to_radians()).tan();
-        [WIDE * up, up]
-    }
-
     /// Centre of the objects if it is in view, otherwise the nearest point on the line of sight.
     fn middle(&self) -> Vec3 {
         let objects = &self.scene.objects;
@@ -370,7 +372,7 @@ impl<'a> Stand<'a> {
     /// True if a sphere is completely in view.
     fn sees(&self, p: Vec3, radius: f32) -> bool {
         let seen = self.turn.inverse() * (p - self.eye);
-        let [across, up] = self.opening();
+        let [across, up] = self.opening;
         let within = |side: f32, opening: f32| {
             (opening * -seen.z - side.abs()) / (1.0 + opening * opening).sqrt() >= radius
         };
@@ -389,7 +391,7 @@ impl<'a> Stand<'a> {
 
     /// True if the marker of a light at a position covers none of another light.
     fn is_beside_markers(&self, p: Vec3) -> bool {
-        let least = MARKER * self.opening()[1];
+        let least = MARKER * self.opening[1];
         let (at, _) = self.flat(p);
         let mut lights = self.scene.lights.iter().filter_map(|l| l.position).map(|q| self.flat(q));
         lights.all(|(there, far)| far < 0.1 || at.distance(there) >= least)
@@ -508,4 +510,40 @@ fn clearance(radius: f32) -> f32 {
 /// Rounds to the given number of steps per metre.
 fn round(v: Vec3, steps: f32) -> Vec3 {
     (v * steps).round() / steps
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::{
+        panel::state::Session,
+        scene::load::{self, Defaults},
+    };
+
+    /// An object of a shipped scene, its copy, and whether the centre of the copy is in the picture.
+    fn copied(name: &str, index: usize) -> (Block, Block, bool) {
+        let registry = Registry::builtin();
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.json"));
+        let scene = load::file(&file, &registry, Defaults::Refuse).expect("legal").scene;
+        let session = Session::new(scene);
+        let stand = Stand::new(&session.document, &registry, session.facts.eye, session.facts.camera);
+        let original = stand.taken[index];
+        let copy = original.at(stand.copy(index));
+        (original, copy, stand.sees(copy.centre, 0.0))
+    }
+
+    #[test]
+    fn a_copy_with_little_room_stands_as_far_from_the_original_as_the_picture_reaches() {
+        let (original, copy, seen) = copied("models_from_files", 0);
+        assert!(seen && !copy.scaled(0.85).touches(&original.scaled(0.85)), "{copy:?} in {original:?}");
+    }
+
+    #[test]
+    fn a_copy_is_seen_in_the_narrow_views_of_a_comparison() {
+        let (original, copy, seen) = copied("compare_phong_blinn_phong", 0);
+        assert!(seen, "{copy:?}");
+        assert!(copy.centre.distance(original.centre) > 1.1 * original.radius, "{copy:?}");
+    }
 }

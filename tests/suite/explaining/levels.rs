@@ -1,7 +1,7 @@
 //! The levels of an explanation: the sentence, the equation, every factor; the origin of numbers; what would
 //! change the pixel; and two views side by side.
 
-use bevy_egui::egui::{Key, accesskit::Role, vec2};
+use bevy_egui::egui::{Key, Pos2, Rect, accesskit::Role, vec2};
 use lights_camera_models::{
     document::Selection,
     optics::TermSelection,
@@ -20,14 +20,18 @@ use crate::{
 
 /// A window with a scene and a pinned pixel near its middle.
 fn explaining(scene: Scene) -> Bench {
+    explaining_at(scene, |cell| cell.center() + vec2(13.0, 7.0))
+}
+
+/// A window with a scene and a pinned pixel at that place of its first view.
+fn explaining_at(scene: Scene, place: impl Fn(Rect) -> Pos2) -> Bench {
     let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
     bench.size = vec2(1600.0, 2000.0);
     bench.session.settings.bottom_height = 1100.0;
     bench.apply(Action::Select(Selection::Object(0)));
     bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
     bench.settle();
-    let middle = bench.area.cells.first().map_or(bench.area.rect, |cell| cell.rect).center();
-    bench.hover(middle + vec2(13.0, 7.0));
+    bench.hover(place(bench.area.cells.first().map_or(bench.area.rect, |cell| cell.rect)));
     bench.letter(Key::E, "e");
     bench.settle();
     assert!(bench.session.view.pinned.is_some());
@@ -161,4 +165,19 @@ fn two_views_stand_beside_each_other_with_marks_where_they_differ() {
     bench.click("Beside B");
     bench.settle();
     assert!(!texts(&mut bench).contains("View B: red"));
+}
+
+#[test]
+fn views_of_background_beside_each_other_say_that_neither_shows_an_object() {
+    let path = root().join("scenes/compare_gouraud_phong.json");
+    let scene =
+        load::file(&path, &Registry::builtin(), Defaults::Refuse).unwrap_or_else(|e| panic!("{e}")).scene;
+    let mut bench = explaining_at(scene, |cell| cell.left_center() + vec2(12.0, 0.0));
+    bench.click("Beside B");
+    bench.settle();
+    let said = texts(&mut bench);
+    assert!(said.contains("the background shows"), "not the background: {said}");
+    assert!(said.contains("Neither view shows an object here."), "{said}");
+    assert!(!said.contains("Only one of the views"), "{said}");
+    assert!(bench.texts().iter().filter(|text| *text == "background").count() >= 2, "{said}");
 }

@@ -707,6 +707,9 @@ fn the_file_to_start_from_works_at_once_and_keeps_what_it_claims() {
     let registry = with("my_velvet", &text);
     let model = registry.model("my_velvet").unwrap();
     assert_eq!(model.declaration.name, "My \"velvet\" */");
+    // No placeholders in the window.
+    assert_eq!(model.declaration.author, "unknown author");
+    assert_eq!(model.declaration.source, "models/my_velvet.wgsl");
     assert_eq!(custom::id_of_name("My velvet"), Ok("my_velvet".to_owned()));
     assert!(custom::id_of_name("3 things").is_err());
     let found = examined(&registry, "my_velvet");

@@ -9,6 +9,7 @@ use lights_camera_models::{
     channel::{DebugChannel, Setting},
     document::Selection,
     explain::finite::{NotFinite, Scope, Tried, marked, probe, traced},
+    library::assets::{export, read_shaders},
     light::{
         self, Incident, LightRecord, LightType,
         extent::{Sample, Seen},
@@ -26,7 +27,7 @@ use lights_camera_models::{
         save,
     },
     shader::Source,
-    window::LabPlugins,
+    window::{LabPlugins, ViewOptions},
 };
 
 use crate::{
@@ -195,6 +196,95 @@ fn pixels_lit_by_such_a_light_lead_to_it_and_not_to_the_model() {
     let pixels = marked(&reference::render_channel(&scene, &registry, &settings, &setting), settings.width);
     assert!(!pixels.is_empty());
     assert_eq!(paths(&traced(&scene, &registry, &settings, &pixels)), ["objects[0]"]);
+}
+
+/// The text of a light type whose light is not a number.
+fn without_numbers(id: &str) -> (&'static str, String) {
+    let registry = Registry::builtin();
+    let wgsl = registry.light(id).expect("built in").declaration.wgsl;
+    let text = wgsl.text.replace("vec3(light.intensity", "vec3(sqrt(-1.0 - light.intensity)");
+    assert_ne!(text, wgsl.text);
+    (wgsl.path, text)
+}
+
+#[test]
+fn an_edited_light_type_is_named_though_the_cpu_does_not_draw_it() {
+    let settings = Settings { width: 48, height: 27, samples: 1, ..Settings::default() };
+    let middle = [[24, 13]];
+    for id in ["point", "rectangle"] {
+        let mut scene = Scene { shading_model: "phong".to_owned(), ..Scene::default() };
+        let (position, direction) = (Some(Vec3::new(5.0, 9.0, 8.0)), Some(Vec3::NEG_Y));
+        let on = Light { light_type: id.to_owned(), position, direction, ..Light::default() };
+        scene.lights = vec![Light { enabled: false, ..on.clone() }, on];
+        let (path, text) = without_numbers(id);
+        let mut registry = Registry::builtin();
+        registry.sources_mut().edit(path, text);
+        for scope in [Scope::All, Scope::Untested] {
+            let mut tried = Tried::default();
+            let found = probe(&scene, &registry, scope, &mut tried);
+            assert_eq!(paths(&found), ["lights[1]"], "{id}");
+            let said = found[0].to_string();
+            assert!(said.starts_with(&format!("lights[1] is of the type {id}, whose ")), "{said}");
+            assert!(said.ends_with(" m is (NaN, NaN, NaN); it must be finite"), "{said}");
+            registry.sources_mut().forget(path);
+            assert_eq!(probe(&scene, &registry, scope, &mut tried), [], "{id}");
+            registry.sources_mut().edit(path, without_numbers(id).1);
+        }
+        assert_eq!(paths(&traced(&scene, &registry, &settings, &middle)), ["lights[1]"]);
+        // What else only the GPU draws is the model's.
+        registry.sources_mut().forget(path);
+        registry.sources_mut().edit("reflection/lambert.wgsl", "// mine");
+        assert_eq!(paths(&traced(&scene, &registry, &settings, &middle)), ["objects[0]"]);
+    }
+}
+
+/// A folder with `assets`, in which light from points is not a number, and a scene.
+fn dazzled() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    export(&folder.path().join("assets"), &Registry::builtin()).expect("written");
+    let (path, text) = without_numbers("point");
+    fs::write(folder.path().join("assets/shaders").join(path), text).expect("written");
+    let scene = Scene { shading_model: "phong".to_owned(), ..Scene::default() };
+    let text = save::to_json(&scene, None, &Registry::builtin());
+    fs::write(folder.path().join("s.json"), text).expect("written");
+    folder
+}
+
+#[test]
+fn check_and_render_blame_an_edited_light_type() {
+    let folder = dazzled();
+    let said =
+        |arguments: &[&str]| lcm_in(folder.path(), &[arguments, &["--assets", "assets"]].concat(), b"");
+    let checked = said(&["check", "s.json"]);
+    assert_eq!((checked.status, checked.out.as_str()), (Some(1), ""), "{}", checked.err);
+    assert!(checked.err.starts_with("s.json: lights[0] is of the type point, whose "), "{}", checked.err);
+    let json: serde_json::Value =
+        serde_json::from_str(&said(&["check", "s.json", "--json"]).out).expect("JSON");
+    assert_eq!(json[0]["problems"][0]["path"], "lights[0]", "{json}");
+    let drawn = said(&["render", "s.json", "-o", "p.png", "--size", "96x54", "--renderer", "gpu"]);
+    assert_eq!(drawn.status, Some(0), "{}", drawn.err);
+    assert!(drawn.err.contains("lights[0] is of the type point"), "{}", drawn.err);
+    assert!(!drawn.err.contains("objects[0]"), "{}", drawn.err);
+}
+
+#[test]
+fn the_window_blames_an_edited_light_type() {
+    let folder = dazzled();
+    let mut registry = Registry::builtin();
+    read_shaders(&folder.path().join("assets/shaders"), &mut registry).expect("readable");
+    let mut options = ViewOptions::default();
+    (options.registry, options.open) = (Some(registry), Some(folder.path().join("s.json")));
+    let plugins = LabPlugins::new(options).size(120, 90).exit_after(100_000).headless();
+    let mut app = app(plugins.build(), |_| {});
+    for _ in 0..5 {
+        app.update();
+    }
+    let session = app.world().resource::<Session>();
+    let light = session.name_of(Selection::Light(0), app.world().resource::<Registry>());
+    let said = format!("{light} is of the type point, whose ");
+    assert!(session.messages.iter().any(|m| m.text.starts_with(&said)), "{:?}", session.messages);
+    let odd = &session.facts.not_finite[0];
+    assert_eq!(odd.iter().map(|odd| odd.part).collect::<Vec<_>>(), [Selection::Light(0)]);
 }
 
 fn registry() -> Registry {

@@ -413,6 +413,40 @@ fn where_an_object_leaves_no_room_its_handles_are_at_the_edge_of_the_view() {
 }
 
 #[test]
+fn handles_of_an_object_at_the_edge_lie_on_no_object() {
+    let mut bench = bench_with(Scene::default(), Registry::builtin());
+    (bench.session.facts.eye, bench.session.facts.camera) =
+        (Session::default().facts.eye, Session::default().facts.camera);
+    bench.settle();
+    for copies in 1..3 {
+        bench.apply(Action::Duplicate(Selection::Object(0)));
+        bench.settle();
+        let lens = Lens::of(&bench.session, bench.area.rect);
+        let right = bench.session.facts.camera * Vec3::X;
+        let Selection::Object(selected) = bench.session.selection else { panic!("the copy is selected") };
+        let objects = bench.session.document.objects.clone();
+        let disc = |object: &Object| {
+            let middle = lens.project(object.position).expect("in view");
+            (middle, lens.project(object.position + 0.5 * object.size * right).unwrap().distance(middle))
+        };
+        let (middle, _) = disc(&objects[selected]);
+        for x in [0.0, 4.0] {
+            bench.frame(vec![Event::PointerMoved(middle + vec2(x, 0.0))]);
+            bench.settle();
+        }
+        let letters: Vec<_> = bench.tree.iter().filter(|seen| seen.label.contains(" along ")).collect();
+        assert!(letters.iter().any(|seen| seen.label.starts_with("Handle: ")), "{copies}: no handles");
+        for letter in letters.iter().filter(|seen| seen.label.starts_with("Handle: ")) {
+            let at = letter.rect.center();
+            assert!(bench.area.rect.contains(at), "{copies}: {} at {at:?}", letter.label);
+            for (middle, radius) in objects.iter().map(disc) {
+                assert!(at.distance(middle) > radius, "{copies}: {} on a sphere at {middle:?}", letter.label);
+            }
+        }
+    }
+}
+
+#[test]
 fn every_view_has_its_handles() {
     let mut bench = bench(scene());
     bench.apply(Action::Compare(CompareCommand::Add));

@@ -52,6 +52,23 @@ fn the_window_fills_a_large_screen() {
 }
 
 #[test]
+fn a_window_is_grey_until_its_first_frame_and_never_noise() {
+    let screen = Screen::new(1280, 720);
+    // This scene leaves memory behind that is not empty.
+    let mut window = screen.start(&["view", "--lesson", "12_glass_paper_leaf"]);
+    let (mut is_grey, mut is_noise) = (false, false);
+    window.until("the panels", |screen| {
+        let grey = screen.at(640, 360).iter().zip([43, 44, 47]).all(|(a, b)| a.abs_diff(b) <= 1);
+        is_grey |= grey && screen.colours(0..1280, 100..110) == 1;
+        let colours = screen.colours(0..300, 60..260);
+        is_noise |= colours > 5000;
+        (21..2000).contains(&colours)
+    });
+    assert!(!is_noise, "the window shows memory");
+    assert!(is_grey, "the window is not cleared");
+}
+
+#[test]
 fn without_a_display_the_message_says_what_to_do() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = lcm(&["view"], folder.path()).output().expect("lcm runs");

@@ -321,6 +321,23 @@ fn the_tab_counts_the_errors_and_keys_and_status_line_lead_to_it() {
 }
 
 #[test]
+fn badge_panel_and_status_line_say_the_same_of_a_stand_in() {
+    let mut broken = broken_lambert();
+    broken.stale = vec!["Mine (a grey stand-in)".to_owned()];
+    let mut bench = bench_with(vec![broken.clone()]);
+    bench.apply(Action::View(ViewChange::BottomTab("shader".to_owned())));
+    bench.settle();
+    assert!(bench.says("1 shader error: the picture shows a grey stand-in"));
+    assert!(bench.says("The picture shows a grey stand-in for Mine until this is corrected."));
+    assert!(!bench.texts().iter().any(|text| text.contains("last good version")), "{:?}", bench.texts());
+    // As many that not all are named.
+    let many = ["A", "B", "C", "D", "E"].map(|name| format!("{name} (a grey stand-in)"));
+    let status = ShaderStatus { troubles: vec![Trouble { stale: many.to_vec(), ..broken }], ..folders() };
+    let heading = picture::stale_words(&status, "").map(|(heading, _)| heading);
+    assert_eq!(heading.as_deref(), Some("Showing a grey stand-in for A, B, C and 2 more"));
+}
+
+#[test]
 fn an_error_is_told_with_its_line_and_what_the_picture_shows() {
     let mut bench = bench_with(vec![broken_lambert()]);
     for words in [

@@ -44,7 +44,7 @@ impl Stand<'_> {
             self.covers(p, least, &others, centre)
         };
         // A narrow view shows few of the places that are farther from each other.
-        let step = step.min(0.25 * self.opening()[1] * wanted.distance(self.eye));
+        let step = step.min(0.25 * self.opening[1] * wanted.distance(self.eye));
         let place = |fits: &dyn Fn(Vec3) -> bool| self.search(wanted, step, fits);
         place(&|p| is_above(p) && fits(p) && !covers(p, false))
             .or_else(|| place(&|p| fits(p) && !covers(p, false)))
@@ -95,7 +95,7 @@ impl Stand<'_> {
     pub(super) fn above_target(&self) -> Vec3 {
         let target = self.target();
         let way = target - self.eye;
-        let [across, up] = self.opening();
+        let [across, up] = self.opening;
         let right = (self.turn * Vec3::X).reject_from(way).normalize_or(self.turn * Vec3::X);
         let above = right.cross(way.normalize_or(self.turn * Vec3::NEG_Z));
         let all = BESIDE.map(|[side, rise]| {
