@@ -5,6 +5,12 @@
 #[error("cancelled")]
 pub struct Cancelled;
 
+/// The words for a step of some work; a step without words of its own adds none.
+#[must_use]
+pub fn named(work: &str, step: &str) -> String {
+    if step.is_empty() { work.to_owned() } else { format!("{work}, {step}") }
+}
+
 /// Reports the progress of some work, and asks whether it should continue.
 pub struct Progress<'a> {
     /// Receives the completed fraction, and the current step.
@@ -50,5 +56,16 @@ impl Progress<'_> {
         }
         (self.tell)(done, what);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_without_words_leaves_no_gap() {
+        assert_eq!(named("drawing room.json", "16 of 40 samples"), "drawing room.json, 16 of 40 samples");
+        assert_eq!(named("drawing room.json", ""), "drawing room.json");
     }
 }

@@ -11,7 +11,7 @@ use crate::{
     parameter::Outside,
     platform,
     program::{self, HAS_WINDOW, in_own_words, without_window},
-    progress::Progress,
+    progress::{Progress, named},
     reference::MAX_SIDE,
     registry::Registry,
     scene::load::Defaults,
@@ -716,7 +716,7 @@ fn gauged_until<T>(
     let what = printable(what);
     bar.set_message(what.clone().into_owned());
     let tell = |done: f32, step: &str| {
-        bar.set_message(format!("{what}, {step}"));
+        bar.set_message(named(&what, step));
         bar.set_position((done * FINE as f32) as u64);
     };
     let watch = |goes_on: &dyn Fn() -> bool| {
