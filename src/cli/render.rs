@@ -275,7 +275,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let count = scenes.len() as u64;
     let bar = progress(if count > 1 { count * FINE } else { 0 }, options);
     if !bar.is_hidden() {
-        bar.set_style(style("{bar:30} {percent} % {msg}{left}"));
+        bar.set_style(style("{bar:30} {percent} % {msg}, {time}"));
         bar.enable_steady_tick(TICK);
     }
     let mut painter = Painter::new(renderer, options.trial_program())?;
