@@ -12,7 +12,7 @@ use glam::{DVec3, Vec2, Vec3};
 use super::model::{Builder, Corner, MAX_VERTICES};
 use crate::{
     parameter::FileProblem,
-    text::{after_mark, quoted},
+    text::{after_mark, quoted, with_line_feeds},
 };
 
 /// Maximum number of corners of all faces, including those without area.
@@ -22,9 +22,7 @@ const FACE: &str = "a face (f) must name its corners as vertex, vertex/texture, 
 
 /// The statements of a text, each with its line: a backslash at the end of a line continues it on the next.
 fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
-    // Old Macintosh programs use other line ends.
-    let end = if text.contains('\n') { '\n' } else { '\r' };
-    let mut lines = text.split(end).enumerate();
+    let mut lines = text.split('\n').enumerate();
     std::iter::from_fn(move || {
         let (i, line) = lines.next()?;
         let continued = |line: &'_ str| line.strip_suffix('\r').unwrap_or(line).ends_with('\\');
@@ -210,6 +208,7 @@ fn beyond(kind: usize, written: &str, count: u32) -> Cow<'static, str> {
 pub fn read(bytes: &[u8], to: &mut Builder) -> Result<usize, FileProblem> {
     // Comments may be in any encoding.
     let text = String::from_utf8_lossy(after_mark(bytes));
+    let text = with_line_feeds(&text);
     let at =
         |line: usize| move |what: Cow<'_, str>| FileProblem { line: Some(line), message: what.into_owned() };
     let mut lists = Lists::default();
