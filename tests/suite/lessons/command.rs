@@ -107,6 +107,24 @@ fn a_lesson_reads_no_file_outside_its_folder() {
             }
         }
     }
+    // The user may allow it.
+    let scene = include_str!("../../../scenes/default.json");
+    fs::write(root.path().join("secret.json"), scene).expect("writable");
+    for name in ["link.json", "below/up/secret.json", "../secret.json", &secret] {
+        for text in [
+            lesson_with(&format!("scene: {name}\n"), ""),
+            lesson_with("", &format!("```scene\nopen: {name}\n```")),
+        ] {
+            fs::write(folder.join("lesson.md"), text).expect("writable");
+            let path = folder.display().to_string();
+            let check = ["lesson", "check", &path];
+            let refused = lcm(&check, "");
+            assert!(refused.status == Some(1) && refused.err.contains("--allow-outside"), "{}", refused.err);
+            let run = lcm(&[&check[..], &["--allow-outside"]].concat(), "");
+            assert_eq!(run.status, Some(0), "{name}: {}", run.err);
+        }
+    }
+    fs::write(root.path().join("secret.json"), "password = hunter2\n").expect("writable");
     // A path that stays inside is read, and its problem reported.
     fs::write(folder.join("lesson.md"), lesson_with("scene: here.json\n", "")).expect("writable");
     let run = lcm(&["lesson", "check", &folder.display().to_string()], "");
