@@ -143,9 +143,9 @@ fn a_lesson_beyond_its_limits_is_refused_with_the_place_and_the_limit() {
     let steps = |n: usize| "## S\n\nText.\n\n".repeat(n);
     for (step, expected) in [
         (nested(24), ""),
-        (nested(25), "11:29: this is nested 25 brackets deep; at most 24 are allowed"),
-        (nested(5000), "11:29: this is nested 25 brackets deep"),
-        (nested(20_000), "11:29: this is nested 25 brackets deep"),
+        (nested(25), "11:29: this is nested more than 24 brackets deep, the most allowed"),
+        (nested(5000), "11:29: this is nested more than 24 brackets deep"),
+        (nested(20_000), "11:29: this is nested more than 24 brackets deep"),
         (format!("```equation\n{}\n```", "x ".repeat(1001)), "this line of the equation has more than 2000"),
         (format!("```scene\nobjects{} = 1\n```", "[0]".repeat(100_000)), "a path has at most 64 steps"),
         (format!("```scene\n{}```", "exposure = 1\n".repeat(101)), "a scene block sets at most 100 values"),
