@@ -205,8 +205,11 @@ mod tests {
         assert_eq!(said(b"v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"), "it has no polygons with an area");
         let far = said(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 99999999999999999999\n");
         assert!(
-            far.starts_with("this face (f) names the corner 99999999999999999999, but a file has at most ")
+            far.starts_with("this face (f) names the vertex 99999999999999999999, but a file has at most ")
         );
+        let far = said(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/1 2/99999999999999999999 3/1\n");
+        assert!(far.contains("names the texture coordinate 99999999999999999999"), "{far}");
+        assert!(far.ends_with(" texture coordinates (vt)"), "{far}");
         assert!(said(b"v 0 0 0\nf 1 2 3e\n").contains("must name its corners as vertex"));
         assert!(said("\u{feff}ply\nformat".as_bytes()).contains("not a valid PLY file"));
         let square = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n";

@@ -19,6 +19,12 @@ use crate::{
 const MOST_NAMED: usize = 2 * MAX_VERTICES;
 /// The rule for faces.
 const FACE: &str = "a face (f) must name its corners as vertex, vertex/texture, vertex//normal or all three";
+/// What a corner of a face names, each in the singular and in the plural.
+const KINDS: [(&str, &str); 3] = [
+    ("vertex", "vertices (v)"),
+    ("texture coordinate", "texture coordinates (vt)"),
+    ("normal", "normals (vn)"),
+];
 
 /// The statements of a text, each with its line: a backslash at the end of a line continues it on the next.
 fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
@@ -144,7 +150,7 @@ impl Lists {
             if part.is_empty() && i > 0 {
                 continue;
             }
-            let number: i64 = part.parse().map_err(|_| wrong_number(part))?;
+            let number: i64 = part.parse().map_err(|_| wrong_number(i, part))?;
             let back = u32::try_from(number.unsigned_abs()).unwrap_or(u32::MAX);
             *place = match number {
                 1.. => back,
@@ -176,22 +182,19 @@ impl Lists {
 }
 
 /// The message about a reference that is not a number, or one that no computer counts to.
-fn wrong_number(written: &str) -> Cow<'static, str> {
+fn wrong_number(kind: usize, written: &str) -> Cow<'static, str> {
     let digits = written.trim_start_matches(['+', '-']);
     if digits.is_empty() || digits.contains(|c: char| !c.is_ascii_digit()) {
         return FACE.into();
     }
     let number = crate::text::shortened(written);
-    format!("this face (f) names the corner {number}, but a file has at most {MAX_VERTICES} vertices").into()
+    let (one, all) = KINDS[kind];
+    format!("this face (f) names the {one} {number}, but a file has at most {MAX_VERTICES} {all}").into()
 }
 
 /// The message about an invalid reference of a face.
 fn beyond(kind: usize, written: &str, count: u32) -> Cow<'static, str> {
-    let (one, all) = [
-        ("vertex", "vertices (v)"),
-        ("texture coordinate", "texture coordinates (vt)"),
-        ("normal", "normals (vn)"),
-    ][kind];
+    let (one, all) = KINDS[kind];
     let have = match count {
         0 => format!("the file has no {all}"),
         1 => format!("there is only 1 of the {all}"),
