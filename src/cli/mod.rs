@@ -11,7 +11,7 @@ use crate::{
     parameter::Outside,
     platform,
     program::{self, HAS_WINDOW, in_own_words, without_window},
-    progress::Progress,
+    progress::{Progress, named, time_left},
     reference::MAX_SIDE,
     registry::Registry,
     scene::load::Defaults,
@@ -662,19 +662,22 @@ fn progress(steps: u64, options: Options) -> ProgressBar {
     bar
 }
 
-/// The style of a progress bar; `{left}` is the remaining time, if known.
+/// The style of a progress bar; `{time}` is the remaining time, if known, and otherwise the time so far.
 fn style(template: &str) -> ProgressStyle {
-    let remaining = |state: &ProgressState, text: &mut dyn fmt::Write| {
-        // By all of the time so far: the speed of the last moments is that of one step.
-        let done = state.fraction();
-        if done > 0.0 {
-            let left = state.elapsed().mul_f32((1.0 - done).max(0.0) / done);
-            // Writing to a String cannot fail.
-            let _ = write!(text, ", {:#} left", HumanDuration(left));
-        }
+    let told = |state: &ProgressState, text: &mut dyn fmt::Write| {
+        // Writing to a String cannot fail.
+        let _ = text.write_str(&time(state.fraction(), state.elapsed()));
     };
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    style.with_key("left", remaining)
+    style.with_key("time", told)
+}
+
+/// The remaining time of some work in words, or the time so far.
+fn time(done: f32, elapsed: Duration) -> String {
+    match time_left(done, elapsed) {
+        Some(left) => format!("{:#} left", HumanDuration(left)),
+        None => format!("{:#} so far", HumanDuration(elapsed)),
+    }
 }
 
 /// Runs some work and, if it takes longer than a given time and there is a terminal, calls `watch` in
@@ -720,17 +723,17 @@ fn gauged_until<T>(
     let what = printable(what);
     bar.set_message(what.clone().into_owned());
     let tell = |done: f32, step: &str| {
-        bar.set_message(format!("{what}, {step}"));
+        bar.set_message(named(&what, step));
         bar.set_position((done * FINE as f32) as u64);
     };
     let watch = |goes_on: &dyn Fn() -> bool| {
-        bar.set_style(style("{spinner} {msg}, {elapsed} so far; Ctrl+C ends it"));
+        bar.set_style(style("{spinner} {msg}, {time}; Ctrl+C ends it"));
         bar.set_draw_target(ProgressDrawTarget::stderr());
         let mut known = false;
         while goes_on() {
             if !known && bar.position() > 0 {
                 known = true;
-                bar.set_style(style("{bar:30} {percent} % {msg}{left}; Ctrl+C ends it"));
+                bar.set_style(style("{bar:30} {percent} % {msg}, {time}; Ctrl+C ends it"));
             }
             bar.tick();
         }
@@ -810,6 +813,12 @@ mod tests {
         assert!(outside.reach.allow_outside);
         let both = said(&["--use-defaults", "check", "x", "--no-defaults"]).expect_err("both");
         assert_eq!(both, "--use-defaults cannot be used with --no-defaults");
+    }
+
+    #[test]
+    fn the_time_of_a_bar_is_what_is_left_once_that_is_known() {
+        assert_eq!(time(0.01, Duration::from_secs(20)), "20s so far");
+        assert_eq!(time(0.5, Duration::from_secs(20)), "20s left");
     }
 
     #[test]

@@ -24,7 +24,7 @@ use crate::{
 pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|text: OsString| {
         if text == "-" {
-            let rule = "results go to files; name one (./- for one called -). For pictures, /dev/stdout is standard output";
+            let rule = "results go to files and folders; name one (./- for one called -). For pictures, /dev/stdout is standard output";
             return Err(rule);
         }
         if text.is_empty() {

@@ -37,7 +37,7 @@ use crate::{
     optics::TermSelection,
     picture::png::About,
     program::HAS_WINDOW,
-    progress::Progress,
+    progress::{Progress, named},
     reference::{self, MAX_SIDE, Reached},
     registry::Registry,
     scene::{Comparison, Scene, comparison::Layout, variant::LETTERS},
@@ -275,7 +275,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let count = scenes.len() as u64;
     let bar = progress(if count > 1 { count * FINE } else { 0 }, options);
     if !bar.is_hidden() {
-        bar.set_style(style("{bar:30} {percent} % {msg}{left}"));
+        bar.set_style(style("{bar:30} {percent} % {msg}, {time}"));
         bar.enable_steady_tick(TICK);
     }
     let mut painter = Painter::new(renderer, options.trial_program())?;
@@ -310,7 +310,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             let what = printable(&format!("{} of {count}, {}", done + 1, source.name())).into_owned();
             let begin = done * FINE;
             let tell = |done: f32, step: &str| {
-                bar.set_message(if step.is_empty() { what.clone() } else { format!("{what}, {step}") });
+                bar.set_message(named(&what, step));
                 bar.set_position(begin + (done * FINE as f32) as u64);
             };
             tell(0.0, "");
@@ -496,7 +496,7 @@ impl Painter {
         for (i, part) in job.plan.parts.iter().enumerate() {
             let name = |step: &str| {
                 let letter = LETTERS.get(part.cell.view).filter(|_| count > 1);
-                letter.map_or_else(|| step.to_owned(), |letter| format!("view {letter}, {step}"))
+                letter.map_or_else(|| step.to_owned(), |letter| named(&format!("view {letter}"), step))
             };
             let Drawn { shown, reached, remarks: of_part } = match gpu {
                 true => {

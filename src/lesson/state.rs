@@ -182,7 +182,10 @@ pub(super) fn open(name: &str, shelf: Shelf) -> Result<Scene, String> {
     let Shelf { folder, outside, registry } = shelf;
     let refused = || {
         let name = quoted(name);
-        Err(format!("{name} is outside the folder of the lesson; put the scene itself beside the lesson"))
+        Err(format!(
+            "{name} is outside the folder of the lesson; put the scene itself beside the lesson, or give {}",
+            Outside::OPTION
+        ))
     };
     let joined = folder.map(|folder| folder.join(name)).unwrap_or_default();
     let beside = match folder.map(|folder| files::inside(folder, &joined)) {
@@ -192,6 +195,7 @@ pub(super) fn open(name: &str, shelf: Shelf) -> Result<Scene, String> {
         None => None,
         Some(Ok(_)) => Some(joined),
         Some(Err(FileError::Io(error))) if error.kind() == ErrorKind::NotFound => None,
+        Some(Err(FileError::Outside(_))) if outside.allows(&joined) => Some(joined),
         Some(Err(FileError::Outside(_))) => return refused(),
         Some(Err(error)) => return Err(format!("the scene {} could not be read: {error}", quoted(name))),
     };

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use crate::{
     parameter::{FileFormat, FileProblem, Shipped},
-    text::{plural, shortened},
+    text::{after_mark, plural, shortened, with_line_feeds},
 };
 
 /// Maximum number of candela values in a file, given for the whole circle: one for every degree.
@@ -111,7 +111,8 @@ fn shown(part: &str, in_quotes: bool) -> String {
 }
 
 fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
-    let text = String::from_utf8_lossy(bytes);
+    let text = String::from_utf8_lossy(after_mark(bytes));
+    let text = with_line_feeds(&text);
     let mut lines = (1..).zip(text.lines());
     let Some((at, tilt)) = lines.by_ref().find(|(_, line)| line.trim_start().starts_with("TILT=")) else {
         let message = "this is not an IES LM-63 file: no line begins with TILT=".to_owned();
@@ -369,6 +370,9 @@ mod tests {
         // Up to 1991, line breaks and spaces may be anywhere; commas separate too.
         let old = "IESNA91\nTILT=NONE\n1,1000,2.5,3\n1 1 2 0 0 0 0.8\n0.5, 50\n0 90\n180\n0\n100 50\n0";
         assert_eq!(numbers(old), numbers(&text));
+        let marked = format!("\u{feff}{}", old.trim_start_matches("IESNA91\n"));
+        assert_eq!(numbers(&marked), numbers(&text));
+        assert_eq!(numbers(&marked.replace('\n', "\r")), numbers(&text));
         let oldest = text.replace("IESNA:LM-63-2002\n[TEST] 1\n", "A lamp of 1986\nwithout keywords\n");
         assert_eq!(numbers(&oldest), numbers(&text));
         let tilted = text.replace("TILT=NONE", "TILT=INCLUDE\n1\n3\n0 45 90\n0.5 0.4 0.3");

@@ -1,5 +1,7 @@
 //! Fits to a measurement: their buttons, and the window that lists every model by what remains.
 
+use std::time::Duration;
+
 use super::{
     draft, export, kept, matching,
     prelude::*,
@@ -8,6 +10,7 @@ use super::{
 use crate::{
     matching::{digits, each::Matched},
     parameter::Value,
+    progress::time_left,
 };
 
 /// Id and title of the window.
@@ -106,8 +109,8 @@ fn step(ui: &mut Ui, context: &PanelContext<'_>) {
         *last = *done;
         *at
     });
-    let left = (now - begun) * f64::from(1.0 - done) / f64::from(*done);
-    let left = if left.is_finite() { format!(", about {left:.0} s left") } else { String::new() };
+    let left = time_left(*done, Duration::from_secs_f64((now - begun).max(0.0)));
+    let left = left.map_or_else(String::new, |left| format!(", about {:.0} s left", left.as_secs_f32()));
     theme::note(ui, format!("{:.0} %{left} · {step}", 100.0 * done));
 }
 

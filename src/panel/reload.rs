@@ -24,11 +24,8 @@ pub fn check(
     files: &mut dyn Files,
 ) -> Vec<Effect> {
     let Some(path) = session.path.clone() else { return Vec::new() };
-    if session.questions.open.is_some() {
-        // One question at a time.
-        session.disk.deferred = true;
-        return Vec::new();
-    }
+    // What cannot happen beside an open question is made up for after the answer.
+    session.disk.deferred |= session.questions.open.is_some();
     match files.check(&path, registry, &session.outside) {
         OnDisk::Same => {
             session.disk.suspect = None;
@@ -78,7 +75,13 @@ fn take(
     let news = session.document.named(registry) != scene;
     // The file that a recovered document was based on is unknown.
     let edited = (session.disk.recovered || session.document.differs()) && news;
-    if edited && !discard && (session.disk.recovered || !session.document.was_saved_as(&scene)) {
+    let asks = edited && !discard && (session.disk.recovered || !session.document.was_saved_as(&scene));
+    // One question at a time, and none whose document is replaced meanwhile: only that about a copy is not about it.
+    let blocks = |open: &Question| asks || !matches!(open, Question::Recover(_));
+    if session.questions.open.as_ref().is_some_and(blocks) {
+        return Vec::new();
+    }
+    if asks {
         if session.disk.asked != Some(Some(version)) {
             session.disk_settled();
             session.disk.asked = Some(Some(version));

@@ -27,7 +27,7 @@ impl Outside {
     }
 
     /// True for a file that may be anywhere.
-    pub(super) fn allows(&self, path: &Path) -> bool {
+    pub(crate) fn allows(&self, path: &Path) -> bool {
         self.all || self.some.contains(path)
     }
 }

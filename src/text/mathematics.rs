@@ -23,10 +23,9 @@ pub fn beyond_limits(equation: &str) -> Option<(usize, String)> {
             _ => {}
         }
         if open.len() > MAX_DEPTH {
-            let depth = open.len();
             return Some((
                 at,
-                format!("this is nested {depth} brackets deep; at most {MAX_DEPTH} are allowed"),
+                format!("this is nested more than {MAX_DEPTH} brackets deep, the most allowed"),
             ));
         }
         if length > LONGEST_LINE {
@@ -343,7 +342,7 @@ mod tests {
             assert_eq!(beyond_limits(&nested(n, open, close)), None, "{open}");
             let (at, what) = beyond_limits(&nested(20_000, open, close)).expect("too deep");
             assert!(
-                at <= open.len() * (n + 1) && what.contains("25 brackets deep; at most 24"),
+                at <= open.len() * (n + 1) && what.contains("more than 24 brackets deep"),
                 "{at}: {what}"
             );
         }

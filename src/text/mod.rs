@@ -1,5 +1,7 @@
 //! Words for messages, and JSON values with their positions.
 
+use std::borrow::Cow;
+
 pub mod expression;
 pub mod identifier;
 pub mod json;
@@ -20,4 +22,9 @@ pub use words::{
 /// The bytes of a UTF-8 text without the byte order mark that some programs write first.
 pub(crate) fn after_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
+}
+
+/// A text with the line ends of old Macintosh programs replaced by line feeds, at the same bytes.
+pub(crate) fn with_line_feeds(text: &str) -> Cow<'_, str> {
+    if text.contains('\r') && !text.contains('\n') { text.replace('\r', "\n").into() } else { text.into() }
 }

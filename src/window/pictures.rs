@@ -32,7 +32,7 @@ use crate::{
         png::{self, About},
     },
     platform,
-    progress::Progress,
+    progress::{Progress, named},
     reference::{Settings, Until, not_on_cpu, render_layers},
     registry::Registry,
     render::view::{Drawing, ViewSystems},
@@ -443,7 +443,8 @@ impl Job {
         let mut all = Views { pictures: Vec::new(), sampled: Vec::new(), renderer: "CPU" };
         for (place, (view, scene, terms)) in seen.iter().enumerate() {
             let letter = LETTERS.get(*view).filter(|_| seen.len() > 1);
-            let name = |step: &str| letter.map_or(step.to_owned(), |letter| format!("view {letter}, {step}"));
+            let name =
+                |step: &str| letter.map_or(step.to_owned(), |letter| named(&format!("view {letter}"), step));
             let view = OffScreen {
                 seen: scene,
                 registry,

@@ -13,7 +13,7 @@ use crate::{
         masking::{height_correlated, smith_ggx},
     },
     parameter::{FileFormat, FileProblem, Shipped},
-    text::{listed, shortened},
+    text::{after_mark, listed, shortened, with_line_feeds},
 };
 
 /// The name of the shipped file.
@@ -83,8 +83,8 @@ impl Columns {
 
 fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     let whole = |message: &str| FileProblem { line: None, message: message.to_owned() };
-    let text = std::str::from_utf8(bytes).map_err(|_| whole("it is not a text in UTF-8"))?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = std::str::from_utf8(after_mark(bytes)).map_err(|_| whole("it is not a text in UTF-8"))?;
+    let text = with_line_feeds(text);
     let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let Some((line, head)) = lines.next() else {

@@ -62,8 +62,10 @@ fn samples_of_known_models_are_interpolated() {
 
 #[test]
 fn where_there_are_no_samples_the_table_says_so_and_the_uncertainty_is_kept() {
-    let text = "theta_i;phi_i;theta_o;phi_o;value;sigma\n0;0;10;0;0.5;0.05\n0;0;20;0;0.4;0.04\n0;0;30;0;0.3;-0\n10;0;10;0;-1;0\n";
-    let numbers = numbers(text);
+    let table = "theta_i;phi_i;theta_o;phi_o;value;sigma\n0;0;10;0;0.5;0.05\n0;0;20;0;0.4;0.04\n0;0;30;0;0.3;-0\n10;0;10;0;-1;0\n";
+    let old = numbers(&format!("\u{feff}{}", table.replace('\n', "\r")));
+    let numbers = numbers(table);
+    assert!(old.iter().map(|n| n.to_bits()).eq(numbers.iter().map(|n| n.to_bits())), "old line ends");
     let grid = Grid::new(&numbers).expect("a table");
     assert!((grid.note() - 0.09 / 1.2).abs() < 1e-4, "{}", grid.note());
     assert!(grid.missing() > 7000, "{}", grid.missing());

@@ -4,6 +4,7 @@ use super::{Declaration, ObjectType, PolygonMesh};
 use crate::{
     parameter::{FileFormat, FileProblem, Parameter, Shipped},
     parameters,
+    text::after_mark,
 };
 
 mod glb;
@@ -44,6 +45,7 @@ pub static FORMAT: FileFormat = FileFormat {
 fn read(bytes: &[u8]) -> Result<Vec<f32>, FileProblem> {
     let whole = |message: String| FileProblem { line: None, message };
     let mut builder = Builder::default();
+    let bytes = after_mark(bytes);
     if bytes.starts_with(glb::BEGIN) {
         glb::read(bytes, &mut builder)?;
     } else if bytes.starts_with(ply::BEGIN) {
@@ -203,9 +205,13 @@ mod tests {
         assert_eq!(said(b"v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"), "it has no polygons with an area");
         let far = said(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 99999999999999999999\n");
         assert!(
-            far.starts_with("this face (f) names the corner 99999999999999999999, but a file has at most ")
+            far.starts_with("this face (f) names the vertex 99999999999999999999, but a file has at most ")
         );
+        let far = said(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/1 2/99999999999999999999 3/1\n");
+        assert!(far.contains("names the texture coordinate 99999999999999999999"), "{far}");
+        assert!(far.ends_with(" texture coordinates (vt)"), "{far}");
         assert!(said(b"v 0 0 0\nf 1 2 3e\n").contains("must name its corners as vertex"));
+        assert!(said("\u{feff}ply\nformat".as_bytes()).contains("not a valid PLY file"));
         let square = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n";
         assert!(read(square.as_bytes()).is_ok());
     }

@@ -12,19 +12,23 @@ use glam::{DVec3, Vec2, Vec3};
 use super::model::{Builder, Corner, MAX_VERTICES};
 use crate::{
     parameter::FileProblem,
-    text::{after_mark, quoted},
+    text::{after_mark, quoted, with_line_feeds},
 };
 
 /// Maximum number of corners of all faces, including those without area.
 const MOST_NAMED: usize = 2 * MAX_VERTICES;
 /// The rule for faces.
 const FACE: &str = "a face (f) must name its corners as vertex, vertex/texture, vertex//normal or all three";
+/// What a corner of a face names, each in the singular and in the plural.
+const KINDS: [(&str, &str); 3] = [
+    ("vertex", "vertices (v)"),
+    ("texture coordinate", "texture coordinates (vt)"),
+    ("normal", "normals (vn)"),
+];
 
 /// The statements of a text, each with its line: a backslash at the end of a line continues it on the next.
 fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
-    // Old Macintosh programs use other line ends.
-    let end = if text.contains('\n') { '\n' } else { '\r' };
-    let mut lines = text.split(end).enumerate();
+    let mut lines = text.split('\n').enumerate();
     std::iter::from_fn(move || {
         let (i, line) = lines.next()?;
         let continued = |line: &'_ str| line.strip_suffix('\r').unwrap_or(line).ends_with('\\');
@@ -146,7 +150,7 @@ impl Lists {
             if part.is_empty() && i > 0 {
                 continue;
             }
-            let number: i64 = part.parse().map_err(|_| wrong_number(part))?;
+            let number: i64 = part.parse().map_err(|_| wrong_number(i, part))?;
             let back = u32::try_from(number.unsigned_abs()).unwrap_or(u32::MAX);
             *place = match number {
                 1.. => back,
@@ -178,22 +182,19 @@ impl Lists {
 }
 
 /// The message about a reference that is not a number, or one that no computer counts to.
-fn wrong_number(written: &str) -> Cow<'static, str> {
+fn wrong_number(kind: usize, written: &str) -> Cow<'static, str> {
     let digits = written.trim_start_matches(['+', '-']);
     if digits.is_empty() || digits.contains(|c: char| !c.is_ascii_digit()) {
         return FACE.into();
     }
     let number = crate::text::shortened(written);
-    format!("this face (f) names the corner {number}, but a file has at most {MAX_VERTICES} vertices").into()
+    let (one, all) = KINDS[kind];
+    format!("this face (f) names the {one} {number}, but a file has at most {MAX_VERTICES} {all}").into()
 }
 
 /// The message about an invalid reference of a face.
 fn beyond(kind: usize, written: &str, count: u32) -> Cow<'static, str> {
-    let (one, all) = [
-        ("vertex", "vertices (v)"),
-        ("texture coordinate", "texture coordinates (vt)"),
-        ("normal", "normals (vn)"),
-    ][kind];
+    let (one, all) = KINDS[kind];
     let have = match count {
         0 => format!("the file has no {all}"),
         1 => format!("there is only 1 of the {all}"),
@@ -210,6 +211,7 @@ fn beyond(kind: usize, written: &str, count: u32) -> Cow<'static, str> {
 pub fn read(bytes: &[u8], to: &mut Builder) -> Result<usize, FileProblem> {
     // Comments may be in any encoding.
     let text = String::from_utf8_lossy(after_mark(bytes));
+    let text = with_line_feeds(&text);
     let at =
         |line: usize| move |what: Cow<'_, str>| FileProblem { line: Some(line), message: what.into_owned() };
     let mut lists = Lists::default();

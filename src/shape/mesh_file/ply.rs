@@ -10,7 +10,10 @@ use ply_rs_bw::{
 };
 
 use super::model::{Builder, Corner, MAX_POLYGONS, MAX_VERTICES};
-use crate::{parameter::FileProblem, text::shortened};
+use crate::{
+    parameter::FileProblem,
+    text::{shortened, with_line_feeds},
+};
 
 /// First bytes of such a file.
 pub const BEGIN: &[u8] = b"ply";
@@ -89,6 +92,9 @@ impl PropertyAccess for Other {
 
 /// Reads the polygons of a file.
 pub fn read(bytes: &[u8], to: &mut Builder) -> Result<(), FileProblem> {
+    let text = std::str::from_utf8(bytes).ok().filter(|text| text.contains("\rformat ascii"));
+    let text = text.map(with_line_feeds);
+    let bytes = text.as_deref().map_or(bytes, str::as_bytes);
     let mut reader = Reader::new(bytes);
     let mut header = Parser::<Other>::new().read_header(&mut reader).map_err(|e| in_header(&e, bytes))?;
     let whole = |message: String| FileProblem { line: None, message };
@@ -186,7 +192,9 @@ fn in_header(error: &ParseError, bytes: &[u8]) -> FileProblem {
     let said = error.to_string();
     let said = said.split_once(": ").filter(|_| error.line().is_some()).map_or(&*said, |(_, said)| said);
     let line = error.line().and_then(|line| bytes.split(|byte| *byte == b'\n').nth(line.checked_sub(1)?));
+    let ends = bytes.strip_prefix(b"ply\r").is_some_and(|rest| !rest.starts_with(b"\n"));
     let what = match KINDS.iter().find(|(theirs, _)| said.starts_with(*theirs)) {
+        _ if ends => "the lines of its header must end with a line feed",
         Some((_, ours)) => *ours,
         None if error.kind() == ErrorKind::UnexpectedEof => "the file ends before the end_header line",
         None if error.line().is_none() => "its header is not text",
@@ -291,7 +299,8 @@ mod tests {
     fn text_and_both_orders_of_bytes_give_the_same_mesh() {
         let expected = [[-0.5, -0.25], [0.5, -0.25], [0.5, 0.25], [-0.5, 0.25]];
         let windows = SQUARE.replace('\n', "\r\n").into_bytes();
-        for bytes in [SQUARE.as_bytes(), &windows, &binary(true), &binary(false)] {
+        let old = SQUARE.replace('\n', "\r").into_bytes();
+        for bytes in [SQUARE.as_bytes(), &windows, &old, &binary(true), &binary(false)] {
             let mesh = mesh(bytes, false);
             assert_eq!(mesh.positions, expected.map(|[x, y]| Vec3::new(x, y, 0.0)));
             assert_eq!(mesh.polygons.len(), 1);
@@ -402,6 +411,11 @@ mod tests {
             assert!(!said.contains('\n'), "{said}");
         }
         assert!(numbers(b"ply").is_err());
+        let header = SQUARE.split_inclusive("end_header\n").next().expect("a header");
+        let mut old = header.replace("ascii", "binary_little_endian").replace('\n', "\r").into_bytes();
+        old.extend([0xff; 80]);
+        let said = numbers(&old).expect_err("line ends");
+        assert_eq!(said, "1: it is not a valid PLY file: the lines of its header must end with a line feed");
         let said = numbers(b"ply\n\xff\xfe").expect_err("no text");
         assert_eq!(said, "2: it is not a valid PLY file: its header is not text");
     }

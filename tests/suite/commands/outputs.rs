@@ -129,10 +129,18 @@ fn a_dash_is_no_output_of_any_command() {
         &["assets", "export", "-"],
     ] {
         let run = lcm_in(folder.path(), arguments, b"");
-        refused(&run, 2, "results go to files; name one (./- for one called -)");
+        refused(&run, 2, "results go to files and folders; name one (./- for one called -)");
         assert_eq!(run.out, "");
     }
     assert_eq!(names(folder.path()), ["s.json"]);
+    // Pictures go into a folder where the name has no extension.
+    let run = lcm_in(
+        folder.path(),
+        &["render", "s.json", "--size", "64x36", "--renderer", "cpu", "-o", "./-"],
+        b"",
+    );
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    assert_eq!(names(&folder.path().join("-")), ["s.png"]);
     let run = lcm_in(folder.path(), &["new", "./-.json"], b"");
     assert_eq!(run.status, Some(0), "{}", run.err);
 }

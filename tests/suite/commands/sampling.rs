@@ -408,19 +408,24 @@ fn long_work_has_a_bar_on_a_terminal_that_goes_on_by_samples() {
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
         said
     };
-    let (samples, left) = (" of 1000000 samples, ", " left; Ctrl+C ends it");
+    let (samples, time) = (" of 1000000 samples, ", "s so far; Ctrl+C ends it");
     let long = "--renderer cpu --size 320x180 --light-samples 1000000";
-    let bar = ["drawing softbox.json, ", samples, left, "░"];
+    let bar = ["drawing softbox.json, ", samples, time, "░"];
     says(6, &bar, &format!("render softbox.json -o p.png {long}"));
-    let view = ["drawing two.json, view A, ", left];
+    let view = ["drawing two.json, view A, ", time];
     says(6, &view, &format!("render two.json --layout wipe -o p.png {long}"));
     says(6, &["2 of 2, softbox.json, ", samples], &format!("render point.json softbox.json -o many {long}"));
+    // The time left is told once enough is done.
+    let short = "--renderer cpu --size 320x180 --light-samples 5000";
+    let said = says(90, &[" left; Ctrl+C ends it"], &format!("render softbox.json -o p.png {short}"));
+    let early = said.split('\r').find(|line| line.contains(" 0 % ") && line.contains(" left"));
+    assert_eq!(early, None, "{said}");
     let noise = "--renderer cpu --size 320x180 --noise 0.01 --light-samples 1000000";
     let until = [" samples, noise ", " %, until 0.01 %"];
     says(6, &until, &format!("render softbox.json -o p.png {noise}"));
     let gold = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/compare_gold.json");
-    says(3, &["matching, ", left], &format!("match {gold} --on picture"));
-    says(3, &[" % matching, ", left], &format!("match {gold} --on picture --each"));
+    says(3, &["matching, ", time], &format!("match {gold} --on picture"));
+    says(3, &[" % matching, ", time], &format!("match {gold} --on picture --each"));
     let said = says(6, &[], &format!("render --quiet softbox.json -o p.png {long}"));
     assert!(!said.contains("samples"), "{said}");
     let left = names(folder.path());

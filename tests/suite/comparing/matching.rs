@@ -164,7 +164,7 @@ fn every_model_is_matched_until_ctrl_c() {
     assert_eq!(status, Some(130), "{said}");
     assert!(said.contains("RMS difference of ln(1 + f cos θ), f in sr⁻¹\r\n"), "{said}");
     assert!(said.contains("  lambert") && said.contains("interrupted before "), "{said}");
-    assert!(said.contains(" left; Ctrl+C ends it"), "{said}");
+    assert!(said.contains(" % matching, ") && said.contains(" so far; Ctrl+C ends it"), "{said}");
     let (status, said) = run("--json --quiet");
     assert_eq!(status, Some(130), "{said}");
     let json: serde_json::Value = serde_json::from_str(&said).expect("JSON");

@@ -107,6 +107,24 @@ fn a_lesson_reads_no_file_outside_its_folder() {
             }
         }
     }
+    // The user may allow it.
+    let scene = include_str!("../../../scenes/default.json");
+    fs::write(root.path().join("secret.json"), scene).expect("writable");
+    for name in ["link.json", "below/up/secret.json", "../secret.json", &secret] {
+        for text in [
+            lesson_with(&format!("scene: {name}\n"), ""),
+            lesson_with("", &format!("```scene\nopen: {name}\n```")),
+        ] {
+            fs::write(folder.join("lesson.md"), text).expect("writable");
+            let path = folder.display().to_string();
+            let check = ["lesson", "check", &path];
+            let refused = lcm(&check, "");
+            assert!(refused.status == Some(1) && refused.err.contains("--allow-outside"), "{}", refused.err);
+            let run = lcm(&[&check[..], &["--allow-outside"]].concat(), "");
+            assert_eq!(run.status, Some(0), "{name}: {}", run.err);
+        }
+    }
+    fs::write(root.path().join("secret.json"), "password = hunter2\n").expect("writable");
     // A path that stays inside is read, and its problem reported.
     fs::write(folder.join("lesson.md"), lesson_with("scene: here.json\n", "")).expect("writable");
     let run = lcm(&["lesson", "check", &folder.display().to_string()], "");
@@ -125,9 +143,9 @@ fn a_lesson_beyond_its_limits_is_refused_with_the_place_and_the_limit() {
     let steps = |n: usize| "## S\n\nText.\n\n".repeat(n);
     for (step, expected) in [
         (nested(24), ""),
-        (nested(25), "11:29: this is nested 25 brackets deep; at most 24 are allowed"),
-        (nested(5000), "11:29: this is nested 25 brackets deep"),
-        (nested(20_000), "11:29: this is nested 25 brackets deep"),
+        (nested(25), "11:29: this is nested more than 24 brackets deep, the most allowed"),
+        (nested(5000), "11:29: this is nested more than 24 brackets deep"),
+        (nested(20_000), "11:29: this is nested more than 24 brackets deep"),
         (format!("```equation\n{}\n```", "x ".repeat(1001)), "this line of the equation has more than 2000"),
         (format!("```scene\nobjects{} = 1\n```", "[0]".repeat(100_000)), "a path has at most 64 steps"),
         (format!("```scene\n{}```", "exposure = 1\n".repeat(101)), "a scene block sets at most 100 values"),

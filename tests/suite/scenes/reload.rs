@@ -636,6 +636,43 @@ fn news_wait_for_the_answer_to_an_open_question() {
 }
 
 #[test]
+fn a_file_that_is_lost_while_a_question_is_open_leaves_its_scene_unsaved() {
+    let lost: [fn(&std::path::Path); 3] = [
+        |path| fs::remove_file(path).unwrap(),
+        |path| fs::write(path, "").unwrap(),
+        |path| fs::write(path, &text(&three())[..90]).unwrap(),
+    ];
+    for happens in lost {
+        let mut desk = Desk::new();
+        let copy = offer(desk.path(), &grown(1, 0.5));
+        let question = Some(Question::Recover(Box::new(copy)));
+        desk.session.questions.open.clone_from(&question);
+        happens(&desk.path());
+        assert!(desk.report() && !desk.report());
+        assert!(desk.session.shows_unsaved() && desk.badge().starts_with("room.json "));
+        // It holds a scene again: the question is not about that.
+        desk.edited(&text(&grown(0, 2.0)));
+        assert_eq!(desk.session.document, grown(0, 2.0));
+        assert_eq!((desk.badge(), desk.session.shows_unsaved()), ("", false));
+        happens(&desk.path());
+        assert!(desk.report() && !desk.report());
+        assert_eq!(desk.session.questions.open, question);
+        let before = desk.session.messages.clone();
+        desk.act(Action::Answer(Answer::Discard));
+        assert!(desk.session.shows_unsaved() && !desk.report());
+        assert_eq!(desk.session.messages, before, "nothing is said twice");
+
+        let mut desk = Desk::new();
+        desk.change();
+        desk.act(Action::Quit);
+        happens(&desk.path());
+        assert!(desk.report() && !desk.report());
+        assert!(desk.badge().starts_with("room.json "));
+        assert!(matches!(desk.session.questions.open, Some(Question::Unsaved { .. })), "the question stays");
+    }
+}
+
+#[test]
 fn a_document_without_a_file_has_nothing_to_follow() {
     let mut desk = Desk::new();
     desk.act(Action::New);
@@ -658,6 +695,17 @@ fn what_can_be_read_only_once_is_not_read_again() {
     assert_eq!(files.check(&pipe, &Registry::builtin(), Outside::NONE), OnDisk::Same);
 }
 
+/// The copy of a file that an earlier window left.
+fn offer(path: PathBuf, copy: &Scene) -> Offer {
+    Offer {
+        title: "Room".to_owned(),
+        path: Some(path),
+        file: PathBuf::from("copy.json"),
+        when: String::new(),
+        scene: Ok(copy.clone()),
+    }
+}
+
 /// A window that continues with a copy of the file from an earlier one, with the file's state as known then.
 fn recovered(copy: &Scene, known: &str) -> Desk {
     let mut desk = Desk::new();
@@ -665,14 +713,7 @@ fn recovered(copy: &Scene, known: &str) -> Desk {
     // Like a window without a scene.
     desk.session = Session::default();
     desk.files = DiskFiles::new(None, None);
-    let offer = Offer {
-        title: "Room".to_owned(),
-        path: Some(path.clone()),
-        file: PathBuf::from("copy.json"),
-        when: String::new(),
-        scene: Ok(copy.clone()),
-    };
-    desk.session.questions.ask(Question::Recover(Box::new(offer)));
+    desk.session.questions.ask(Question::Recover(Box::new(offer(path.clone(), copy))));
     desk.act(Action::Answer(Answer::Recover));
     desk.files.expect(&path, Some(Stamp::of(known.as_bytes())));
     assert!(desk.session.is_dirty());

@@ -155,11 +155,6 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// A text with the line ends of old Macintosh programs replaced by line feeds, at the same bytes.
-pub(super) fn with_line_feeds(text: &str) -> Cow<'_, str> {
-    if text.contains('\r') && !text.contains('\n') { text.replace('\r', "\n").into() } else { text.into() }
-}
-
 /// The content of a cell in this text.
 pub(super) fn content<'t>(text: &'t str, cell: &Cell) -> Cow<'t, str> {
     let content = &text[cell.range.clone()];

@@ -22,7 +22,7 @@ use crate::{
     light::MAX_LIGHTS,
     registry::Registry,
     scene::{MAX_OBJECTS, Scene, error::LoadError, read, write::to_json},
-    text::{after_mark, place::Lines},
+    text::{after_mark, place::Lines, with_line_feeds},
 };
 
 mod columns;
@@ -70,7 +70,7 @@ impl SceneFormat for Csv {
 
     fn read<'a>(&self, source: &'a Source<'_>, registry: &'a Registry) -> Result<Parsed<'a>, LoadError> {
         let text = source.text()?;
-        let lines = grid::with_line_feeds(text);
+        let lines = with_line_feeds(text);
         let syntax = |(at, what): (usize, String)| {
             source.syntax_error(self.name(), Lines::new(&lines).place(at), what)
         };

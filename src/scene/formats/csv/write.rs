@@ -4,13 +4,16 @@ use std::{borrow::Cow, collections::HashSet};
 
 use super::{
     columns::{self, Column, Columns, Part},
-    grid::{Grid, Row, with_line_feeds},
+    grid::{Grid, Row},
     rows::decimal_commas,
 };
 use crate::{
     declared::with_defaults,
     registry::Registry,
-    text::json::{self, Ast, STRICT},
+    text::{
+        json::{self, Ast, STRICT},
+        with_line_feeds,
+    },
 };
 
 with_defaults! {
