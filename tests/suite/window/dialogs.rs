@@ -145,6 +145,21 @@ fn enter_and_escape_reach_the_dialog_from_the_search() {
 }
 
 #[test]
+fn one_escape_closes_the_dialog_whatever_has_the_focus() {
+    for count in 1..6 {
+        let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
+        (0..count).for_each(|_| bench.key(Key::Tab, Modifiers::NONE));
+        assert!(bench.ctx.memory(bevy_egui::egui::Memory::focused).is_some());
+        bench.key(Key::Escape, Modifiers::NONE);
+        assert!(!bench.dialogs.is_open(), "after {count} steps with Tab");
+    }
+    let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
+    select(&mut bench, "shapes.json");
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.dialogs.is_open(), "after a click");
+}
+
+#[test]
 fn a_shortcut_is_no_text_for_the_search() {
     let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
     // As the window passes it on after a slow frame: the letter before its key, and Ctrl already released.
@@ -421,6 +436,9 @@ fn a_folder_is_opened_by_the_button_as_by_a_double_click() {
         assert!(bench.dialogs.is_open());
         assert!(!bench.effects.iter().any(|effect| matches!(effect, Effect::OpenFile(_))));
         bench.effects.clear();
+        bench.settle();
+        let enabled = bench.tree.iter().any(|s| s.label.ends_with("  Open") && !s.disabled);
+        assert!(!enabled, "{percent} %: nothing is selected there");
         // There it opens files again.
         select(&mut bench, "inside.json");
         bench.settle();
