@@ -557,3 +557,23 @@ fn a_dialog_opened_at_another_size_of_type_has_room_for_its_buttons() {
         bench.key(Key::Escape, Modifiers::NONE);
     }
 }
+
+#[test]
+fn a_question_keeps_a_margin_in_a_small_window() {
+    let mut bench = Bench::new(Session::default());
+    for width in [400.0, 640.0] {
+        bench.size = vec2(width, 300.0);
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
+        bench.apply(Action::Quit);
+        bench.settle();
+        let question = bench.ctx.memory(|m| m.area_rect(Id::new("question"))).expect("asked");
+        let screen = bench.ctx.content_rect();
+        assert!(screen.shrink2(vec2(8.0, 0.0)).contains_rect(question), "{question:?} in {screen:?}");
+        let inner = question.shrink2(vec2(8.0, 0.0));
+        for label in ["Save", "Cancel"] {
+            let mut there = bench.tree.iter().filter(|s| s.label == label);
+            assert!(there.any(|s| inner.contains_rect(s.rect)), "{width}: {label} in {question:?}");
+        }
+        bench.key(Key::Escape, Modifiers::NONE);
+    }
+}
