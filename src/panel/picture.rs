@@ -451,8 +451,9 @@ fn that_fit(
         let size = size_of(galleys);
         size.x * size.y <= PLATE * rect.area() && size.y <= tallest
     };
-    let all = headings.into_iter().map(|text| vec![theme::lines(ui, &text, head.clone(), ink, (room, 3))]);
-    let mut galleys = all.into_iter().find(|galleys| !galleys[0].elided && fits(galleys))?;
+    let mut all =
+        headings.into_iter().map(|text| vec![theme::lines(ui, &text, head.clone(), ink, (room, 3))]);
+    let mut galleys = all.find(|galleys| !galleys[0].elided && fits(galleys))?;
     for line in lines {
         galleys.push(theme::lines(ui, line, FontId::proportional(body), ink, (room, 2)));
         if !fits(&galleys) {

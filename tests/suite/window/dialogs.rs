@@ -146,13 +146,16 @@ fn enter_and_escape_reach_the_dialog_from_the_search() {
 
 #[test]
 fn one_escape_closes_the_dialog_whatever_has_the_focus() {
+    let mut buttons = 0;
     for count in 1..6 {
         let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
         (0..count).for_each(|_| bench.key(Key::Tab, Modifiers::NONE));
-        assert!(bench.ctx.memory(bevy_egui::egui::Memory::focused).is_some());
+        let focus = bench.ctx.memory(bevy_egui::egui::Memory::focused);
+        buttons += usize::from(focus.is_some() && !bench.ctx.text_edit_focused());
         bench.key(Key::Escape, Modifiers::NONE);
         assert!(!bench.dialogs.is_open(), "after {count} steps with Tab");
     }
+    assert!(buttons > 0, "nothing is tested");
     let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
     select(&mut bench, "shapes.json");
     bench.key(Key::Escape, Modifiers::NONE);
