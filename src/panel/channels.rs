@@ -29,8 +29,10 @@ pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(Deb
 }
 
 /// Maximum height of a legend with all its colours, as a fraction of the picture: in a smaller picture there is the title
-/// alone.
+/// alone, and where that would be cut, the name of the channel.
 const TALLEST: f32 = 0.4;
+/// The same beside other views, where pictures are small and objects large in them.
+const TALLEST_OF_SEVERAL: f32 = 0.25;
 
 /// Paints the legend of a view's channel, if the view shows one; a click on it shows the picture again. Returns the
 /// legend's rectangle.
@@ -42,17 +44,21 @@ pub(super) fn legend(
 ) -> Option<Rect> {
     let (session, registry) = (context.session(), context.registry());
     let (channel, mut legend) = shown(session, view, registry)?;
-    if !session.document.variants.is_empty() {
-        legend.title = format!("{} · {}", LETTERS[view.min(MAX_VARIANTS)], legend.title);
+    let several = !session.document.variants.is_empty();
+    let mut name = channel.name().to_owned();
+    if several {
+        let letter = LETTERS[view.min(MAX_VARIANTS)];
+        for text in [&mut legend.title, &mut name] {
+            *text = format!("{letter} · {text}");
+        }
     }
     if let Some(remark) = wires::remark(ui.ctx(), view).filter(|_| channel.has_wires()) {
         legend.title = format!("{} ({remark})", legend.title);
     }
     let rect = placer.room;
-    let whole = Plate::new(ui, rect, &legend, usize::MAX);
-    let is_cut = whole.size.x > rect.width() - 2.0 * EDGE || whole.size.y > TALLEST * rect.height();
-    let short = || Legend { title: legend.title.clone(), scale: None, colours: Vec::new() };
-    let laid_out = if is_cut { Plate::new(ui, rect, &short(), 1) } else { whole };
+    let beside = several && !session.view.presenting;
+    let tallest = if beside { TALLEST_OF_SEVERAL } else { TALLEST } * rect.height();
+    let (laid_out, is_cut) = that_fits(ui, rect, &legend, name, tallest);
     let place = placer.place(laid_out.size);
     laid_out.paint(ui, rect, place);
     let response = ui.interact(place, Id::new(("channel legend", view)), Sense::click());
@@ -80,6 +86,18 @@ pub(super) fn legend(
     }
     response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(help);
     Some(place)
+}
+
+/// A legend in a picture, at most so tall: whole, or its title, or else the name of its channel. Returns also true if
+/// something is left out.
+fn that_fits(ui: &Ui, rect: Rect, legend: &Legend, name: String, tallest: f32) -> (Plate, bool) {
+    let whole = Plate::new(ui, rect, legend, usize::MAX);
+    if whole.size.x <= rect.width() - 2.0 * EDGE && whole.size.y <= tallest {
+        return (whole, false);
+    }
+    let title = Plate::new(ui, rect, &Legend::new(legend.title.clone()), 1);
+    let is_legible = !title.title.elided;
+    (if is_legible { title } else { Plate::new(ui, rect, &Legend::new(name), 2) }, true)
 }
 
 /// A legend that is only a text.

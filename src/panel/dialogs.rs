@@ -57,11 +57,13 @@ pub struct Dialogs {
     blank: u8,
 }
 
-/// Dialog fields that pass keys on to the dialog.
+/// Dialog fields, of which the first two pass keys on to the dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Field {
     Search,
     Name,
+    /// One that handles its own keys, such as the path at the top.
+    Other,
 }
 
 /// Labels with a short caption below the list, which leaves room for the file name.
@@ -341,7 +343,10 @@ impl Dialogs {
         let mut entered = false;
         if let Some(places) = &list {
             aids::name_icons(ctx, layer, places.top, dialog.config_mut());
-            let selected = dialog.selected_entry();
+            // The dialog keeps a folder selected after it has shown what is in it.
+            let shown = dialog.storage_mut().last_visited_dir.clone();
+            let selected =
+                dialog.selected_entry().filter(|entry| entry.as_path().parent() == shown.as_deref());
             let is_folder = selected.is_some_and(egui_file_dialog::DirectoryEntry::is_dir);
             if is_folder && dialog.mode() == DialogMode::PickFile {
                 let label = dialog.config_mut().labels.open_button.clone();
@@ -371,11 +376,14 @@ impl Dialogs {
                 input.events.push(event);
             });
         } else {
+            let picks = self.dialog.mode() == DialogMode::PickFile;
             // In the name field, Enter saves.
             let passed: &[Key] = match self.typed_into {
                 Some(Field::Search) if self.asked != Some(Pick::Save) => &[Key::Enter, Key::Escape],
-                Some(_) => &[Key::Escape],
-                None => &[],
+                Some(Field::Search | Field::Name) => &[Key::Escape],
+                // A button that has the focus would only lose it. Dialogs that save ask questions, which take the key.
+                None if picks && !egui::Popup::is_any_open(ctx) => &[Key::Escape],
+                None | Some(Field::Other) => &[],
             };
             self.again = passed.iter().copied().find(|key| ctx.input(|input| input.key_pressed(*key)));
             if self.again.is_some() {
@@ -434,14 +442,15 @@ impl Places {
         Some(Self { top, bottom, list })
     }
 
-    /// The focused field. The path at the top and the name of a new folder handle their own keys.
+    /// The focused field.
     fn focused(&self, ctx: &Context) -> Option<Field> {
         let focus = ctx.memory(egui::Memory::focused)?;
         let rect = ctx.viewport(|v| v.this_pass.widgets.get(focus).map(|w| w.rect))?;
         // The search is the last thing at the top.
         let search = self.top.contains_rect(rect) && rect.right() > self.top.right() - 80.0;
-        let name = ctx.text_edit_focused() && self.bottom.contains_rect(rect);
-        search.then_some(Field::Search).or(name.then_some(Field::Name))
+        let text = ctx.text_edit_focused();
+        let name = text && self.bottom.contains_rect(rect);
+        search.then_some(Field::Search).or(name.then_some(Field::Name)).or(text.then_some(Field::Other))
     }
 
     /// True if the list contains neither text nor a loading spinner.

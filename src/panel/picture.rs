@@ -27,8 +27,8 @@ use crate::{
     scene::comparison::Edge,
 };
 
-/// Minimum width of a picture for axes, in points: in a narrower one they would hide more than they say.
-const AXES: f32 = 240.0;
+/// Minimum size of a picture for axes, in points: in a smaller one they would hide more than they say.
+const AXES: Vec2 = vec2(240.0, 170.0);
 /// Side of the corner for the axes, in points.
 const AXES_CORNER: f32 = 84.0;
 
@@ -139,7 +139,7 @@ impl<'a> Overlaid<'_, 'a> {
         if stage.is_none() {
             self.written.push(caption(ui, rect, session, registry));
             let corner = Rect::from_min_max(rect.right_bottom() - vec2(AXES_CORNER, AXES_CORNER), rect.max);
-            if rect.width() >= AXES && !self.written.iter().any(|place| place.intersects(corner)) {
+            if has_axes(rect) && !self.written.iter().any(|place| place.intersects(corner)) {
                 self.written.push(axes(ui, rect, session));
             }
         }
@@ -315,7 +315,9 @@ impl<'a> Overlaid<'_, 'a> {
             }
             false => (&lines[..], f32::INFINITY),
         };
-        let Some(galleys) = that_fit(ui, placer.room, &heading, said, tallest) else { return Rect::NOTHING };
+        let shorter = shorter_words(&session.shaders).map(str::to_owned);
+        let headings = iter::once(heading.clone()).chain(shorter);
+        let Some(galleys) = that_fit(ui, placer.room, headings, said, tallest) else { return Rect::NOTHING };
         let place = placer.place(size_of(&galleys));
         let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
         theme::says(&response, WidgetType::Button, format!("{heading}: {}", lines.join("; ")));
@@ -428,39 +430,44 @@ fn size_of(galleys: &[Arc<Galley>]) -> Vec2 {
     vec2(width + SIGN, height) + 2.0 * PADDING
 }
 
-/// Heading and lines, as far as their plate leaves room for the picture: that has priority, then the heading; the panel
-/// lists all errors. The plate is not taller than `tallest`.
-fn that_fit(ui: &Ui, rect: Rect, heading: &str, lines: &[String], tallest: f32) -> Option<Vec<Arc<Galley>>> {
+/// Shorter headings of the message about a shader error, down to its sign alone, for small pictures.
+fn shorter_words(status: &ShaderStatus) -> [&'static str; 4] {
+    let [sentence, words] = match status.stale().iter().all(|name| name.ends_with(STAND_IN)) {
+        true => ["Showing a grey stand-in", "Grey stand-in"],
+        false => ["Showing the last good version", "Last good version"],
+    };
+    [sentence, words, "Error", ""]
+}
+
+/// The longest heading of which nothing is cut, and lines, as far as their plate leaves room for the picture: that has
+/// priority; the panel lists all errors. The plate is not taller than `tallest`.
+fn that_fit(
+    ui: &Ui,
+    rect: Rect,
+    headings: impl IntoIterator<Item = String>,
+    lines: &[String],
+    tallest: f32,
+) -> Option<Vec<Arc<Galley>>> {
     let room =
         (rect.width() - 2.0 * placer::EDGE).min(560.0 * theme::scale_here(ui)) - SIGN - 2.0 * PADDING.x;
-    let room = room.max(64.0);
     let body = TextStyle::Body.resolve(ui.style()).size;
-    let lay_out = |text: &str, font: FontId, rows: usize, room: f32| {
-        let mut job = egui::text::LayoutJob::simple(text.to_owned(), font, Palette::here(ui).panel, room);
-        job.wrap.max_rows = rows;
-        ui.painter().layout_job(job)
-    };
-    let head = |rows, room| vec![lay_out(heading, FontId::new(1.12 * body, theme::semibold()), rows, room)];
-    let mut galleys = head(3, room);
-    galleys.extend(lines.iter().map(|line| lay_out(line, FontId::proportional(body), 2, room)));
-    let most = PLATE * rect.area();
-    let too_large = |galleys: &[_]| {
+    let ink = Palette::here(ui).panel;
+    let head = FontId::new(1.12 * body, theme::semibold());
+    let fits = |galleys: &[_]| {
         let size = size_of(galleys);
-        size.x * size.y > most || size.y > tallest
+        size.x * size.y <= PLATE * rect.area() && size.y <= tallest
     };
-    while galleys.len() > 1 && too_large(&galleys) {
-        galleys.pop();
-    }
-    for rows in [2, 1] {
-        if too_large(&galleys) {
-            galleys = head(rows, room);
+    let mut all =
+        headings.into_iter().map(|text| vec![theme::lines(ui, &text, head.clone(), ink, (room, 3))]);
+    let mut galleys = all.find(|galleys| !galleys[0].elided && fits(galleys))?;
+    for line in lines {
+        galleys.push(theme::lines(ui, line, FontId::proportional(body), ink, (room, 2)));
+        if !fits(&galleys) {
+            galleys.pop();
+            break;
         }
     }
-    if too_large(&galleys) {
-        let less = most / size_of(&galleys).y - SIGN - 2.0 * PADDING.x;
-        galleys = head(1, less.max(1.0));
-    }
-    Some(galleys).filter(|galleys| !too_large(galleys))
+    Some(galleys)
 }
 
 /// The width of the text of a plate in a picture.
@@ -596,7 +603,7 @@ fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect 
     let padding = vec2(8.0, 4.0);
     let left = if term.is_some() { 14.0 } else { 0.0 };
     // The axes take the corner if there is room for them.
-    let corner = if rect.width() >= AXES { 100.0 } else { 0.0 };
+    let corner = if has_axes(rect) { 100.0 } else { 0.0 };
     let room = (rect.width() - 16.0 - corner - 2.0 * padding.x - left).max(64.0);
     let size = TextStyle::Small.resolve(ui.style()).size;
     let lines = Lines::of(ui, caption::parts(session, registry), size, palette.text, room);
@@ -614,6 +621,11 @@ fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect 
         ui.painter().circle_filled(at, 4.0, palette.term_text(term));
     }
     place
+}
+
+/// True if a picture has room for the axes.
+fn has_axes(rect: Rect) -> bool {
+    rect.width() >= AXES.x && rect.height() >= AXES.y
 }
 
 /// The world axes as seen by the camera, with letters to tell them apart.

@@ -17,7 +17,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let (title, text, details, answers) = words(session, question);
     let mut out = None;
     Modal::new(Id::new("question")).show(ui.ctx(), |ui: &mut Ui| {
-        ui.set_width(420.0);
+        ui.set_width(WIDTH.min(ui.ctx().content_rect().width() - AROUND));
         egui::Frame::new().inner_margin(8.0).show(ui, |ui| {
             ui.label(RichText::new(title).heading());
             ui.add_space(8.0);
@@ -40,6 +40,9 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     context.actions.extend(escape.or(out).map(Action::Answer));
 }
 
+/// Width of a question, in points, and what a narrow window keeps for its frame and around it.
+const WIDTH: f32 = 420.0;
+const AROUND: f32 = 56.0;
 /// Smallest size of a button, in points.
 const BUTTON: Vec2 = vec2(80.0, 28.0);
 

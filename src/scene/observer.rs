@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Mat4, Quat, Vec3};
 
-use super::{Field, Scene, field::Kind, part::part, rows::Row};
+use super::{Field, Object, Scene, field::Kind, part::part, rows::Row};
 
 /// Passes the declaration to a macro: [`part!`], or that of the component.
 macro_rules! observer {
@@ -77,6 +77,16 @@ pub fn line_of_sight(pixel: [u32; 2], size: [u32; 2], vertical: f32) -> [f32; 2]
 /// The ratio of width to height for which scenes are composed.
 pub const WIDE: f32 = 16.0 / 9.0;
 
+/// The width of a picture around the objects in it, as a multiple of theirs.
+const MARGIN: f32 = 1.1;
+
+/// The tangent of the angle between the direction of view and the outer edge of a sphere that is aside of it.
+/// The depth is greater than the radius.
+fn outer_edge(aside: f32, depth: f32, radius: f32) -> f32 {
+    let [a, d, r] = [aside.abs(), depth, radius];
+    (a * d + r * (a * a + d * d - r * r).sqrt()) / (d * d - r * r)
+}
+
 /// The field of view of pictures in a window, which can have any shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewAngle {
@@ -102,14 +112,35 @@ impl ViewAngle {
 impl Scene {
     /// The field of view of the scene's pictures in a window. A single picture shows at the sides what a wide
     /// picture shows; in views side by side the smaller side has the observer's angle, so that objects keep
-    /// their size, or as much more as the rows of the scene need.
+    /// their size, or as much more as the objects and rows of the scene need.
     #[must_use]
     pub fn view_angle(&self) -> ViewAngle {
         let beside = self.comparison.layout.is_beside() && !self.variants.is_empty();
         ViewAngle {
             degrees: self.observer.field_of_view,
-            keeps: if beside { self.width_of_rows().clamp(1.0, WIDE) } else { WIDE },
+            keeps: if beside {
+                self.width_of_objects().max(self.width_of_rows()).clamp(1.0, WIDE)
+            } else {
+                WIDE
+            },
         }
+    }
+
+    /// The ratio of width to height of a picture that shows the objects from side to side, with a margin: those
+    /// that a wide picture shows from top to bottom. Floors and backdrops reach beyond it, and do not count.
+    fn width_of_objects(&self) -> f32 {
+        let to_eye = orientation(self.observer.direction).transpose();
+        let up = (0.5 * self.observer.field_of_view.to_radians()).tan();
+        let of_object = |object: &Object| {
+            let seen = to_eye * (object.position - self.observer.position);
+            let (depth, radius) = (-seen.z, 0.5 * object.size);
+            if depth <= radius + NEAR || seen.x.abs() > WIDE * up * depth {
+                return 0.0;
+            }
+            if outer_edge(seen.y, depth, radius) <= up { outer_edge(seen.x, depth, radius) } else { 0.0 }
+        };
+        let objects = self.objects.iter().filter(|object| object.visible);
+        MARGIN * objects.map(of_object).fold(0.0, f32::max) / up
     }
 
     /// The ratio of width to height of a picture that shows the rows from side to side, with a margin.
@@ -150,7 +181,7 @@ mod tests {
     use super::*;
     use crate::{
         registry::Registry,
-        scene::{Object, Repeat, Repetition, comparison::Layout},
+        scene::{Repeat, Repetition, comparison::Layout},
     };
 
     #[test]
@@ -205,6 +236,40 @@ mod tests {
         assert!((half_width - 22.5f32.to_radians().tan()).abs() < 1e-6);
         scene.comparison.layout = Layout::Wipe;
         assert_eq!(scene.view_angle().keeps, WIDE);
+    }
+
+    #[test]
+    fn beside_each_other_views_show_whole_the_objects_that_a_wide_picture_shows_whole() {
+        let object =
+            |x: f32, size: f32| Object { position: Vec3::new(x, 5.0, 5.0), size, ..Object::default() };
+        let of = |objects: Vec<Object>| {
+            let mut scene = Scene { objects, ..Scene::default() };
+            scene.comparison.layout = Layout::SideBySide;
+            scene.variants.push(crate::scene::Variant::default());
+            scene
+        };
+        // As the ball and the ring of the shipped comparison of tone mappings.
+        let scene = of(vec![object(3.6, 2.6), object(6.6, 2.6)]);
+        for size in [[360, 280], [300, 560], [640, 360]] {
+            let view = scene.observer.fitting(size, scene.view_angle());
+            let [across, up] = half_tangents(size, view.field_of_view.to_radians());
+            for x in [1.4f64, 1.6] {
+                // The silhouette of a sphere of radius 1.3 at a depth of 4.5.
+                let reach = (x / 4.5f64).atan() + (1.3 / x.hypot(4.5)).asin();
+                assert!(
+                    reach.tan() <= across && (1.3 / 4.5f64).asin().tan() < up,
+                    "{size:?}: {reach} {across}"
+                );
+            }
+        }
+        let keeps = |objects| of(objects).view_angle().keeps;
+        assert!((1.2..1.3).contains(&keeps(vec![object(4.0, 2.0)])), "no more than it needs");
+        assert_eq!(keeps(vec![object(5.0, 2.0)]), 1.0, "there is room already");
+        assert_eq!(keeps(vec![object(5.0, 2.0), object(9.0, 2.0)]), 1.0, "beyond the wide picture");
+        assert_eq!(keeps(vec![object(6.0, 4.0)]), 1.0, "higher than the picture");
+        assert_eq!(keeps(vec![object(5.0, 10.0)]), 1.0, "around the eye");
+        assert_eq!(keeps(vec![Object { visible: false, ..object(7.0, 1.0) }]), 1.0, "hidden");
+        assert_eq!(keeps(vec![object(7.5, 2.0)]), WIDE, "no more than a wide picture");
     }
 
     #[test]

@@ -2,8 +2,12 @@
 
 use bevy::{
     ecs::prelude::*,
-    input::keyboard::{Key, KeyboardInput},
-    window::RequestRedraw,
+    input::{
+        ButtonInput,
+        keyboard::{Key, KeyboardInput},
+        mouse::MouseButton,
+    },
+    window::{RequestRedraw, WindowEvent},
 };
 use bevy_egui::{EguiClipboard, EguiContext, EguiInput, egui, input::EguiContextPointerPosition};
 
@@ -123,6 +127,27 @@ fn mend(events: &mut Vec<egui::Event>, struck: &[Struck], mut paste: impl FnMut(
     }
 }
 
+/// Reports to egui that the pointer has left the window, which bevy_egui does not: after a jump out of it, tooltips
+/// would stay.
+pub(super) fn report_leaving(
+    mut events: MessageReader<WindowEvent>,
+    buttons: Res<ButtonInput<MouseButton>>,
+    mut contexts: Query<&mut EguiInput>,
+) {
+    let mut is_gone = false;
+    for event in events.read() {
+        match event {
+            WindowEvent::CursorLeft(_) => is_gone = true,
+            WindowEvent::CursorEntered(_) | WindowEvent::CursorMoved(_) => is_gone = false,
+            _ => {}
+        }
+    }
+    // A drag goes on outside.
+    if is_gone && buttons.get_pressed().next().is_none() {
+        contexts.iter_mut().for_each(|mut input| input.events.push(egui::Event::PointerGone));
+    }
+}
+
 /// Reports the pointer's position to egui when the scale of the window has changed: neither bevy_egui nor egui converts
 /// the position of an idle pointer, and the next click would miss.
 pub(super) fn rescale_pointer(
@@ -144,7 +169,11 @@ pub(super) fn rescale_pointer(
 
 #[cfg(test)]
 mod tests {
-    use bevy::app::{App, Last};
+    use bevy::{
+        app::{App, Last, Update},
+        math::Vec2,
+        window::{CursorLeft, CursorMoved},
+    };
     use bevy_egui::egui::{Event, RawInput, pos2};
 
     use super::*;
@@ -189,6 +218,33 @@ mod tests {
         let alt_gr = Modifiers { alt: true, ..CTRL };
         let at = vec![text("@"), key(Key::Q, alt_gr)];
         assert_eq!(mended(at.clone(), &[struck(Key::Q, "@", alt_gr)]), at);
+    }
+
+    #[test]
+    fn a_pointer_that_leaves_the_window_in_one_jump_is_gone() {
+        let mut app = App::new();
+        app.add_message::<WindowEvent>()
+            .init_resource::<ButtonInput<MouseButton>>()
+            .add_systems(Update, report_leaving);
+        let window = app.world_mut().spawn(EguiInput::default()).id();
+        let left = || WindowEvent::from(CursorLeft { window });
+        let moved = || WindowEvent::from(CursorMoved { window, position: Vec2::ZERO, delta: None });
+        let mut frame = |events: Vec<WindowEvent>, held: bool| {
+            for event in events {
+                app.world_mut().write_message(event);
+            }
+            if held {
+                app.world_mut().resource_mut::<ButtonInput<MouseButton>>().press(MouseButton::Left);
+            }
+            app.update();
+            std::mem::take(
+                &mut app.world_mut().entity_mut(window).get_mut::<EguiInput>().expect("spawned").events,
+            )
+        };
+        assert_eq!(frame(vec![moved(), left()], false), [Event::PointerGone]);
+        assert_eq!(frame(Vec::new(), false), [], "once");
+        assert_eq!(frame(vec![left(), moved()], false), [], "it came back");
+        assert_eq!(frame(vec![left()], true), [], "a drag goes on outside");
     }
 
     #[test]

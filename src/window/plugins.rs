@@ -7,7 +7,7 @@ use bevy::{
     log::{Level, LogPlugin},
     prelude::*,
     render::{RenderPlugin, settings::RenderCreation},
-    window::{ExitCondition, PresentMode, WindowResolution},
+    window::{ExitCondition, PresentMode, WindowResizeConstraints, WindowResolution},
     winit::WinitPlugin,
 };
 use bevy_egui::EguiPlugin;
@@ -27,6 +27,8 @@ use crate::{
 
 /// Size of a new window, in points.
 const SIZE: UVec2 = UVec2::new(1280, 720);
+/// Size below which the window cannot be made, in points: panels and questions would have no room.
+const LEAST: Vec2 = Vec2::new(640.0, 360.0);
 
 /// The whole window, as `lcm view` opens it:
 ///
@@ -149,22 +151,31 @@ impl PluginGroup for LabPlugins {
     }
 }
 
-/// Bevy's default plugins.
-fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
-    let window = Window {
+/// The window at its start.
+fn window(options: &ViewOptions) -> Window {
+    Window {
         title: program::title().to_owned(),
         name: Some(program::name().to_owned()),
         resolution: options.size.map_or_else(
             || WindowResolution::new(SIZE.x, SIZE.y),
             |[w, h]| WindowResolution::new(w, h).with_scale_factor_override(1.0),
         ),
+        // A size that was asked for counts, whatever it is.
+        resize_constraints: match options.size {
+            Some(_) => WindowResizeConstraints::default(),
+            None => WindowResizeConstraints { min_width: LEAST.x, min_height: LEAST.y, ..default() },
+        },
         // The only mode that software Vulkan supports everywhere.
         present_mode: PresentMode::AutoVsync,
         ..Window::default()
-    };
+    }
+}
+
+/// Bevy's default plugins.
+fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
     let group = DefaultPlugins
         .set(WindowPlugin {
-            primary_window: (!headless).then(|| platform::placed(window)),
+            primary_window: (!headless).then(|| platform::placed(window(options))),
             // Closing the window first asks about unsaved changes.
             close_when_requested: false,
             exit_condition: if headless { ExitCondition::DontExit } else { ExitCondition::OnPrimaryClosed },
@@ -196,4 +207,20 @@ fn log_plugin(options: &ViewOptions) -> LogPlugin {
         )
     };
     LogPlugin { level, filter: filter.to_owned(), ..LogPlugin::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_stays_large_enough_for_its_panels_unless_a_size_was_asked_for() {
+        let least = |options: &ViewOptions| {
+            let limits = window(options).resize_constraints;
+            [limits.min_width, limits.min_height]
+        };
+        assert_eq!(least(&ViewOptions::default()), LEAST.to_array());
+        let asked = ViewOptions { size: Some([400, 300]), ..ViewOptions::default() };
+        assert!(least(&asked)[0] <= 400.0 && least(&asked)[1] <= 300.0);
+    }
 }

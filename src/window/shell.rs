@@ -31,7 +31,8 @@ impl Plugin for ShellPlugin {
                 PreUpdate,
                 (
                     (close_requested, file_dropped).chain(),
-                    input::mend_input
+                    (input::mend_input, input::report_leaving)
+                        .chain()
                         .after(EguiPreUpdateSet::ProcessInput)
                         .before(EguiPreUpdateSet::BeginPass),
                 ),

@@ -733,6 +733,39 @@ fn legends_of_four_views_are_whole_within_their_pictures() {
 }
 
 #[test]
+fn in_large_letters_legends_beside_each_other_are_low_and_not_cut() {
+    let mut bench = bench();
+    bench.key(Key::B, CTRL);
+    bench.apply(Action::View(ViewChange::Scale(200)));
+    for channels in
+        [[DebugChannel::Vertices, DebugChannel::NDotL], [DebugChannel::Depth, DebugChannel::Normals]]
+    {
+        for (view, channel) in channels.into_iter().enumerate() {
+            bench.apply(Action::Compare(CompareCommand::Activate(view)));
+            bench.apply(Action::View(ViewChange::Channel(Some(channel))));
+        }
+        bench.settle();
+        let shapes = bench.shapes();
+        for (cell, channel) in bench.area.cells.clone().into_iter().zip(channels) {
+            let start = format!("{} · ", ["A", "B"][cell.view]);
+            let name = format!("Channel: {start}");
+            let legend = bench.tree.iter().find(|s| s.label.starts_with(&name)).expect("its legend").rect;
+            assert!(
+                legend.height() <= 0.25 * cell.rect.height(),
+                "{channel:?}: {legend:?} in {:?}",
+                cell.rect
+            );
+            let title = shapes.iter().find_map(|shape| match shape {
+                Shape::Text(text) if text.galley.text().starts_with(&start) => Some(&text.galley),
+                _ => None,
+            });
+            let title = title.expect("its title");
+            assert!(!title.elided && title.text().contains(channel.name()), "{}", title.text());
+        }
+    }
+}
+
+#[test]
 fn the_bar_says_in_full_why_views_are_not_compared() {
     let mut bench = bench();
     bench.key(Key::B, CTRL);

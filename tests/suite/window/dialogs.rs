@@ -145,6 +145,24 @@ fn enter_and_escape_reach_the_dialog_from_the_search() {
 }
 
 #[test]
+fn one_escape_closes_the_dialog_whatever_has_the_focus() {
+    let mut buttons = 0;
+    for count in 1..6 {
+        let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
+        (0..count).for_each(|_| bench.key(Key::Tab, Modifiers::NONE));
+        let focus = bench.ctx.memory(bevy_egui::egui::Memory::focused);
+        buttons += usize::from(focus.is_some() && !bench.ctx.text_edit_focused());
+        bench.key(Key::Escape, Modifiers::NONE);
+        assert!(!bench.dialogs.is_open(), "after {count} steps with Tab");
+    }
+    assert!(buttons > 0, "nothing is tested");
+    let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
+    select(&mut bench, "shapes.json");
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.dialogs.is_open(), "after a click");
+}
+
+#[test]
 fn a_shortcut_is_no_text_for_the_search() {
     let (mut bench, _folder) = open(ThemeChoice::Dark, 100);
     // As the window passes it on after a slow frame: the letter before its key, and Ctrl already released.
@@ -421,6 +439,9 @@ fn a_folder_is_opened_by_the_button_as_by_a_double_click() {
         assert!(bench.dialogs.is_open());
         assert!(!bench.effects.iter().any(|effect| matches!(effect, Effect::OpenFile(_))));
         bench.effects.clear();
+        bench.settle();
+        let enabled = bench.tree.iter().any(|s| s.label.ends_with("  Open") && !s.disabled);
+        assert!(!enabled, "{percent} %: nothing is selected there");
         // There it opens files again.
         select(&mut bench, "inside.json");
         bench.settle();
@@ -535,6 +556,26 @@ fn a_dialog_opened_at_another_size_of_type_has_room_for_its_buttons() {
                 _ => false,
             });
             assert!(is_whole, "{percent} %: {words} is cut off in {bottom:?}");
+        }
+        bench.key(Key::Escape, Modifiers::NONE);
+    }
+}
+
+#[test]
+fn a_question_keeps_a_margin_in_a_small_window() {
+    let mut bench = Bench::new(Session::default());
+    for width in [400.0, 640.0] {
+        bench.size = vec2(width, 300.0);
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
+        bench.apply(Action::Quit);
+        bench.settle();
+        let question = bench.ctx.memory(|m| m.area_rect(Id::new("question"))).expect("asked");
+        let screen = bench.ctx.content_rect();
+        assert!(screen.shrink2(vec2(8.0, 0.0)).contains_rect(question), "{question:?} in {screen:?}");
+        let inner = question.shrink2(vec2(8.0, 0.0));
+        for label in ["Save", "Cancel"] {
+            let mut there = bench.tree.iter().filter(|s| s.label == label);
+            assert!(there.any(|s| inner.contains_rect(s.rect)), "{width}: {label} in {question:?}");
         }
         bench.key(Key::Escape, Modifiers::NONE);
     }

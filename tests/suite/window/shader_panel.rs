@@ -78,6 +78,35 @@ fn the_plate_about_an_error_covers_a_quarter_of_the_picture_at_most() {
     }
 }
 
+#[test]
+fn the_plate_about_an_error_has_a_shorter_sentence_rather_than_a_cut_one() {
+    for (stale, said) in [("Gooch (a grey stand-in)", "rey stand-in"), ("Lambert", "ast good version")] {
+        for scale in [100, 150, 200] {
+            for views in 0..2 {
+                let wrong = Trouble { stale: vec![stale.to_owned()], ..broken_lambert() };
+                let mut bench = bench_with(vec![wrong]);
+                bench.apply(Action::View(ViewChange::Scale(scale)));
+                (0..views).for_each(|_| bench.apply(Action::Compare(CompareCommand::Add)));
+                bench.settle();
+                let plate = bench.tree.iter().find(|s| s.label.starts_with("Showing ")).map(|s| s.rect);
+                assert!(views > 0 || plate.is_some(), "{scale} %: no plate");
+                let Some(plate) = plate else { continue };
+                let shapes = bench.shapes();
+                let texts: Vec<_> = shapes
+                    .iter()
+                    .filter_map(|shape| match shape {
+                        Shape::Text(text) if plate.contains(text.pos) => Some(&text.galley),
+                        _ => None,
+                    })
+                    .collect();
+                let heading = texts.first().expect("a heading");
+                assert!(!heading.elided, "{scale} %, {views} more views: {}", heading.text());
+                assert!(views > 0 || heading.text().contains(said), "{scale} %: {}", heading.text());
+            }
+        }
+    }
+}
+
 fn folders() -> ShaderStatus {
     ShaderStatus {
         folders: Folders {
