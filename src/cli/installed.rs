@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use super::{Options, Outcome, named, outputs, print, print_paths};
+use super::{Options, Outcome, command, outputs, print, print_paths};
 use crate::{
     files::{self, FileError, Shown as _, Signature},
     program::{self, in_own_words},
@@ -17,7 +17,7 @@ const PAGE: Signature = Signature { what: "a manual page", begins: b".ie \\n(.g 
 
 /// Prints a completion script for a shell.
 pub(super) fn completions(shell: Shell) -> Outcome {
-    let whole = named();
+    let whole = command();
     // clap completes hidden commands, too.
     let mut listed = clap::Command::new(program::command())
         .version(env!("CARGO_PKG_VERSION"))
@@ -31,7 +31,7 @@ pub(super) fn completions(shell: Shell) -> Outcome {
 /// Writes a page for `man` about the program and one about each command into a folder.
 pub(super) fn manual(folder: &Path, options: Options) -> Outcome {
     // Each command has a page instead.
-    let mut whole = named().disable_help_subcommand(true);
+    let mut whole = command().disable_help_subcommand(true);
     whole.build();
     let mut pages = Vec::new();
     describe(whole, folder, &mut pages)?;

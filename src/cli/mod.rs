@@ -472,7 +472,7 @@ pub fn main_with(types: impl FnOnce(&mut Registry), window: impl FnOnce(&mut App
 }
 
 /// [`clap`]'s command with the name of the program.
-fn named() -> clap::Command {
+fn command() -> clap::Command {
     Cli::command()
         .name(program::command())
         .bin_name(program::command())
@@ -505,7 +505,7 @@ fn run_as(
     if arguments.get(1).is_some_and(|word| word == "help") {
         arguments.retain(|word| word != "--help" && word != "-h");
     }
-    let parsed = named().try_get_matches_from(&arguments).and_then(|found| Cli::from_arg_matches(&found));
+    let parsed = command().try_get_matches_from(&arguments).and_then(|found| Cli::from_arg_matches(&found));
     let mut cli = match parsed {
         Ok(cli) => cli,
         Err(error) => {

@@ -62,9 +62,7 @@ struct Functions {
 
 impl Functions {
     fn of(light: &LightEntry, sources: &Sources) -> Option<Self> {
-        if sources.edited().next().is_none() {
-            return None;
-        }
+        sources.edited().next()?;
         let composed = compose_light(sources, light);
         if !sources.edited().any(|path| composed.depends_on(path)) {
             return None;
