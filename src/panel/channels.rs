@@ -58,7 +58,7 @@ pub(super) fn legend(
     let rect = placer.room;
     let beside = several && !session.view.presenting;
     let tallest = if beside { TALLEST_OF_SEVERAL } else { TALLEST } * rect.height();
-    let (laid_out, is_cut) = that_fits(ui, rect, &legend, name, tallest);
+    let (laid_out, is_cut) = that_fits(ui, rect, &legend, &name, tallest);
     let place = placer.place(laid_out.size);
     laid_out.paint(ui, rect, place);
     let response = ui.interact(place, Id::new(("channel legend", view)), Sense::click());
@@ -90,14 +90,18 @@ pub(super) fn legend(
 
 /// A legend in a picture, at most so tall: whole, or its title, or else the name of its channel. Returns also true if
 /// something is left out.
-fn that_fits(ui: &Ui, rect: Rect, legend: &Legend, name: String, tallest: f32) -> (Plate, bool) {
+fn that_fits(ui: &Ui, rect: Rect, legend: &Legend, name: &str, tallest: f32) -> (Plate, bool) {
     let whole = Plate::new(ui, rect, legend, usize::MAX);
     if whole.size.x <= rect.width() - 2.0 * EDGE && whole.size.y <= tallest {
         return (whole, false);
     }
     let title = Plate::new(ui, rect, &Legend::new(legend.title.clone()), 1);
-    let is_legible = !title.title.elided;
-    (if is_legible { title } else { Plate::new(ui, rect, &Legend::new(name), 2) }, true)
+    if !title.title.elided {
+        return (title, true);
+    }
+    let named = |rows| Plate::new(ui, rect, &Legend::new(name.to_owned()), rows);
+    let two = named(2);
+    (if two.size.y <= tallest { two } else { named(1) }, true)
 }
 
 /// A legend that is only a text.

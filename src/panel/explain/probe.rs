@@ -91,6 +91,8 @@ struct Question {
     held: Option<Held>,
     /// The view of the pin, and other views in which the point is shown too.
     views: Vec<Shown>,
+    /// True if another view is explained beside it.
+    beside: bool,
     /// Samples of lights with extent.
     samples: u32,
     /// The camera, or where it was before the ray was looked at from the side.
@@ -416,7 +418,7 @@ pub fn update(ctx: &Context, session: &Session, area: &PictureArea, registry: &R
             question.held = probe.holding.now(session);
         }
         probe.beside.clear();
-        let others = if question.held.is_some() || beside { &question.views[1..] } else { &[] };
+        let others = if question.held.is_some() || question.beside { &question.views[1..] } else { &[] };
         for shown in others {
             let explained = probe.explain(&question, *shown, session, registry);
             probe.beside.extend(explained.map(Arc::new));
@@ -464,6 +466,7 @@ impl Probe {
             pin,
             held: self.holding.now(session),
             views,
+            beside,
             samples: SAMPLES[self.choice.samples.min(SAMPLES.len() - 1)],
             observer,
             aside: moved > SAME,
