@@ -214,7 +214,7 @@ impl<'a> Overlaid<'_, 'a> {
             ui.scope(|ui| self.on_slide(ui, cells, spot));
             return;
         }
-        let covered = told.map(|cell| {
+        let covered = stale_cell(cells.iter(), session, registry).map(|cell| {
             let mut placer = Placer::column(cell.rect, Align2::LEFT_TOP, cell.rect.top() + placer::EDGE);
             (cell.view, ui.scope(|ui| self.stale(ui, cell.rect, &mut placer)).inner)
         });
@@ -233,8 +233,7 @@ impl<'a> Overlaid<'_, 'a> {
         let mut shared: Option<Placer> = None;
         // The plates of a difference are those of both views.
         let shown: Vec<_> = cells.iter().filter(|c| c.part.is_positive() || layout.is_map()).collect();
-        let told = shown.iter().find(|cell| cell.view == session.active()).or(shown.first());
-        let told = told.map(|cell| cell.view);
+        let told = stale_cell(shown.iter().copied(), session, registry).map(|cell| cell.view);
         for cell in &shown {
             let mut placer = shared.take().filter(|_| !layout.is_beside()).unwrap_or_else(|| {
                 let above = cell.rect.with_min_y(cell.rect.top() - spot.above()).with_max_y(cell.rect.top());
@@ -391,6 +390,28 @@ impl<'a> Overlaid<'_, 'a> {
             }
         }
     }
+}
+
+/// The view with the message about a shader error: the active one, unless only others show one of the models.
+fn stale_cell<'c>(
+    cells: impl Iterator<Item = &'c Cell> + Clone,
+    session: &Session,
+    registry: &Registry,
+) -> Option<&'c Cell> {
+    let stale = session.shaders.stale();
+    let names: Vec<_> = stale.iter().map(|name| name.trim_end_matches(STAND_IN)).collect();
+    let is_shown = |cell: &&Cell| {
+        let seen = session.document.seen(cell.view, registry).map(|(scene, _)| scene.alone());
+        let shows =
+            |id: &str| registry.model(id).is_some_and(|model| names.contains(&model.declaration.name));
+        seen.is_some_and(|scene| scene.models().into_iter().any(shows))
+    };
+    let active = cells.clone().find(|cell| cell.view == session.active());
+    let first = active.or_else(|| cells.clone().next());
+    if names.is_empty() || first.as_ref().is_some_and(is_shown) {
+        return first;
+    }
+    cells.clone().find(is_shown).or(first)
 }
 
 /// Heading and lines of the message about a shader error in the picture. The model with the display name `shown` comes

@@ -738,7 +738,7 @@ fn in_large_letters_legends_beside_each_other_are_low_and_not_cut() {
     bench.key(Key::B, CTRL);
     bench.apply(Action::View(ViewChange::Scale(200)));
     for channels in
-        [[DebugChannel::Vertices, DebugChannel::NDotL], [DebugChannel::Depth, DebugChannel::Normals]]
+        [[DebugChannel::Vertices, DebugChannel::NDotL], [DebugChannel::Depth, DebugChannel::NDotL]]
     {
         for (view, channel) in channels.into_iter().enumerate() {
             bench.apply(Action::Compare(CompareCommand::Activate(view)));

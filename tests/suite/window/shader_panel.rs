@@ -23,7 +23,7 @@ use lights_camera_models::{
         theme::Palette,
     },
     registry::{Folders, Registry},
-    scene::{Light, Object, Part, Scene},
+    scene::{Light, Object, Part, Scene, Variant},
     shader::check::ShaderProblem,
     window::{
         authoring::{write, write_new},
@@ -75,6 +75,23 @@ fn the_plate_about_an_error_covers_a_quarter_of_the_picture_at_most() {
             let share = plate.rect.area() / cell.area();
             assert!(share <= 0.25, "{scale} %, {views} more views: {share}");
         }
+    }
+}
+
+#[test]
+fn the_plate_about_an_error_stands_on_the_view_that_shows_the_model() {
+    for (stale, expected) in [("Gooch (a grey stand-in)", 1), ("Lambert", 0), ("Phong", 0)] {
+        let wrong = Trouble { stale: vec![stale.to_owned()], ..broken_lambert() };
+        let gooch = Variant { reflection_model: Some("gooch".to_owned()), ..Variant::default() };
+        let mut session = Session::new(Scene { variants: vec![gooch], ..Scene::default() });
+        session.shaders = ShaderStatus { troubles: vec![wrong], ..folders() };
+        let mut bench = Bench::new(session);
+        bench.size = vec2(1600.0, 900.0);
+        bench.settle();
+        let plate = bench.tree.iter().find(|s| s.label.starts_with("Showing ")).expect("a plate").rect;
+        let cell =
+            bench.area.cells.iter().find(|cell| cell.rect.contains_rect(plate)).expect("within a view");
+        assert_eq!(cell.view, expected, "{stale}");
     }
 }
 
