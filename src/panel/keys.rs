@@ -213,7 +213,7 @@ pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Act
     let taken = typing || session.view.finder_open || Popup::is_any_open(ctx);
     let table = bindings(session, registry);
     let mut actions = Vec::new();
-    let mut stop_tab = false;
+    let (mut stop_tab, mut with_alt) = (false, false);
     ctx.input_mut(|input| {
         input.events.retain(|event| {
             if ahead.as_mut().is_some_and(|text| type_into(text, event)) {
@@ -238,10 +238,11 @@ pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Act
                 ahead = Some(String::new());
             }
             actions.push(binding.action.clone());
+            with_alt |= modifiers.alt && !modifiers.ctrl;
             false
         });
-        // A letter that is a command is no text.
-        if !actions.is_empty() && !typing {
+        // A letter that is a command is no text, with Alt not even in a field.
+        if !actions.is_empty() && (!typing || with_alt) {
             input.events.retain(|e| !matches!(e, egui::Event::Text(_)));
         }
     });

@@ -1,6 +1,6 @@
 //! The window used only with the keyboard, without a window: where the focus moves, and that it is visible.
 
-use bevy_egui::egui::{self, Key, Modifiers, PointerButton, Popup, Rect, vec2};
+use bevy_egui::egui::{self, Event, Key, Modifiers, PointerButton, Popup, Rect, vec2};
 use lights_camera_models::{
     document::Selection,
     panel::{
@@ -260,6 +260,26 @@ fn menus_open_with_the_focus_on_their_first_entry_and_arrows_change_them() {
     bench.key(Key::ArrowLeft, Modifiers::NONE);
     bench.key(Key::ArrowLeft, Modifiers::NONE);
     assert!(name(&bench).starts_with("Manual"), "{}", name(&bench));
+}
+
+/// In a slow frame, Alt may be up again when its letter arrives.
+#[test]
+fn the_letter_that_opens_a_menu_is_not_typed_into_a_field() {
+    let mut bench = Bench::new(Session::default());
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench.settle();
+    let at = bench.field("Name").rect.center();
+    bench.click_at(at, PointerButton::Primary);
+    assert!(bench.ctx.text_edit_focused());
+    let says = |bench: &mut Bench, words: &str| bench.texts().iter().any(|text| text.contains(words));
+    bench.frame(vec![Event::Text("zq".to_owned())]);
+    assert!(says(&mut bench, "zq"), "letters are typed");
+    let (modifiers, changed) = (Modifiers::ALT, Event::ModifiersChanged);
+    let key = Event::Key { key: Key::V, physical_key: None, pressed: true, repeat: false, modifiers };
+    let letter = Event::Text("v".to_owned());
+    bench.frame(vec![changed(Modifiers::ALT), key, letter, changed(Modifiers::NONE)]);
+    bench.settle();
+    assert!(!says(&mut bench, "zqv") && Popup::is_any_open(&bench.ctx));
 }
 
 #[test]
