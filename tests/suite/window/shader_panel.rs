@@ -23,7 +23,7 @@ use lights_camera_models::{
         theme::Palette,
     },
     registry::{Folders, Registry},
-    scene::{Light, Object, Part, Scene, Variant},
+    scene::{Light, Object, Part, Scene, Variant, comparison::Layout},
     shader::check::ShaderProblem,
     window::{
         authoring::{write, write_new},
@@ -83,7 +83,9 @@ fn the_plate_about_an_error_stands_on_the_view_that_shows_the_model() {
     for (stale, expected) in [("Gooch (a grey stand-in)", 1), ("Lambert", 0), ("Phong", 0)] {
         let wrong = Trouble { stale: vec![stale.to_owned()], ..broken_lambert() };
         let gooch = Variant { reflection_model: Some("gooch".to_owned()), ..Variant::default() };
-        let mut session = Session::new(Scene { variants: vec![gooch], ..Scene::default() });
+        let mut scene = Scene { variants: vec![gooch], ..Scene::default() };
+        scene.comparison.layout = Layout::SideBySide;
+        let mut session = Session::new(scene);
         session.shaders = ShaderStatus { troubles: vec![wrong], ..folders() };
         let mut bench = Bench::new(session);
         bench.size = vec2(1600.0, 900.0);
