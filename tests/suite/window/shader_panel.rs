@@ -80,10 +80,10 @@ fn the_plate_about_an_error_covers_a_quarter_of_the_picture_at_most() {
 
 #[test]
 fn the_plate_about_an_error_stands_on_the_view_that_shows_the_model() {
-    for (stale, expected) in [("Gooch (a grey stand-in)", 1), ("Lambert", 0), ("Phong", 0)] {
+    for (stale, expected) in [("Phong (a grey stand-in)", 1), ("Lambert", 0), ("Ward", 0)] {
         let wrong = Trouble { stale: vec![stale.to_owned()], ..broken_lambert() };
-        let gooch = Variant { reflection_model: Some("gooch".to_owned()), ..Variant::default() };
-        let mut scene = Scene { variants: vec![gooch], ..Scene::default() };
+        let phong = Variant { reflection_model: Some("phong".to_owned()), ..Variant::default() };
+        let mut scene = Scene { variants: vec![phong], ..Scene::default() };
         scene.comparison.layout = Layout::SideBySide;
         let mut session = Session::new(scene);
         session.shaders = ShaderStatus { troubles: vec![wrong], ..folders() };
