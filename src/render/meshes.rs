@@ -42,7 +42,7 @@ pub const WINDOW_TRIANGLES: u64 = 1 << 27;
 pub const SOFTWARE_TRIANGLES: u64 = 1 << 25;
 /// Maximum number of triangles in a frame of a single picture without a GPU: the driver keeps those that it has prepared,
 /// about 360 bytes each with four samples, until its threads have drawn them, 2.3 GB of them if nobody waits.
-pub const PICTURE_TRIANGLES: u64 = 3 << 16;
+pub const PICTURE_TRIANGLES: u64 = 1 << 18;
 /// Maximum number and size of unused meshes kept in case they are needed again.
 const SPARE: usize = 16;
 const SPARE_BYTES: u64 = 64 << 20;
