@@ -300,7 +300,8 @@ impl Panels {
 
     /// The id of the topmost dialog or question that is open.
     pub(super) fn asks(&self, session: &Session) -> Option<&'static str> {
-        let open = self.list.iter().map(|listed| &*listed.panel).filter(|panel| {
+        let seen = self.list.iter().filter(|one| !(one.guest && session.settings.hides(one.panel.id())));
+        let open = seen.map(|listed| &*listed.panel).filter(|panel| {
             matches!(panel.place(), Place::Over(Over::Dialog | Over::Question)) && panel.is_open(session)
         });
         open.max_by_key(|panel| panel.place()).map(|panel| panel.id())
