@@ -124,6 +124,8 @@ pub struct Document {
     differs: OnceLock<bool>,
     history: History,
     gesture: u64,
+    /// The first revision.
+    origin: Revision,
     revision: Revision,
     /// The last changes: the revision before each, and the part that it changed.
     recent: VecDeque<(Revision, Extent)>,
@@ -158,6 +160,7 @@ impl Document {
     /// A document equal to its file, without a history.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
+        let first = Revision::next();
         let mut document = Self {
             saved: scene.clone(),
             saved_names: Vec::new(),
@@ -169,7 +172,8 @@ impl Document {
             differs: OnceLock::new(),
             history: History::default(),
             gesture: 0,
-            revision: Revision::next(),
+            origin: first,
+            revision: first,
             recent: VecDeque::new(),
         };
         document.label_parts(None);
@@ -203,6 +207,12 @@ impl Document {
     #[must_use]
     pub fn revision(&self) -> Revision {
         self.revision
+    }
+
+    /// The revision with which the document began, which another document never has.
+    #[must_use]
+    pub fn origin(&self) -> Revision {
+        self.origin
     }
 
     /// The parts that may have changed since a revision; `None` if anything may have.

@@ -25,15 +25,8 @@ pub fn notice_shaders(session: &mut impl DerefMut<Target = Session>, registry: &
         }
         session.authoring.seen_troubles = now;
     }
-    if session.authoring.wanted_model.as_ref().is_some_and(|id| registry.model(id).is_some())
-        && let Some(id) = session.authoring.wanted_model.take()
-    {
-        let (edit, news) = (session.edit_model(&id), session.has_news());
-        // An edit never requests a file.
-        let _ = session.apply(Action::Edit(edit), registry);
-        if news {
-            session.keep_news();
-        }
+    if session.authoring.wanted_model.as_ref().is_some_and(|id| registry.model(id).is_some()) {
+        session.choose_wanted_model(registry);
     }
 }
 

@@ -31,7 +31,8 @@ pub fn badge(session: &Session, view: usize, pixels: f64) -> Option<Badge> {
     Some(Badge {
         severity: Severity::Warning,
         text: format!("Clipped: {share} of the picture"),
-        shorter: vec![format!("Clipped: {share}"), share],
+        // A share alone would say nothing.
+        shorter: vec![format!("Clipped: {share}"), "Clipped".to_owned()],
         help: "Some pixels ask for more light than the display can show. They are cut off: highlights lose their \
                shape, and colours shift. Lights in sight do not count. A lower exposure, a weaker light or tone mapping brings them back. \
                Click to show where."
@@ -89,6 +90,8 @@ mod tests {
         session.facts.clipping[0] = Clipping::new(counts);
         assert_eq!(badge(&session, 1, 100.0), None, "of another view nothing is known");
         assert_eq!(badge(&session, 0, 100.0).map(|b| b.text).as_deref(), Some("Clipped: 5 % of the picture"));
+        let shorter = badge(&session, 0, 100.0).map(|b| b.shorter).unwrap_or_default();
+        assert!(shorter.len() > 1 && shorter.iter().all(|text| text.starts_with("Clipped")), "{shorter:?}");
         assert_eq!(badge(&session, 0, 10_000.0), None, "new lights may clip as much");
         session.view.show_clipping = true;
         assert!(badge(&session, 0, 10_000.0).is_some(), "where they are shown, that can be ended");

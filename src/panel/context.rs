@@ -298,6 +298,15 @@ impl Panels {
         self.list.iter().any(|listed| is(&*listed.panel))
     }
 
+    /// The id of the topmost dialog or question that is open.
+    pub(super) fn asks(&self, session: &Session) -> Option<&'static str> {
+        let seen = self.list.iter().filter(|one| !(one.guest && session.settings.hides(one.panel.id())));
+        let open = seen.map(|listed| &*listed.panel).filter(|panel| {
+            matches!(panel.place(), Place::Over(Over::Dialog | Over::Question)) && panel.is_open(session)
+        });
+        open.max_by_key(|panel| panel.place()).map(|panel| panel.id())
+    }
+
     pub(super) fn queue(&mut self, commands: Vec<Command>) {
         self.queue.extend(commands);
     }

@@ -1,4 +1,4 @@
-//! Windows that ask for something beside the picture, without blocking it.
+//! Windows beside the picture that ask for something, and block the rest until they are closed, or list something.
 
 use bevy_egui::egui::{TextEdit, Window};
 
@@ -66,14 +66,25 @@ pub(super) fn name_field(
     (response, changed)
 }
 
-/// The buttons of such a window: what it is for, which stands out if it is possible now, and *Cancel*.
+/// The buttons of such a window: what it is for, which stands out if it is possible now, and *Cancel*. The window takes
+/// the input from everything behind it, and Enter is for the first button unless another widget has the focus.
 pub(super) fn buttons(ui: &mut Ui, does: &str, possible: bool) -> [Response; 2] {
+    let layer = ui.layer_id();
+    let is_free = ui.memory_mut(|memory| {
+        memory.set_modal_layer(layer);
+        memory.focused().is_none()
+    });
+    // By these keys the window may be closed now, or a field with a mistake keeps the focus.
+    let ends = ui.input(|i| i.key_pressed(Key::Enter) || i.key_pressed(Key::Escape));
     let (line, size) = (vec2(ui.available_width(), 28.0), vec2(80.0, 28.0));
     let layout = Layout::right_to_left(Align::Center);
     let buttons = ui.allocate_ui_with_layout(line, layout, |ui| {
         let button = theme::action_button(ui, does, possible, size);
         [ui.add_enabled(possible, button), ui.add(Button::new("Cancel").min_size(size))]
     });
+    if possible && is_free && !ends {
+        buttons.inner[0].request_focus();
+    }
     buttons.inner
 }
 

@@ -9,7 +9,7 @@ use bevy_egui::egui::{self, Context, Frame, Id, Margin, Rect, Ui, vec2};
 use super::{
     Dialogs, Over, PanelContext, Panels, Place, author, code, cover, explain,
     focus::{self, Region},
-    keys, lesson, linked, menu, presentation, sides,
+    keys, lesson, linked, menu, modal, presentation, sides,
     state::{Action, Effect, PictureArea, Session},
     theme::{self, Palette},
     welcome,
@@ -36,15 +36,18 @@ pub fn show(
     let style = ctx.global_style();
     ui.set_style(style);
     let mut effects = absorb(&ctx, &mut session, registry, panels);
+    let asks = dialog(&session, panels, dialogs);
+    modal::begin(&ctx, asks);
     menu::walk(&ctx);
     focus::reveal(&ctx);
     focus::forget_regions(&ctx);
     linked::begin(&ctx);
     lesson::point::begin(&ctx, &session);
     let mut context = PanelContext::new(&session, registry, world, area);
-    pressed(&ctx, &mut context, dialogs.is_open());
+    pressed(&ctx, &mut context, asks.is_some());
     panels.show(ui, Place::Over(Over::List), &mut context);
     panels.show(ui, Place::Over(Over::Window), &mut context);
+    panels.show(ui, Place::Over(Over::Dialog), &mut context);
     let tooltips = theme::tooltips(&ctx);
     if session.view.presenting {
         lesson_alone(ui, panels, &mut context);
@@ -56,14 +59,14 @@ pub fn show(
     // Nothing behind a window shows a tooltip over it.
     if panels.is_open(Over::Question, &session) {
         theme::hide_tooltips(&ctx, &[]);
-    } else if panels.is_open(Over::Window, &session) || dialogs.is_open() {
+    } else if panels.is_open(Over::Window, &session) || dialog(&session, panels, dialogs).is_some() {
         theme::hide_tooltips(&ctx, &tooltips);
     }
     panels.show(ui, Place::Over(Over::Question), &mut context);
     let (mut actions, commands, picture) = context.into_parts();
     panels.queue(commands);
     actions.extend(dialogs.update(&ctx, &mut session, registry));
-    let now = picture_area(&ctx, &session, picture, panels, dialogs.is_open());
+    let now = picture_area(&ctx, &session, picture, panels, dialogs);
     if area.written != now.written {
         // The marks keep clear of it from the next frame on.
         ctx.request_repaint();
@@ -76,7 +79,13 @@ pub fn show(
     focus::show(&ctx, &palette, area.frame);
     effects.extend(apply(&ctx, &mut session, actions, registry));
     effects.retain(|effect| !dialogs.start(&ctx, effect, &session, registry));
+    modal::end(ui, asks, dialog(&session, panels, dialogs));
     effects
+}
+
+/// The id of the dialog or the question that has the keys and the pointer to itself, if one is open.
+fn dialog(session: &Session, panels: &Panels, dialogs: &Dialogs) -> Option<&'static str> {
+    panels.asks(session).or(dialogs.is_open().then_some("file dialog"))
 }
 
 /// Takes in what has changed since the last frame: the registry, the list of panels, the user's keys, the shaders and the
@@ -111,14 +120,14 @@ fn absorb(
 }
 
 /// Adds the actions of keys, and of clicks into the picture.
-fn pressed(ctx: &Context, context: &mut PanelContext<'_>, dialog: bool) {
+fn pressed(ctx: &Context, context: &mut PanelContext<'_>, asks: bool) {
     let (session, registry, area) = (context.session(), context.registry(), context.area());
     let actions = &mut context.actions;
-    if !dialog {
+    if !asks {
         actions.extend(code::keys(ctx, session));
-        let pressed = keys::pressed(ctx, session, registry);
-        actions.extend(pressed.into_iter().map(|action| explain::aimed(ctx, session, area, action)));
     }
+    let pressed = keys::pressed(ctx, session, registry, asks);
+    actions.extend(pressed.into_iter().map(|action| explain::aimed(ctx, session, area, action)));
     actions.extend(explain::clicked(ctx, session, area));
     actions.extend(explain::on_escape(ctx, session, area));
     actions.extend(explain::update(ctx, session, area, registry));
@@ -226,15 +235,15 @@ fn gesture_goes_on(ctx: &Context) -> bool {
     ctx.input(|input| !input.pointer.any_released() && (typing || input.pointer.any_down()))
 }
 
-/// The area of the picture with the input that belongs to it. Clicks in `covered` do not.
+/// The area of the picture with the input that belongs to it: none while a dialog is open, and no clicks in `covered`.
 fn picture_area(
     ctx: &Context,
     session: &Session,
     (area, covered): (PictureArea, Vec<Rect>),
     panels: &Panels,
-    dialog: bool,
+    dialogs: &Dialogs,
 ) -> PictureArea {
-    let busy = panels.is_open(Over::Question, session) || dialog;
+    let busy = dialog(session, panels, dialogs).is_some();
     cover::keep(ctx, covered, busy);
     let pointer = ctx.input(|i| i.pointer.latest_pos());
     PictureArea {

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, ops::DerefMut, sync::LazyLock};
 use super::{
     command::{self, Command, Group, own},
     kept::Same,
-    menu,
+    menu, modal,
     prelude::*,
     settings,
     state::{Replaced, Shortcut},
@@ -89,8 +89,7 @@ pub(super) fn escapes(ctx: &Context, session: &Session, area: &PictureArea) -> b
     let open = session.view.chooser_open
         || session.view.finder_open
         || session.view.keys_open
-        || session.view.about_open
-        || session.authoring.draft.is_some();
+        || session.view.about_open;
     let free = area.has_keys && !open && !Popup::is_any_open(ctx);
     free && ctx.input(|i| i.key_pressed(Key::Escape))
 }
@@ -198,24 +197,30 @@ pub(super) fn typed_ahead(ctx: &Context) -> Option<String> {
     kept::with(ctx, |known: &mut Ahead| known.text.take())
 }
 
-/// Reads the keys that were pressed. Call before the widgets see them.
+/// Reads the keys that were pressed. A dialog that `asks` has all of them. Call before the widgets see them.
 #[must_use]
-pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Action> {
-    let any = ctx.input(|i| i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, .. })));
+pub fn pressed(ctx: &Context, session: &Session, registry: &Registry, asks: bool) -> Vec<Action> {
+    let any = ctx.input(|i| i.events.iter().any(modal::is_typed));
     let mut ahead = ahead(ctx, session);
-    // What asks for a picture's options takes all keys, as a question does.
-    let asks = session.questions.open.is_some() || session.take_draft.is_some();
-    if !any && ahead.is_none() || asks {
+    if !any && ahead.is_none() {
+        return Vec::new();
+    }
+    let table = if asks { Vec::new() } else { bindings(session, registry) };
+    ctx.input_mut(|input| drop_letters_with_alt(input, &table));
+    if asks {
         return Vec::new();
     }
     let typing = ctx.text_edit_focused();
     let focused = ctx.memory(|m| m.focused());
     let taken = typing || session.view.finder_open || Popup::is_any_open(ctx);
-    let table = bindings(session, registry);
-    let mut actions = Vec::new();
-    let (mut stop_tab, mut with_alt) = (false, false);
+    let (mut actions, mut waits) = (Vec::new(), Vec::new());
+    let (mut stop_tab, mut may_ask) = (false, false);
     ctx.input_mut(|input| {
         input.events.retain(|event| {
+            if may_ask && modal::is_typed(event) {
+                waits.push(event.clone());
+                return false;
+            }
             if ahead.as_mut().is_some_and(|text| type_into(text, event)) {
                 return false;
             }
@@ -238,14 +243,15 @@ pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Act
                 ahead = Some(String::new());
             }
             actions.push(binding.action.clone());
-            with_alt |= modifiers.alt && !modifiers.ctrl;
+            may_ask = binding.action.may_ask();
             false
         });
-        // A letter that is a command is no text, with Alt not even in a field.
-        if !actions.is_empty() && (!typing || with_alt) {
+        // A letter that is a command is no text.
+        if !actions.is_empty() && !typing {
             input.events.retain(|e| !matches!(e, egui::Event::Text(_)));
         }
     });
+    modal::wait(ctx, waits);
     kept::with(ctx, |known: &mut Ahead| known.text = ahead);
     if stop_tab {
         ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
@@ -253,6 +259,29 @@ pub fn pressed(ctx: &Context, session: &Session, registry: &Registry) -> Vec<Act
     // The widgets of this frame already know.
     actions.retain(|action| !menu::moves_focus(ctx, action));
     actions
+}
+
+/// Removes the letters typed with Alt, which open menus: they are no text, not even in a field. On a Mac they are, unless
+/// a command has them.
+fn drop_letters_with_alt(input: &mut egui::InputState, table: &[Binding]) {
+    const MAC: bool = cfg!(target_os = "macos");
+    let held = !MAC && input.modifiers.alt && !input.modifiers.ctrl;
+    let events = &input.events;
+    let is_with_alt = |at: Option<usize>| match events.get(at?)? {
+        egui::Event::Key { key, pressed: true, modifiers, .. } => {
+            let opens = || !MAC || table.iter().any(|binding| binding.shortcut.matches(*key, *modifiers));
+            Some(modifiers.alt && !modifiers.ctrl && opens())
+        }
+        _ => None,
+    };
+    // A keyboard sends a letter before its key.
+    let by_key = |at: usize| is_with_alt(Some(at + 1)).or_else(|| is_with_alt(at.checked_sub(1)));
+    let is_dropped = |(at, event): (usize, &egui::Event)| {
+        matches!(event, egui::Event::Text(_)) && by_key(at).unwrap_or(held)
+    };
+    let dropped: Vec<bool> = events.iter().enumerate().map(is_dropped).collect();
+    let mut dropped = dropped.into_iter();
+    input.events.retain(|_| !dropped.next().unwrap_or(false));
 }
 
 /// Types an event at the end of a text; false if it types nothing.
@@ -340,7 +369,7 @@ mod tests {
         let mut read = Default::default();
         let input = egui::RawInput { events, ..egui::RawInput::default() };
         let _ = ctx.run_ui(input, |ui| {
-            let actions = pressed(ui.ctx(), session, &Registry::builtin());
+            let actions = pressed(ui.ctx(), session, &Registry::builtin(), false);
             read = (actions, ui.ctx().input(|i| i.events.clone()));
         });
         read

@@ -178,10 +178,6 @@ fn steps(ctx: &Context) -> isize {
 
 /// Lets the arrow keys walk through an open menu or list, however it was opened. Call before the widgets see the keys.
 pub(super) fn walk(ctx: &Context) {
-    // A letter with Alt opens a menu, and is no text; on a Mac it is.
-    if !cfg!(target_os = "macos") && ctx.input(|i| i.modifiers.alt && !i.modifiers.ctrl) {
-        ctx.input_mut(|i| i.events.retain(|e| !matches!(e, Event::Text(_))));
-    }
     if !Popup::is_any_open(ctx) || ctx.text_edit_focused() {
         return;
     }

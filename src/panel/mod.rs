@@ -82,6 +82,7 @@ mod materials;
 pub mod maths;
 mod menu;
 pub mod messages;
+mod modal;
 pub mod model_override;
 mod notice;
 pub mod picture;
@@ -113,7 +114,8 @@ pub mod wires;
 
 /// Registers the built-in panels, in layout order. This is the only list.
 pub fn register_builtin(to: &mut Panels) {
-    let [list, window, question] = [Over::List, Over::Window, Over::Question].map(Place::Over);
+    let [list, window, dialog, question] =
+        [Over::List, Over::Window, Over::Dialog, Over::Question].map(Place::Over);
     let mut plots = plots::PlotPanel::default();
     let plots = move |ui: &mut Ui, context: &mut PanelContext<'_>| plots.show(ui, context);
     let mut editor = code::CodePanel::default();
@@ -139,14 +141,14 @@ pub fn register_builtin(to: &mut Panels) {
         Own::new(["models", "Reflection models"], list, chooser::alone).open_if(|s| s.view.chooser_open),
         Own::new(help::KEYS, window, help::keys_window).open_if(|s| s.view.keys_open),
         Own::new(help::ABOUT, window, help::about_window).open_if(|s| s.view.about_open),
-        Own::new([author::DRAFT, author::DRAFT_TITLE], window, author::show)
+        Own::new([author::DRAFT, author::DRAFT_TITLE], dialog, author::show)
             .open_if(|s| s.authoring.draft.is_some()),
-        Own::new([materials::DRAFT, materials::TITLE], window, materials::ask)
+        Own::new([materials::DRAFT, materials::TITLE], dialog, materials::ask)
             .open_if(|s| s.materials.draft.is_some()),
-        Own::new([matching::DRAFT, "Match to A"], window, matching::show)
+        Own::new([matching::DRAFT, "Match to A"], dialog, matching::show)
             .open_if(|s| s.match_draft.is_some()),
         Own::new(fits::FITS, window, fits::show).open_if(|s| s.fits.is_some()),
-        Own::new([taking::DRAFT, taking::TITLE], window, taking::show).open_if(|s| s.take_draft.is_some()),
+        Own::new([taking::DRAFT, taking::TITLE], dialog, taking::show).open_if(|s| s.take_draft.is_some()),
         Own::new(["question", "Question"], question, question::show).open_if(|s| s.questions.open.is_some()),
     ] {
         to.add_own(panel);

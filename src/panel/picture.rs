@@ -76,7 +76,11 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
     if presenting {
         sizes.keep(ui, whole, session);
-        presentation::message(ui, whole, &pictures, &written, session);
+        let headers = arrangement.headers.iter().map(|(_, rect)| *rect);
+        let lower = whole.with_min_y(whole.bottom() - high);
+        let texts: Vec<_> = written.iter().copied().chain(headers).chain([lower]).collect();
+        let texts: Vec<_> = texts.into_iter().filter(Rect::is_positive).collect();
+        presentation::message(ui, whole, &pictures, &texts, session);
     }
     let mut area = PictureArea { rect, frame, written, ..PictureArea::default() };
     if !arrangement.is_single() {

@@ -14,7 +14,12 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         ui.set_min_height(20.0);
         let count = session.messages.len();
-        let text = if count == 0 { "No messages".to_owned() } else { plural(count, "message") };
+        let text = match count {
+            // A shader error beside it is news, too.
+            0 if shows_errors(session) => "Messages".to_owned(),
+            0 => "No messages".to_owned(),
+            _ => plural(count, "message"),
+        };
         let text = theme::small(ui, text);
         match session.messages.worst() {
             Some(worst) => _ = icon::sign(ui, [14.0, 16.0], 5.5, worst),
@@ -119,14 +124,18 @@ fn latest(ui: &mut Ui, beside: f32, context: &mut PanelContext<'_>) {
     }
 }
 
-/// The number of shader errors, and whether they affect the picture; a click opens the shader panel. Not while the editor
-/// marks them: the picture says the rest.
+/// True if the line reports shader errors. Not while the editor marks them: the picture says the rest.
+fn shows_errors(session: &Session) -> bool {
+    !session.shaders.troubles.is_empty() && !session.edits_troubles()
+}
+
+/// The number of shader errors, and whether they affect the picture; a click opens the shader panel.
 fn shader_errors(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let session = context.session();
-    let count = session.shaders.troubles.len();
-    if count == 0 || session.edits_troubles() {
+    if !shows_errors(session) {
         return;
     }
+    let count = session.shaders.troubles.len();
     let stale = session.shaders.stale();
     let effect = if stale.is_empty() {
         "nothing in the picture depends on it".to_owned()

@@ -67,13 +67,7 @@ fn ask(ui: &mut Ui, draft: &TakeDraft, context: &mut PanelContext<'_>) {
     });
     ui.add_space(10.0);
     let [choose, cancel] = draft::buttons(ui, "Choose a file…", !typed.is_wrong);
-    // Tab stays in the window, and Enter takes the options unless another widget has the focus.
-    let layer = ui.layer_id();
-    let is_free = ui.memory_mut(|memory| {
-        memory.set_modal_layer(layer);
-        memory.focused().is_none()
-    });
-    if draft::is_new(ui, DRAFT) || is_free {
+    if draft::is_new(ui, DRAFT) {
         choose.request_focus();
     }
     let choose = choose.on_hover_text("Keeps these options for the next time, and asks for the file");

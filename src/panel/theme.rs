@@ -183,7 +183,10 @@ pub(super) fn window(
     let mut shown = open;
     let window = Window::new(RichText::new(title).heading()).id(Id::new(id));
     size(window.collapsible(false).resizable(false)).open(&mut shown).show(ui.ctx(), content);
-    shown && !ui.input(|i| i.key_pressed(egui::Key::Escape))
+    // A dialog or a question over it takes the key.
+    let layer = LayerId::new(egui::Order::Middle, Id::new(id));
+    let has_keys = ui.memory(|memory| memory.allows_interaction(layer));
+    shown && !(has_keys && ui.input(|i| i.key_pressed(egui::Key::Escape)))
 }
 
 /// Shows a tooltip of at most this width, in points.

@@ -24,7 +24,7 @@ use crate::{
 pub fn write(effect: &Effect, session: &mut Session, registry: &Registry) -> Option<PathBuf> {
     let (said, folder) = match effect {
         Effect::NewModel { of, id, name } => (new_model(session, registry, of, id, name), None),
-        Effect::AdoptModel(path) => (adopt(&mut session.authoring, registry, path), None),
+        Effect::AdoptModel(path) => (adopt(session, registry, path), None),
         Effect::ExportShaders(folder) => match assets::export(folder, registry) {
             Ok(exported) => (Ok(told(&exported, folder)), Some(folder.clone())),
             Err(why) => (Err(format!("The shaders were not exported: {why}.")), None),
@@ -68,21 +68,25 @@ pub(super) fn save_material(session: &mut Session, registry: &Registry, material
     }
 }
 
-/// Writes the file of a model, which is selected as soon as it is read. `taken` says what to do if there is such a file.
+/// Writes the file of a model, which is selected in the active view as soon as it is read. `taken` says what to do if
+/// there is such a file.
 fn new_file(
-    authoring: &mut Authoring,
+    session: &mut Session,
     path: &Path,
     text: &str,
     taken: impl FnOnce(&mut Authoring) -> &'static str,
 ) -> Result<(), String> {
     match write_new(path, text) {
         Ok(()) => {
-            authoring.wanted_model = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            session.authoring.wanted_view = session.active();
+            session.authoring.wanted_model = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
             Ok(())
         }
-        Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
-            Err(format!("{} already exists and was not changed; {}.", path.shown(), taken(authoring)))
-        }
+        Err(e) if e.kind() == io::ErrorKind::AlreadyExists => Err(format!(
+            "{} already exists and was not changed; {}.",
+            path.shown(),
+            taken(&mut session.authoring)
+        )),
         Err(e) => Err(format!("{} could not be written: {}.", path.shown(), words(&e))),
     }
 }
@@ -100,7 +104,7 @@ fn new_model(
         None => custom::template(id, name),
     };
     let path = models_folder(registry)?.join(format!("{id}.{}", custom::EXTENSION));
-    new_file(&mut session.authoring, &path, &text, |authoring| {
+    new_file(session, &path, &text, |authoring| {
         // Asks again, with the typed name.
         authoring.draft = Some(ModelDraft { of: of.clone(), name: name.to_owned() });
         "choose another name"
@@ -119,12 +123,12 @@ fn copy_of(model: &str, registry: &Registry, id: &str, name: &str) -> Result<Str
 }
 
 /// Copies a model into the folder of custom models.
-fn adopt(authoring: &mut Authoring, registry: &Registry, from: &Path) -> Result<String, String> {
+fn adopt(session: &mut Session, registry: &Registry, from: &Path) -> Result<String, String> {
     let folder = models_folder(registry)?;
     let name = from.file_name().unwrap_or_default();
     let text = custom::file::read(from, &name.to_string_lossy());
     let text = text.map_err(|problem| format!("{} was not copied: {}.", from.shown(), problem.message))?;
-    new_file(authoring, &folder.join(name), &text, |_| "rename the other file")?;
+    new_file(session, &folder.join(name), &text, |_| "rename the other file")?;
     Ok(format!("{} was copied to {}.", from.shown(), folder.shown()))
 }
 

@@ -37,6 +37,7 @@ use super::{
     views::{OtherView, first},
 };
 use crate::{
+    document::Revision,
     optics::{colour::Encoding, tone::ToneMapping},
     panel::state::{Clipping, PictureArea, Session},
     render::{
@@ -136,12 +137,16 @@ fn ask(
     mut views: Query<(Entity, &Drawing, Option<&Overrides>, Option<&OtherView>, Option<&mut Question>), Seen>,
     mut session: ResMut<Session>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
+    mut of: Local<Option<Revision>>,
     mut last: Local<u32>,
     mut readbacks: Local<HashMap<Entity, Entity>>,
     mut requests: MessageWriter<RequestRedraw>,
     mut commands: Commands,
 ) {
     let own = area.as_deref().map_or(0, first);
+    // The pictures of another document are drawn anew; an answer about the old ones would stay.
+    let origin = session.document.origin();
+    let is_other = scene.is_changed() && of.replace(origin).is_some_and(|of| of != origin);
     let known = &mut session.bypass_change_detection().facts.clipping;
     let mut waits = HashMap::new();
     let mut shown = [false; MAX_VARIANTS + 1];
@@ -154,6 +159,7 @@ fn ask(
             commands.entity(entity).insert(Question::about(view, &mut buffers));
             continue;
         };
+        question.open &= !is_other;
         if question.view != view {
             // Another view with the same content is not redrawn.
             let same = known.get_mut(question.view).and_then(Option::take);
@@ -180,7 +186,7 @@ fn ask(
             question.open = false;
         }
     }
-    for (known, _) in known.iter_mut().zip(shown).filter(|(_, shown)| !shown) {
+    for (known, _) in known.iter_mut().zip(shown).filter(|(_, shown)| is_other || !shown) {
         *known = None;
     }
     // The remaining requests are obsolete.
@@ -278,4 +284,41 @@ fn count(
     compute.set_bind_group(0, &group, &[]);
     let [across, down] = Clipping::GRID.map(|n| (n as u32).div_ceil(GROUP));
     compute.dispatch_workgroups(across, down, 1);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Document;
+
+    #[test]
+    fn nothing_is_known_of_the_pictures_of_another_document() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, AssetPlugin::default()))
+            .init_asset::<ShaderBuffer>()
+            .add_message::<RequestRedraw>()
+            .init_resource::<CurrentScene>()
+            .init_resource::<Session>()
+            .add_systems(Update, ask);
+        let view = app.world_mut().spawn((WindowView, Drawing::default())).id();
+        app.update();
+        for is_other in [false, true] {
+            let world = app.world_mut();
+            let mut session = world.resource_mut::<Session>();
+            session.facts.clipping[0] = Clipping::new(vec![1; Clipping::GRID[0] * Clipping::GRID[1]]);
+            if is_other {
+                session.document = Document::new(session.document.scene().clone());
+            } else {
+                session.document.amend(|scene| scene.shading_model = "flat".to_owned());
+            }
+            let mut question = world.get_mut::<Question>(view).expect("inserted");
+            (question.open, question.patience) = (true, PATIENCE);
+            world.resource_mut::<CurrentScene>().set_changed();
+            app.update();
+            let world = app.world();
+            assert_eq!(world.resource::<Session>().facts.clipping[0].is_none(), is_other);
+            // An answer about the old picture comes too late.
+            assert_eq!(world.get::<Question>(view).is_some_and(|question| question.open), !is_other);
+        }
+    }
 }

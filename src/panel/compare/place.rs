@@ -16,7 +16,7 @@ pub struct Arrangement {
     /// The views, all of the same size.
     pub cells: Vec<Cell>,
     /// The headers, by view.
-    pub(super) headers: Vec<(usize, Rect)>,
+    pub(in crate::panel) headers: Vec<(usize, Rect)>,
     /// The bar below.
     pub(super) bar: Option<Rect>,
     /// The picture without headers and bar.

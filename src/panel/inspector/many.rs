@@ -142,7 +142,7 @@ impl All {
         let parts: Vec<Part> = session.entries().into_iter().map(Part::from).collect();
         let objects: Vec<_> = parts.iter().filter_map(|part| object(scene, *part)).collect();
         let lights: Vec<_> = parts.iter().filter_map(|part| light(scene, *part)).collect();
-        let sections = match (&lights[..], &objects[..]) {
+        let mut sections = match (&lights[..], &objects[..]) {
             ([], objects) => of_objects(objects, scene, registry),
             (lights, []) => of_lights(lights, registry),
             (lights, objects) => {
@@ -155,6 +155,7 @@ impl All {
                 vec![("Position", Group::none(field.into_iter().collect()))]
             }
         };
+        sections.retain(|(_, groups)| groups.iter().any(|group| !group.values.is_empty()));
         Self { parts, name: session.name_of_group(), sections }
     }
 
@@ -180,7 +181,7 @@ impl All {
         });
         let text = "What is changed here changes all of them; – stands where they differ.";
         ui.add(Label::new(theme::small(ui, text)).wrap());
-        if self.sections.iter().flat_map(|(_, groups)| groups).all(|group| group.values.is_empty()) {
+        if self.sections.is_empty() {
             ui.add(Label::new(theme::small(ui, "They have nothing in common that can be set.")).wrap());
         }
     }

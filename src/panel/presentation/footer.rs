@@ -8,6 +8,7 @@ use crate::{
     caption::{Part, single},
     panel::{
         caption::Lines,
+        keys,
         maths::{self, Sizes},
         prelude::*,
     },
@@ -50,6 +51,8 @@ pub struct Footer {
     equations: Vec<Set>,
     /// Size of the equations.
     scale: f32,
+    /// True if there is no room for them.
+    lacks_equations: bool,
     /// Upper left corners of the captions, and their width.
     captions: (Vec<Pos2>, f32),
     /// Distance from the top to the line with the statistics, if there is one.
@@ -113,6 +116,7 @@ impl Footer {
             trial.style_mut().text_styles.insert(TextStyle::Body, font);
             room.for_all(&trial, &sides, scale == SMALLEST).map(|all| (all, scale))
         });
+        let lacks_equations = many && all.is_none();
         let cut = || if many { Default::default() } else { room.for_the_first(&trial, &sides) };
         let ((equations, high), scale) = all.unwrap_or_else(|| (cut(), SMALLEST));
         let mut at = padding.y;
@@ -125,7 +129,8 @@ impl Footer {
         if several {
             at += line + padding.y;
         }
-        Self { sides, equations, scale, captions: (captions, column), numbers, height: at }
+        let captions = (captions, column);
+        Self { sides, equations, scale, lacks_equations, captions, numbers, height: at }
     }
 
     /// Paints the footer at the lower end of the screen.
@@ -162,12 +167,26 @@ impl Footer {
             words.paint(ui, place.min + at.to_vec2(), palette.text);
         }
         if let Some(top) = self.numbers {
-            let room = whole.width() - 2.0 * padding.x;
-            let text = numbers(ui, session, CAPTION * height, room);
-            let ink = palette.text;
-            let galley = theme::elided(ui, &text, FontId::proportional(CAPTION * height), ink, room);
-            ui.painter().galley(place.min + vec2(padding.x, top), galley, ink);
+            let line =
+                Rect::from_min_max(place.min + vec2(0.0, top), place.max).shrink2(vec2(padding.x, 0.0));
+            self.statistics(ui, line, CAPTION * height, session);
         }
+    }
+
+    /// Paints the line with the statistics in letters of this size. If there is no room for equations, it ends with the way
+    /// to see them.
+    fn statistics(&self, ui: &Ui, line: Rect, size: f32, session: &Session) {
+        let (font, ink, mut room) = (FontId::proportional(size), Palette::here(ui).text, line.width());
+        if self.lacks_equations {
+            let words = format!("Equations: {} shows two views", keys::word(ui.ctx(), "next_layout"));
+            let galley = theme::elided(ui, &words, font.clone(), ink, room);
+            let left = line.right() - galley.size().x;
+            ui.painter().galley(pos2(left, line.top()), galley, ink);
+            room = left - size - line.left();
+        }
+        let text = numbers(ui, session, size, room);
+        let galley = theme::elided(ui, &text, font, ink, room);
+        ui.painter().galley(line.min, galley, ink);
     }
 }
 

@@ -112,7 +112,7 @@ impl Spot {
     ) -> Option<Self> {
         let corners = [Align2::LEFT_TOP, Align2::RIGHT_TOP, Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM];
         let column = needed.column;
-        let found = free(discs, picture, column, taken, corners);
+        let found = free(discs, picture, column, taken, &corners);
         found.map(|(corner, _)| Self::Corner(corner, column.y))
     }
 
@@ -141,14 +141,14 @@ impl Spot {
     }
 }
 
-/// The first of some corners of a picture in which a plate of this size hides no object and lies over none of these
+/// The first of some corners or edges of a picture at which a plate of this size hides no object and lies over none of these
 /// rectangles, and the place of the plate.
 fn free(
     discs: &[(Pos2, f32)],
     picture: Rect,
     size: Vec2,
     taken: &[Rect],
-    corners: [Align2; 4],
+    corners: &[Align2],
 ) -> Option<(Align2, Rect)> {
     let place = |corner: Align2| corner.align_size_within_rect(size, picture.shrink(EDGE));
     let is_free = |place: &Rect| {
@@ -156,27 +156,74 @@ fn free(
             && hidden(discs, &[*place]) <= 0.0
             && !taken.iter().any(|other| other.intersects(*place))
     };
-    corners.into_iter().map(|corner| (corner, place(corner))).find(|(_, place)| is_free(place))
+    corners.iter().map(|corner| (*corner, place(*corner))).find(|(_, place)| is_free(place))
 }
 
-/// Shows the message of the moment in a corner of a picture where it hides nothing, or else over the texts at the lower
-/// end of the screen.
-pub(in crate::panel) fn message(
-    ui: &Ui,
+/// Places of a message in a picture, the best first.
+const PLACES: [Align2; 8] = [
+    Align2::RIGHT_BOTTOM,
+    Align2::LEFT_BOTTOM,
+    Align2::RIGHT_TOP,
+    Align2::LEFT_TOP,
+    Align2::CENTER_BOTTOM,
+    Align2::CENTER_TOP,
+    Align2::RIGHT_CENTER,
+    Align2::LEFT_CENTER,
+];
+
+/// The place of a message of this size where it covers none of these texts, and no object of the pictures if that is
+/// possible. Each picture comes with its objects.
+fn place_of_message(
+    size: Vec2,
     whole: Rect,
-    pictures: &[Rect],
-    written: &[Rect],
-    session: &Session,
-) {
-    let corners = [Align2::RIGHT_BOTTOM, Align2::LEFT_BOTTOM, Align2::RIGHT_TOP, Align2::LEFT_TOP];
+    pictures: &[(Rect, Vec<(Pos2, f32)>)],
+    texts: &[Rect],
+) -> Option<Rect> {
+    let all = pictures.iter().fold(Rect::NOTHING, |all, (picture, _)| all.union(*picture));
+    let discs: Vec<_> = pictures.iter().flat_map(|(_, discs)| discs.iter().copied()).collect();
+    let alone = pictures.iter().find_map(|(picture, discs)| free(discs, *picture, size, texts, &PLACES));
+    // It may be wider than each of several pictures.
+    let found = alone.or_else(|| free(&discs, all, size, texts, &PLACES));
+    let found = found.or_else(|| free(&[], whole, size, texts, &PLACES[..1]));
+    found.or_else(|| free(&[], all, size, texts, &PLACES)).map(|(_, place)| place)
+}
+
+/// Shows the message of the moment over pictures, clear of these texts and of objects. Without room beside the texts, it is
+/// not shown.
+pub(in crate::panel) fn message(ui: &Ui, whole: Rect, pictures: &[Rect], texts: &[Rect], session: &Session) {
     let place = |size: Vec2| {
         // It stays where it is while the camera turns.
-        let (key, id) = (format!("{size:?} {pictures:?} {written:?}"), Id::new("place of the notice"));
+        let (key, id) =
+            (format!("{size:?} {whole:?} {pictures:?} {texts:?}"), Id::new("place of the notice"));
         let found = kept::of_key(ui.ctx(), id, key, || {
-            let in_picture = |r: &Rect| free(&discs(session, *r), *r, size, written, corners);
-            pictures.iter().rev().find_map(in_picture).map(|(_, place)| place)
+            let seen: Vec<_> = pictures.iter().rev().map(|r| (*r, discs(session, *r))).collect();
+            place_of_message(size, whole, &seen, texts)
         });
-        found.unwrap_or_else(|| Align2::RIGHT_BOTTOM.align_size_within_rect(size, whole.shrink(EDGE)))
+        found.unwrap_or(Rect::NOTHING)
     };
     notice::show(ui, (whole, CAPTION * whole.height()), since(ui), &session.messages, place);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_covers_no_text_and_no_object_if_that_is_possible() {
+        let rect = |x: [f32; 2], y: [f32; 2]| Rect::from_x_y_ranges(x[0]..=x[1], y[0]..=y[1]);
+        let (whole, size) = (rect([0.0, 400.0], [0.0, 300.0]), vec2(150.0, 30.0));
+        let footer = rect([0.0, 400.0], [240.0, 300.0]);
+        let picture = |x: f32, discs: &[(Pos2, f32)]| (rect([x, x + 100.0], [0.0, 240.0]), discs.to_vec());
+        let place = |pictures: &[_], texts: &[Rect]| place_of_message(size, whole, pictures, texts);
+        // Wider than each of four pictures.
+        let four = [0.0, 100.0, 200.0, 300.0].map(|x| picture(x, &[(pos2(x + 50.0, 200.0), 20.0)]));
+        let found = place(&four, &[footer]).expect("there is room");
+        assert!(!found.intersects(footer) && found.bottom() < 180.0, "{found:?}");
+        // Objects everywhere: those are covered, and no text.
+        let full = [0.0, 100.0, 200.0, 300.0].map(|x| picture(x, &[(pos2(x + 50.0, 120.0), 130.0)]));
+        let found = place(&full, &[footer]).expect("there is room");
+        assert!(!found.intersects(footer) && whole.contains_rect(found), "{found:?}");
+        let header = rect([0.0, 400.0], [0.0, 220.0]);
+        assert_eq!(place(&full, &[footer, header]), None, "texts everywhere");
+    }
 }

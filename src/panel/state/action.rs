@@ -198,6 +198,30 @@ pub enum ModelCommand {
     CheckLaws,
 }
 
+impl Action {
+    /// True if a dialog or a question may follow, to which the next keys belong.
+    #[must_use]
+    pub(in crate::panel) fn may_ask(&self) -> bool {
+        matches!(
+            self,
+            Self::New
+                | Self::OpenDialog
+                | Self::Open(_)
+                | Self::OpenExample(_)
+                | Self::Reload
+                | Self::Save
+                | Self::SaveAs(_)
+                | Self::Quit
+                | Self::Do(Effect::Pick(_))
+                | Self::Model(ModelCommand::New | ModelCommand::Duplicate | ModelCommand::DuplicateOf(_))
+                | Self::Material(MaterialCommand::Ask)
+                | Self::Match(MatchCommand::Ask(_))
+                | Self::Take(TakeCommand::Ask(_))
+                | Self::Export(ExportCommand::Dialog(_))
+        )
+    }
+}
+
 impl Session {
     /// Applies an action. Returns the effects, which need files, entities or the operating system.
     pub fn apply(&mut self, action: Action, registry: &Registry) -> Vec<Effect> {

@@ -1,6 +1,6 @@
 //! Custom models and shaders: the name of a new model, its file, and the check of laws.
 
-use super::{Effect, ModelCommand, SHADER_TAB, Session, Severity};
+use super::{Action, Effect, ModelCommand, SHADER_TAB, Session, Severity};
 use crate::{
     custom::{id_of_name, source_path},
     library::status::Reloaded,
@@ -35,6 +35,8 @@ pub struct Authoring {
     pub draft: Option<ModelDraft>,
     /// A model to select once it is available, because its file was just written.
     pub wanted_model: Option<String>,
+    /// The view that gets it: the one that was active when its file was written.
+    pub wanted_view: usize,
     /// The latest law check of a model.
     pub laws: Option<LawCheck>,
     /// Shader problems of the previous frame, by file and message.
@@ -144,6 +146,25 @@ impl Session {
                 self.requested.extend(self.authoring.check_laws(model, self.shaders.last.clone()));
             }
         }
+    }
+
+    /// Selects the model whose file was just written in the view in which it was asked for, which may not be the active one
+    /// any more.
+    pub(in crate::panel) fn choose_wanted_model(&mut self, registry: &Registry) {
+        let Some(id) = self.authoring.wanted_model.take() else { return };
+        let (active, asked) = (self.active(), self.authoring.wanted_view);
+        if asked <= self.document.variants.len() {
+            self.view.active = asked;
+            self.look(registry);
+        }
+        let (edit, news) = (self.edit_model(&id), self.has_news());
+        // An edit never requests a file.
+        let _ = self.apply(Action::Edit(edit), registry);
+        if news {
+            self.keep_news();
+        }
+        self.view.active = active;
+        self.look(registry);
     }
 
     fn edit_shown(&mut self, registry: &Registry) {

@@ -28,6 +28,8 @@ pub enum Over {
     List,
     /// A window beside which everything can be used.
     Window,
+    /// A dialog, which takes the input from everything else until it is closed.
+    Dialog,
     /// A question, which takes the input from everything else until it is answered.
     Question,
 }

@@ -4,11 +4,14 @@ use bevy_egui::egui::{self, Event, Key, Modifiers, PointerButton, Popup, Rect, v
 use lights_camera_models::{
     document::Selection,
     panel::{
-        state::{Action, Badge, Effect, MATERIALS_TAB, Session, Severity, Steer, ViewChange},
+        state::{
+            Action, Badge, Effect, MATERIALS_TAB, MaterialCommand, ModelCommand, Question, Session, Severity,
+            Steer, TakeCommand, Taken, ViewChange,
+        },
         theme::DARK,
     },
     parameter::Value,
-    scene::{Object, Scene},
+    scene::{Object, Scene, Variant},
 };
 
 use crate::window::panels::Bench;
@@ -280,6 +283,120 @@ fn the_letter_that_opens_a_menu_is_not_typed_into_a_field() {
     bench.frame(vec![changed(Modifiers::ALT), key, letter, changed(Modifiers::NONE)]);
     bench.settle();
     assert!(!says(&mut bench, "zqv") && Popup::is_any_open(&bench.ctx));
+}
+
+fn pressed(key: Key, modifiers: Modifiers) -> Event {
+    Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
+}
+
+/// The letters of menus are known by their keys: others in the same frame are text.
+#[test]
+fn only_the_letter_with_alt_is_dropped() {
+    let mut bench = Bench::new(Session::default());
+    bench.apply(Action::Select(Selection::Object(0)));
+    bench.settle();
+    let at = bench.field("Name").rect.center();
+    bench.click_at(at, PointerButton::Primary);
+    let text = |text: &str| Event::Text(text.to_owned());
+    let none = Modifiers::NONE;
+    // A keyboard sends a letter before its key. With Alt, even a letter without a menu is no text.
+    let mut all = vec![text("q"), pressed(Key::Q, none), text("x"), pressed(Key::X, Modifiers::ALT)];
+    all.extend([text("z"), pressed(Key::Z, none), Event::ModifiersChanged(Modifiers::ALT)]);
+    bench.frame(all);
+    bench.frame(vec![text("ö")]);
+    bench.frame(vec![Event::ModifiersChanged(none)]);
+    bench.settle();
+    let has = |bench: &mut Bench, words: &str| bench.texts().iter().any(|text| text.contains(words));
+    assert!(has(&mut bench, "qz") && !has(&mut bench, "qzö"), "{:?}", bench.texts());
+}
+
+/// The keys that open the dialog about a new model.
+const NEW_MODEL: Modifiers = Modifiers { ctrl: true, shift: true, command: true, ..Modifiers::NONE };
+
+/// In slow frames, more keys are pressed before the dialog is in sight.
+#[test]
+fn keys_pressed_before_a_dialog_is_in_sight_are_for_it() {
+    let typed = || Event::Text("Student toon".to_owned());
+    let rest = || vec![pressed(Key::E, Modifiers::ALT), typed(), pressed(Key::Enter, Modifiers::NONE)];
+    let is_new = |effect: &Effect| matches!(effect, Effect::NewModel { id, .. } if id == "student_toon");
+    for in_one_frame in [true, false] {
+        let mut bench = Bench::new(Session::default());
+        // A menu behind has the focus, which Enter would open.
+        bench.key(Key::F6, Modifiers::NONE);
+        assert!(focused(&bench).is_some());
+        let before = bench.session.document.scene().clone();
+        let new = pressed(Key::N, NEW_MODEL);
+        if in_one_frame {
+            bench.frame([vec![new], rest()].concat());
+        } else {
+            bench.frame(vec![new]);
+            bench.frame(rest());
+        }
+        bench.settle();
+        assert!(bench.effects.iter().any(is_new), "{in_one_frame}: {:?}", bench.effects);
+        assert!(!Popup::is_any_open(&bench.ctx) && *bench.session.document.scene() == before);
+        bench.frame(vec![pressed(Key::N, NEW_MODEL), pressed(Key::Escape, Modifiers::NONE)]);
+        bench.settle();
+        assert_eq!(bench.session.authoring.draft, None, "Escape, too");
+    }
+}
+
+#[test]
+fn no_click_before_a_dialog_is_in_sight_opens_a_menu_over_it() {
+    let mut bench = Bench::new(Session::default());
+    let at = bench.find("Edit").expect("a menu").rect.center();
+    let press = |pressed| Event::PointerButton {
+        pos: at,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    bench.frame(vec![Event::PointerMoved(at)]);
+    bench.frame(vec![pressed(Key::N, NEW_MODEL)]);
+    bench.frame(vec![press(true), press(false)]);
+    bench.settle();
+    assert!(bench.session.authoring.draft.is_some() && !Popup::is_any_open(&bench.ctx));
+    bench.click("Edit");
+    assert!(!Popup::is_any_open(&bench.ctx), "nor later");
+}
+
+#[test]
+fn every_dialog_has_the_keys_to_itself() {
+    type Opens = fn(&mut Bench);
+    let dialogs: [(&str, Opens); 5] = [
+        ("model", |b| b.apply(Action::Model(ModelCommand::New))),
+        ("material", |b| {
+            b.apply(Action::Select(Selection::Object(0)));
+            b.apply(Action::Material(MaterialCommand::Ask));
+        }),
+        ("match", |b| crate::comparing::matching::ask(b, "blinn_phong")),
+        ("picture", |b| b.apply(Action::Take(TakeCommand::Ask(Taken::Picture(None))))),
+        ("question", |b| {
+            b.session.questions.ask(Question::EmptyFile("a.json".into()));
+            b.settle();
+        }),
+    ];
+    for (name, open) in dialogs {
+        let scene = Scene {
+            reflection_model: "phong".to_owned(),
+            variants: vec![Variant::default()],
+            ..Scene::default()
+        };
+        let mut bench = Bench::new(Session::new(scene));
+        open(&mut bench);
+        assert!(bench.find("Cancel").is_some() && !bench.area.has_keys, "{name} is open");
+        let before = bench.session.document.scene().clone();
+        bench.click_at(bench.area.rect.left_top() + vec2(30.0, 30.0), PointerButton::Primary);
+        bench.key(Key::V, Modifiers::ALT);
+        bench.key(Key::F10, Modifiers::NONE);
+        assert!(!Popup::is_any_open(&bench.ctx), "{name}: no menu");
+        bench.letter(Key::F, "f");
+        bench.key(Key::F1, Modifiers::NONE);
+        assert_eq!(*bench.session.document.scene(), before, "{name}");
+        assert!(bench.find("Cancel").is_some(), "{name}: nothing closed it");
+        bench.key(Key::Escape, Modifiers::NONE);
+        assert!(bench.find("Cancel").is_none() && bench.area.has_keys, "{name}: Escape is for it");
+    }
 }
 
 #[test]

@@ -264,6 +264,27 @@ fn a_presentation_says_for_a_moment_what_happened() {
 }
 
 #[test]
+fn a_message_of_a_presentation_covers_no_text() {
+    let words = "Saved to /home/mira/laboratory/scenes/a room with a name that is rather long.json.";
+    for (views, width) in [(1, 1280.0), (2, 1280.0), (3, 1280.0), (3, 880.0), (4, 1280.0), (4, 880.0)] {
+        let mut bench = bench((width, 720.0), "blinn_phong");
+        for model in ["ward", "strauss", "openpbr"].into_iter().take(views - 1) {
+            bench.apply(Action::Compare(CompareCommand::Add));
+            bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, model)));
+        }
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        bench.session.say(Severity::Info, words);
+        bench.settle();
+        let what = format!("{views} views, {width} points");
+        let (message, others): (Vec<_>, Vec<_>) =
+            bench.texts_in_sight().into_iter().partition(|(text, _)| text == words);
+        let [(_, message)] = message[..] else { panic!("{what}: {message:?}") };
+        let covered: Vec<_> = others.iter().filter(|(_, rect)| rect.intersects(message)).collect();
+        assert!(covered.is_empty() && others.len() > 1, "{what}: {covered:?}");
+    }
+}
+
+#[test]
 fn a_presentation_soon_stops_to_say_how_to_leave_it() {
     let mut bench = bench((1280.0, 720.0), "phong");
     bench.key(Key::F5, Modifiers::NONE);
@@ -678,6 +699,7 @@ fn an_equation_that_some_of_four_views_share_stands_once_beside_their_letters() 
 
 #[test]
 fn three_and_four_views_of_a_presentation_are_large_and_each_has_its_caption() {
+    let mut lacking = 0;
     for (views, width) in [(3, 1280.0), (3, 880.0), (4, 1280.0), (4, 880.0)] {
         let mut bench = bench((width, 720.0), "blinn_phong");
         for model in ["ward", "strauss", "openpbr"].into_iter().take(views - 1) {
@@ -699,7 +721,13 @@ fn three_and_four_views_of_a_presentation_are_large_and_each_has_its_caption() {
         let shown = definitions_shown(&bench);
         let totals = shown.iter().filter(|text| text.starts_with("I = ")).count();
         assert!(totals == 0 || totals == views, "{what}: the equations of all or of none: {shown:?}");
+        let words = "Equations: Ctrl+L shows two views";
+        assert_eq!(texts.iter().any(|text| text == words), totals == 0, "{what}: how to see them");
+        lacking += usize::from(totals == 0);
+        bench.key(Key::L, CTRL);
+        assert!(definitions_shown(&bench).iter().any(|text| text.starts_with("I = ")), "{what}: so it is");
     }
+    assert!(lacking > 0, "nothing is tested");
 }
 
 #[test]

@@ -297,3 +297,18 @@ fn a_frame_in_the_picture_selects_what_is_in_it_in_every_view() {
         assert_eq!(bench.session.group(), [O(0)], "{layout:?}");
     }
 }
+
+#[test]
+fn no_section_is_without_a_value() {
+    let mut scene = Scene::default();
+    let sky = Light { light_type: "environment".to_owned(), position: None, ..scene.lights[0].clone() };
+    scene.lights.push(sky);
+    let mut bench = Bench::new(Session::new(scene));
+    bench.apply(Action::SelectEach(vec![L(0), O(0)], false));
+    assert!(bench.texts().iter().any(|text| text == "Position"), "both have one");
+    for parts in [vec![L(0), L(1), O(0)], vec![L(0), L(1)]] {
+        bench.apply(Action::SelectEach(parts, false));
+        assert!(bench.texts().iter().all(|text| text != "Position"), "a sky has none");
+    }
+    assert!(bench.texts().iter().any(|text| text == "Light"));
+}

@@ -162,8 +162,11 @@ fn the_picture_says_that_it_is_not_what_the_shader_says() {
         assert!(said.contains(word), "{said}");
     }
     assert!(bench.area.rect.contains_rect(rect), "on the picture");
+    let line = |bench: &mut Bench, words: &str| bench.texts().iter().any(|text| text == words);
+    assert!(!line(&mut bench, "No messages"), "beside an error");
     bench.session.shaders.troubles.clear();
     bench.settle();
+    assert!(line(&mut bench, "No messages"));
     assert_eq!(badge(&bench), None, "gone with the error");
     bench.session.shaders.troubles = vec![Trouble { stale: Vec::new(), ..broken_lambert() }];
     bench.settle();
@@ -693,6 +696,28 @@ fn a_model_that_was_asked_for_is_chosen_once_it_is_there() {
     bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "ward")));
     bench.settle();
     assert_eq!(bench.session.document.reflection_model, "ward", "it was asked for once");
+}
+
+#[test]
+fn a_model_that_was_asked_for_in_a_view_is_chosen_in_that_view() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = tempfile::tempdir()?;
+    let models = folder.path().join("models");
+    let mut bench = bench_with(Vec::new());
+    bench.registry.set_custom_folder(&models);
+    bench.session.document.amend(|scene| scene.variants.push(Variant::default()));
+    bench.apply(Action::Compare(CompareCommand::Activate(1)));
+    let name = || "my_velvet".to_owned();
+    write(&Effect::NewModel { of: None, id: name(), name: name() }, &mut bench.session, &bench.registry);
+    // The user goes on in another view while it is compiled.
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    let file = models.join("my_velvet.wgsl");
+    let model = custom::read(&file, &fs::read_to_string(&file)?, &bench.registry);
+    bench.registry.put_custom_model(model.map_err(|all| all[0].to_string())?);
+    bench.settle();
+    let document = &bench.session.document;
+    assert_eq!(document.variants[0].reflection_model.as_deref(), Some("my_velvet"));
+    assert_eq!((&*document.reflection_model, bench.session.active()), ("lambert", 0));
+    Ok(())
 }
 
 #[test]
