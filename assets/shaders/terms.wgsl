@@ -89,18 +89,12 @@ fn inverse_square(to_light: vec3<f32>) -> f32 {
     return 1.0 / max(dot(to_light, to_light), MINIMUM_DISTANCE_SQUARED);
 }
 
-// 1 − cos x of angles from 0° to 90°, by the polynomial of fourth degree in x² with the smallest largest error: 6e-8
-// before rounding. Drivers may be off by 2⁻¹¹ (WGSL, Accuracy of expressions), which moves the edge of a narrow cone by
-// several pixels.
-fn rise_degrees(angles: vec2<f32>) -> vec2<f32> {
+// Cosines of angles from 0° to 90°, by the polynomial of fourth degree in x² with the smallest largest error: 6e-8
+// before rounding. Drivers may be off by 2⁻¹¹ (WGSL, Accuracy of expressions).
+fn cos_degrees(angles: vec2<f32>) -> vec2<f32> {
     let x = radians(angles);
     let s = x * x;
-    return s * (0.499999323 - s * (0.0416639896 - s * (0.00138559281 - s * 0.0000231944086)));
-}
-
-// Cosines of angles from 0° to 90°, with the same error.
-fn cos_degrees(angles: vec2<f32>) -> vec2<f32> {
-    return 1.0 - rise_degrees(angles);
+    return 1.0 - s * (0.499999323 - s * (0.0416639896 - s * (0.00138559281 - s * 0.0000231944086)));
 }
 
 // The tangent of an angle from 0° to below 90°; the sine by M. Abramowitz, I. Stegun (1964), Handbook of Mathematical
@@ -113,12 +107,11 @@ fn tan_degrees(angle: f32) -> f32 {
 }
 
 // The profile of a spotlight: 1 inside, 0 outside, Hermite's cubic of the cosine between.
-// axis and ray: unit vectors away from the light; cone_angle: half angle in degrees; penumbra: the fraction of it over
-// which the light fades. Cosines near 1 have too few bits for narrow cones, so all is 1 − cos θ: of the ray by its chord.
-fn cone(axis: vec3<f32>, ray: vec3<f32>, cone_angle: f32, penumbra: f32) -> f32 {
+// axis and ray: unit vectors away from the light; edges: 1 − cos θ of the outer and the inner edge, between which the
+// light fades. Cosines near 1 have too few bits for narrow cones. Of the ray, 1 − cos θ is calculated from its chord.
+fn cone(axis: vec3<f32>, ray: vec3<f32>, edges: vec2<f32>) -> f32 {
     let chord = ray - axis;
     let rise = 0.5 * dot(chord, chord);
-    let edges = rise_degrees(vec2(cone_angle, cone_angle * (1.0 - penumbra)));
     if edges.y >= edges.x {
         return step(rise, edges.x);
     }

@@ -79,7 +79,8 @@ impl Draft {
         Ok(draft)
     }
 
-    /// An empty draft of something that can be calculated again, without waiting for the disk.
+    /// An empty draft of something that can be calculated again, without waiting for the disk. Hard links to the file that
+    /// it replaces keep the old content.
     ///
     /// # Errors
     /// Returns the errors of [`new`](Self::new).
@@ -177,7 +178,8 @@ impl Draft {
         if let Some(old) = &old {
             let alike = take_after(self.file.as_file(), old);
             self.file.as_file().set_permissions(old.permissions())?;
-            if (!alike || Node::of(old).links > 1)
+            // A result that can be calculated again is no reason to change files of other names.
+            if (!alike || self.synced && Node::of(old).links > 1)
                 && let Some(place) = open_to_overwrite(&self.target, old)
             {
                 return self.overwrite(place, old);

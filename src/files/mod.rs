@@ -14,8 +14,8 @@
 //!   document; [`write_all`]: several documents; [`Draft`]: a document in steps. They keep mode, owner,
 //!   group, links and hard links, and refuse pipes, devices and sockets.
 //! - [`FolderDraft`]: a folder of files, all or nothing.
-//! - [`Output`]: the result of a command, which may go to a device or a pipe; [`may_overwrite`] and
-//!   [`can_begin`] are called before it is calculated.
+//! - [`Output`]: the result of a command, such as a picture, which may go to a device or a pipe; [`may_overwrite`] and
+//!   [`can_begin`] are called before it is calculated. Hard links to a replaced file keep its old content.
 //! - [`spare`]: refuses a result that would replace an input; used by everything that writes results.
 //! - [`Before`]: the state of a place when it was examined, so that anything written there meanwhile is kept.
 //! - [`tidy`]: removes the leftovers of killed processes from a folder, and finishes their interrupted
@@ -34,7 +34,7 @@
 //! renamed, so a half-written file never exists.
 //!
 //! Renaming gives the name to another file. The content of the old one is overwritten instead if renaming would
-//! separate hard links, or would give the file an owner or group that this user may not restore, provided that this
+//! separate hard links to a document, or would give the file an owner or group that this user may not restore, provided that this
 //! user may write to the file. Because that can be interrupted, the complete copy beside it is first synced and renamed
 //! to `.lcm-XXXXXX.INODE-TIME.whole`, with the inode and the modification time of the file to be overwritten. It is
 //! removed only when everything is synced. [`tidy`] never treats such a copy as litter. If the file it belongs to is

@@ -6,11 +6,11 @@ use std::{
     path::Path,
 };
 
-use crate::text::shortened;
+use crate::text::{is_invisible, shortened};
 
-/// A text without characters that a terminal would act on instead of displaying: control characters except
-/// line ends and tabs, those that change the text direction, and invisible line ends become escapes such as
-/// `\u{1b}`. File names may contain all of these.
+/// A text without characters that a terminal would act on instead of displaying, or that nobody would see: all
+/// invisible ones except line ends and tabs become escapes such as `\u{1b}`. File names may contain all of
+/// these.
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, |shown, c| write!(shown, "{}", c.escape_default()))
@@ -76,8 +76,7 @@ impl fmt::Display for OnOneLine<'_> {
 }
 
 fn is_unfit(c: char) -> bool {
-    // U+2028 and U+2029 end a line and a paragraph.
-    c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{2028}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
+    is_invisible(c) && c != '\n' && c != '\t'
 }
 
 #[cfg(test)]
@@ -100,6 +99,7 @@ mod tests {
             printable("a\u{1b}[31m\rb\u{7f}\u{9b}2J\u{202e}c\u{7}\u{2028}"),
             r"a\u{1b}[31m\rb\u{7f}\u{9b}2J\u{202e}c\u{7}\u{2028}"
         );
+        assert_eq!(printable("a\u{feff}\u{200b}b.json"), r"a\u{feff}\u{200b}b.json");
         let (odd, json) = ("a\u{9b}2J\u{202e}\u{2028}b", r#""a\u009b2J\u202e\u2028b""#);
         assert_eq!(printable_json(&serde_json::to_string(odd).expect("written")), json);
         assert_eq!(serde_json::from_str::<String>(json).expect("read"), odd);

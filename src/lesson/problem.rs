@@ -9,7 +9,7 @@ use super::{limits::MAX_PROBLEMS, words::Piece};
 use crate::{
     files::printable,
     text::{
-        did_you_mean, listed,
+        did_you_mean, is_invisible, listed,
         place::{Lines, Place},
         quoted,
     },
@@ -39,7 +39,7 @@ impl Problem {
     #[must_use]
     pub fn annotated(&self, file: &str) -> String {
         // The annotation crate escapes control characters only in ASCII.
-        let fit = |text: &str| text.replace(|c: char| c.is_control() && !c.is_ascii(), "\u{fffd}");
+        let fit = |text: &str| text.replace(|c: char| is_invisible(c) && !c.is_ascii(), "\u{fffd}");
         let (file, message) = (printable(file), fit(&self.message));
         let Some(place) = self.place else {
             return format!("error: {file}: {}", printable(&self.message));

@@ -1,8 +1,8 @@
 use glam::Vec3;
 
-use super::{Declaration, Factor, Incident, LightRecord, LightType};
+use super::{Declaration, Factor, Incident, LightRecord, LightType, extent::number};
 use crate::{
-    optics::radiometry::{cone, cone_solid_angle, inverse_square},
+    optics::radiometry::{cone, cone_edges, cone_solid_angle, inverse_square},
     parameter::{ABOVE_ZERO, Parameter},
     parameters,
     shader::wgsl,
@@ -33,7 +33,7 @@ parameters! {
 impl Spot {
     /// The profile of the cone towards a point; `l` is the direction from there to the light.
     fn profile(&self, light: &LightRecord, l: Vec3) -> f32 {
-        cone(light.direction, -l, self.cone_angle, self.penumbra)
+        cone(light.direction, -l, cone_edges(self.cone_angle, self.penumbra))
     }
 }
 
@@ -46,6 +46,13 @@ impl LightType for Spot {
         .candela(20.0, 200.0)
         .cone(CONE_ANGLE.name)
         .equation("I(p) = I cone(θ, θ_c, s) / d^2");
+
+    // The edges of the cone: a driver's cosine would be too coarse for a narrow one.
+    const DERIVED: &'static [Parameter] = &[number("outer_rise"), number("inner_rise")];
+
+    fn derived(&self) -> Vec<f32> {
+        cone_edges(self.cone_angle, self.penumbra).to_array().to_vec()
+    }
 
     fn incident(&self, light: &LightRecord, p: Vec3) -> Incident {
         let to_light = light.position - p;

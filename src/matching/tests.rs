@@ -1,29 +1,12 @@
 use super::*;
 use crate::{
     document::{Document, Edit, Selection},
-    scene::{Object, Part, Scene, Variant},
+    scene::{Object, Part, Scene},
+    testing::shared::{PHONG, matched, two_views as scene},
 };
-
-/// A sphere with one model and some values in view A, and another model in view B.
-fn scene(a: (&str, &[(&'static str, Value)]), b: (&str, &[(&'static str, Value)])) -> Scene {
-    let mut scene = Scene { reflection_model: a.0.to_owned(), ..Scene::default() };
-    a.1.iter().for_each(|(name, value)| scene.objects[0].material.set(*name, value.clone()));
-    let mut variant = Variant { reflection_model: Some(b.0.to_owned()), ..Variant::default() };
-    b.1.iter().for_each(|(name, value)| variant.material.set(*name, value.clone()));
-    scene.variants = vec![variant];
-    scene
-}
 
 fn number(value: f32) -> Value {
     Value::Number(value)
-}
-
-fn matched(scene: &Scene, what: What, parameters: &[&str]) -> Result<Match, MatchError> {
-    match_view(
-        &Request { scene, view: 1, measure: what.into(), parameters },
-        &Registry::builtin(),
-        &Progress::NONE,
-    )
 }
 
 fn error(scene: &Scene, what: What, parameters: &[&str]) -> String {
@@ -35,13 +18,6 @@ fn found(found: &Match, name: &str) -> f64 {
     let value = found.values.iter().find(|(n, _)| *n == name);
     value.unwrap_or_else(|| panic!("{name} is not in {found:?}")).1.numbers()[0]
 }
-
-const PHONG: [(&str, Value); 4] = [
-    ("k_a", Value::Number(0.25)),
-    ("k_d", Value::Number(0.6)),
-    ("k_s", Value::Number(0.35)),
-    ("alpha", Value::Integer(50)),
-];
 
 /// Blinn–Phong's exponent is four times Phong's: E. Lafortune and Y. Willems (1994), F. Fisher and A. Woo (1994).
 #[test]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// The guard against division by zero in [`inverse_square`]: squared distances below (1 mm)² count as (1
 /// mm)². Only visible on a surface that touches the light.
@@ -15,18 +15,26 @@ pub fn inverse_square(to_light: Vec3) -> f32 {
     1.0 / to_light.length_squared().max(MINIMUM_DISTANCE_SQUARED)
 }
 
+/// The outer and the inner edge of a spotlight's cone, as `1 − cos θ = 2 sin²(θ/2)`, for [`cone`]. Cosines near 1 have
+/// too few bits for narrow cones.
+///
+/// `cone_angle` is the half angle of the cone in degrees (0 < a ≤ 90), and `penumbra` (0–1) the fraction of it over which
+/// the light fades; 0 is a hard edge.
+#[must_use]
+pub fn cone_edges(cone_angle: f32, penumbra: f32) -> Vec2 {
+    let of_angle = |degrees: f32| 2.0 * (0.5 * degrees.to_radians()).sin().powi(2);
+    Vec2::new(of_angle(cone_angle), of_angle(cone_angle * (1.0 - penumbra)))
+}
+
 /// The profile of a spotlight: 1 inside, 0 outside, and smooth in between.
 ///
-/// `axis` and `ray` are unit vectors away from the light, `cone_angle` is the half angle of the cone in
-/// degrees (0 < a ≤ 90) and `penumbra` (0–1) the fraction of the half angle over which the light
-/// fades; 0 is a hard edge. The fade is Hermite's cubic `t²(3 − 2t)` of the **angle's cosine**, the
-/// convention of OpenGL and glTF spots. Cosines near 1 have too few bits for narrow cones, so it is calculated from
-/// `1 − cos θ`: of the ray this is half the square of the chord, of an angle `2 sin²(θ/2)`.
+/// `axis` and `ray` are unit vectors away from the light, `edges` those of [`cone_edges`]. The fade is Hermite's cubic
+/// `t²(3 − 2t)` of the **angle's cosine**, the convention of OpenGL and glTF spots. Of the ray, `1 − cos θ` is half the
+/// square of the chord.
 #[must_use]
-pub fn cone(axis: Vec3, ray: Vec3, cone_angle: f32, penumbra: f32) -> f32 {
+pub fn cone(axis: Vec3, ray: Vec3, edges: Vec2) -> f32 {
     let rise = 0.5 * (ray - axis).length_squared();
-    let of_angle = |degrees: f32| 2.0 * (0.5 * degrees.to_radians()).sin().powi(2);
-    let (outer, inner) = (of_angle(cone_angle), of_angle(cone_angle * (1.0 - penumbra)));
+    let [outer, inner] = edges.to_array();
     if inner >= outer {
         return if rise <= outer { 1.0 } else { 0.0 };
     }
@@ -72,7 +80,8 @@ mod tests {
     }
 
     fn at(degrees: f64, cone_angle: f32, penumbra: f32) -> f32 {
-        cone(Vec3::Z, by_rise(2.0 * (0.5 * degrees.to_radians()).sin().powi(2)), cone_angle, penumbra)
+        let ray = by_rise(2.0 * (0.5 * degrees.to_radians()).sin().powi(2));
+        cone(Vec3::Z, ray, cone_edges(cone_angle, penumbra))
     }
 
     #[test]
@@ -98,7 +107,7 @@ mod tests {
                 let depth = 2.0 * (0.5 * f64::from(cone_angle).to_radians()).sin().powi(2);
                 let sum: f64 = (0..n)
                     .map(|i| depth * (f64::from(i) + 0.5) / f64::from(n))
-                    .map(|rise| f64::from(cone(Vec3::Z, by_rise(rise), cone_angle, penumbra)))
+                    .map(|rise| f64::from(cone(Vec3::Z, by_rise(rise), cone_edges(cone_angle, penumbra))))
                     .sum();
                 let integral = 2.0 * PI * depth * sum / f64::from(n);
                 let error = |solid_angle: f64| (solid_angle / integral - 1.0).abs();

@@ -334,15 +334,18 @@ impl Dialogs {
         }
     }
 
-    /// Aids of an open dialog: names of its icons, folders that open, and a word about an empty list. Updates the field
-    /// that has the focus and the number of frames without entries. Returns true if a folder is to be opened.
+    /// Aids of an open dialog: names of its icons, the whole name of the selected file, folders that open, and a word about
+    /// an empty list. Updates the field that has the focus and the number of frames without entries. Returns true if a
+    /// folder is to be opened.
     fn aid(&mut self, ctx: &Context, layer: LayerId, palette: &Palette) -> bool {
         // The dialog blocks the pointer, but not the keys.
         ctx.memory_mut(|m| m.set_modal_layer(layer));
         let (dialog, list) = (&mut self.dialog, Places::of(ctx, layer.id));
         let mut entered = false;
         if let Some(places) = &list {
-            aids::name_icons(ctx, layer, places.top, dialog.config_mut());
+            let file = dialog.selected_entry().map(|entry| entry.file_name().to_owned());
+            let parts = (places.top, places.bottom);
+            aids::name_parts(ctx, layer, parts, (&*dialog.config_mut(), file.as_deref()));
             // The dialog keeps a folder selected after it has shown what is in it.
             let shown = dialog.storage_mut().last_visited_dir.clone();
             let selected =

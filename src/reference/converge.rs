@@ -145,27 +145,10 @@ pub(crate) fn relative_error([squares, luminance, pixels]: [f64; 3], blocks: u32
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{parameter::Value, scene::Light};
-    use glam::Vec3;
-
-    fn lit(registry: &Registry) -> Scene {
-        let mut scene = Scene::default();
-        let mut light = Light { position: Some(Vec3::new(7.0, 8.0, 7.0)), ..scene.lights[0].clone() };
-        light.set_type(registry.light("rectangle").expect("built in"), registry, scene.scene_size);
-        light.direction = Some(Vec3::new(-2.0, -3.0, -2.0));
-        light.parameters.set("visible", Value::Choice("false".into()));
-        scene.lights = vec![light];
-        scene
-    }
-
-    /// Renders without reporting progress.
-    fn until(scene: &Scene, registry: &Registry, samples: u32, noise: Option<f32>) -> (Picture, Reached) {
-        let (odd, until) = (AtomicBool::default(), Until { samples, noise });
-        render_until(scene, registry, &SMALL, until, &odd, &Progress::NONE).expect("nobody cancels")
-    }
-
-    const SMALL: Settings =
-        Settings { width: 48, height: 32, samples: 1, terms: crate::optics::TermSelection::All };
+    use crate::{
+        parameter::Value,
+        testing::shared::{SMALL, lit, until},
+    };
 
     #[test]
     fn samples_in_blocks_are_the_samples_at_once() {

@@ -28,7 +28,7 @@ const PIECE: usize = 1 << 20;
 pub(super) struct FileBuffers {
     known: HashMap<u64, Handle<ShaderBuffer>>,
     /// Those to be filled in this frame.
-    new: Vec<Upload>,
+    uploads: Vec<Upload>,
 }
 
 /// A buffer and its numbers.
@@ -50,7 +50,7 @@ struct Uploads(Vec<Upload>);
 
 fn extract(mut main: ResMut<MainWorld>, mut uploads: ResMut<Uploads>) {
     if let Some(mut files) = main.get_resource_mut::<FileBuffers>() {
-        uploads.0.append(&mut files.bypass_change_detection().new);
+        uploads.0.append(&mut files.bypass_change_detection().uploads);
     }
 }
 
@@ -87,7 +87,7 @@ impl FileBuffers {
         let size = if holds { size } else { 64 };
         let buffer = buffers.add(ShaderBuffer::with_size(size, RenderAssetUsages::RENDER_WORLD));
         if holds {
-            self.new.push((buffer.clone(), table.numbers.clone()));
+            self.uploads.push((buffer.clone(), table.numbers.clone()));
         }
         self.known.insert(version, buffer.clone());
         buffer

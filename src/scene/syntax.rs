@@ -2,6 +2,8 @@
 
 use serde::{Deserialize as _, de::IgnoredAny};
 
+use crate::text::{code_point, is_invisible, shortened};
+
 /// Maximum nesting of JSON. Scenes need four levels.
 pub const MAX_DEPTH: usize = 64;
 /// Maximum number of values of a scene in JSON: lists, objects, numbers, texts, `true`, `false` and `null`.
@@ -145,9 +147,9 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
 /// The text at a place, for a message.
 fn shown(found: Option<char>, word: &str) -> String {
     match found {
-        _ if word.chars().count() > 1 => crate::text::shortened(word),
+        _ if word.chars().count() > 1 => shortened(word),
         Some('\n' | '\r') => "the end of the line".to_owned(),
-        Some(c) if c.is_control() => format!("the character U+{:04X}", u32::from(c)),
+        Some(c) if is_invisible(c) => format!("the character {}", code_point(c)),
         Some(c) => format!("`{c}`"),
         None => "the end of the file".to_owned(),
     }
@@ -190,6 +192,8 @@ mod tests {
             ("{\"a\": \"x\ny\"}", "1:9", "line break"),
             ("{“a”: 1}", "1:2", "typographic"),
             ("}", "1:1", "expected a value"),
+            ("\u{feff}\u{feff}{}", "1:1", "not the character U+FEFF"),
+            ("{\u{200b}\"a\": 1}", "1:2", "not the character U+200B"),
         ] {
             let error = from_text(text, "s.json", &Registry::builtin(), Defaults::Use).expect_err(text);
             let said = error.to_string();

@@ -4,7 +4,7 @@
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use super::check::ShaderProblem;
-use crate::files::printable;
+use crate::{files::printable, text::is_invisible};
 
 /// A problem as several lines of plain text. `file` is the file name for the reader: its path on disk if it
 /// has one.
@@ -21,12 +21,7 @@ pub fn coloured(problem: &ShaderProblem, file: &str) -> String {
 
 fn rendered(problem: &ShaderProblem, file: &str, renderer: &Renderer) -> String {
     // The annotation crate escapes control characters only in ASCII, and no line separators.
-    let fit = |text: &str| {
-        text.replace(
-            |c: char| c.is_control() && !c.is_ascii() || matches!(c, '\u{2028}' | '\u{2029}'),
-            "\u{fffd}",
-        )
-    };
+    let fit = |text: &str| text.replace(|c: char| is_invisible(c) && !c.is_ascii(), "\u{fffd}");
     let (source, message) = (fit(&problem.source), fit(&problem.message));
     let file = printable(file);
     if problem.line == 0 {
@@ -79,7 +74,7 @@ mod tests {
 
     #[test]
     fn nothing_that_a_terminal_obeys_comes_through() {
-        let odd = "a\u{1b}[2J\u{9b}2J\u{202e}\u{2028}b";
+        let odd = "a\u{1b}[2J\u{9b}2J\u{202e}\u{2028}\u{feff}b";
         let problem = ShaderProblem {
             file: odd.to_owned(),
             line: 1,
@@ -88,8 +83,7 @@ mod tests {
             message: odd.to_owned(),
         };
         let text = annotated(&problem, odd);
-        let obeyed =
-            text.chars().find(|c| c.is_control() && *c != '\n' || matches!(c, '\u{202e}' | '\u{2028}'));
+        let obeyed = text.chars().find(|c| is_invisible(*c) && *c != '\n');
         assert_eq!(obeyed, None, "{text:?}");
     }
 }

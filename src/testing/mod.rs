@@ -28,6 +28,8 @@ pub mod meshes;
 pub mod parity;
 mod sample;
 pub mod shadings;
+#[doc(hidden)]
+pub mod shared;
 mod words;
 
 #[cfg(feature = "window")]

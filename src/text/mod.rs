@@ -18,6 +18,7 @@ pub use words::{
     behind, capitalised, detailed, did_you_mean, facts, listed, nearest, number, one_of, per_cent, plural,
     quoted, sentence, shortened, superscript, trimmed, with_article, wrapped,
 };
+pub(crate) use words::{code_point, is_invisible};
 
 /// The bytes of a UTF-8 text without the byte order mark that some programs write first.
 pub(crate) fn after_mark(bytes: &[u8]) -> &[u8] {

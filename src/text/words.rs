@@ -123,16 +123,42 @@ pub fn quoted(text: &str) -> String {
     shortened(&format!("{text:?}"))
 }
 
-/// The beginning of a text that is too long for a message, on one line.
+/// The beginning of a text that is too long for a message, on one line: control characters become spaces, and other
+/// invisible ones their code points, such as U+FEFF.
 #[must_use]
 pub fn shortened(text: &str) -> String {
     /// Maximum number of characters that read well within a sentence.
     const LONGEST: usize = 60;
-    let flat = |c: char| if c.is_control() { ' ' } else { c };
-    match text.char_indices().nth(LONGEST) {
-        Some((end, _)) => text[..end].chars().map(flat).chain(['…']).collect(),
-        None => text.chars().map(flat).collect(),
+    let (mut shown, mut rest) = (String::new(), text.chars());
+    for c in rest.by_ref().take(LONGEST) {
+        match c {
+            c if c.is_control() => shown.push(' '),
+            c if is_invisible(c) => shown += &code_point(c),
+            c => shown.push(c),
+        }
     }
+    if rest.next().is_some() {
+        shown.push('…');
+    }
+    shown
+}
+
+/// True for characters that show nothing, or change only the direction or the lines of others: control characters, byte
+/// order marks, spaces without width. Joiners shape the letters beside them, so they count as visible.
+#[must_use]
+pub(crate) fn is_invisible(c: char) -> bool {
+    c.is_control()
+        || matches!(
+            c,
+            '\u{AD}' | '\u{61C}' | '\u{180E}' | '\u{200B}' | '\u{200E}' | '\u{200F}' | '\u{2028}'..='\u{202E}'
+                | '\u{2060}'..='\u{206F}' | '\u{FEFF}' | '\u{FFF9}'..='\u{FFFB}'
+        )
+}
+
+/// A character by its number: "U+FEFF".
+#[must_use]
+pub(crate) fn code_point(c: char) -> String {
+    format!("U+{:04X}", u32::from(c))
 }
 
 /// A rule that follows the name of what breaks it: "metallic is 2, but it must be …", not "but the metallic must be …".
@@ -184,6 +210,17 @@ mod tests {
     fn parts_are_told_in_per_cent_with_two_digits() {
         let told = [0.0, 0.00001, 0.005, 0.00996, 0.0123, 0.0996, 0.123].map(per_cent);
         assert_eq!(told, ["0.00 %", "< 0.01 %", "0.50 %", "1.0 %", "1.2 %", "10 %", "12 %"]);
+    }
+
+    #[test]
+    fn excerpts_show_what_is_invisible() {
+        let told = shortened("a\u{feff}b\u{200b}\nc\u{202e}");
+        assert_eq!(told, "aU+FEFFbU+200B cU+202E");
+        assert!(!quoted("\u{feff}\u{1b}\u{2060}").contains(is_invisible));
+        let family = "größe 中文 👩\u{200d}🔬";
+        assert_eq!(shortened(family), family);
+        assert_eq!(shortened(&"ö".repeat(60)), "ö".repeat(60));
+        assert_eq!(shortened(&"\u{feff}".repeat(61)), "U+FEFF".repeat(60) + "…");
     }
 
     #[test]

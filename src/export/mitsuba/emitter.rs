@@ -9,7 +9,10 @@ use super::xml::{Xml, look_at, number, to_world};
 use crate::{
     export::File,
     light::{LightEntry, LightRecord, extent::sides},
-    optics::{colour::Encoding, radiometry::cone},
+    optics::{
+        colour::Encoding,
+        radiometry::{cone, cone_edges},
+    },
     parameter::Values,
     scene::observer::orientation,
 };
@@ -251,11 +254,12 @@ fn profile(angle: f32, penumbra: f32) -> Vec<u8> {
     let side = (FINE / penumbra).clamp(256.0, 2048.0) as usize;
     let mut bytes = format!("Pf\n{side} {side}\n-1.0\n").into_bytes();
     let edge = angle.to_radians().tan();
+    let edges = cone_edges(angle, penumbra);
     let at = |i: usize| ((i as f32 + 0.5) / side as f32 * 2.0 - 1.0) * edge;
     for row in 0..side {
         for column in 0..side {
             let ray = Vec3::new(at(column), at(row), 1.0).normalize();
-            bytes.extend(cone(Vec3::Z, ray, angle, penumbra).to_le_bytes());
+            bytes.extend(cone(Vec3::Z, ray, edges).to_le_bytes());
         }
     }
     bytes

@@ -1,4 +1,4 @@
-//! Features that the file dialogs lack: tooltips for their icons, and a button that opens a folder.
+//! Features that the file dialogs lack: tooltips for their icons and for a long name, and a button that opens a folder.
 
 use crate::panel::prelude::*;
 use bevy_egui::egui::{Area, LayerId, Order, Tooltip, epaint::ClippedShape};
@@ -21,31 +21,49 @@ fn icons(config: &FileDialogConfig) -> [(&str, &'static str); 7] {
     .map(|(icon, words)| (icon.as_str(), words))
 }
 
-/// Shows the tooltip of the icon under the pointer.
-pub(super) fn name_icons(ctx: &Context, layer: LayerId, top: Rect, config: &FileDialogConfig) {
-    let pointer = ctx.pointer_hover_pos().filter(|at| top.contains(*at));
-    let Some(pointer) = pointer.filter(|at| ctx.layer_id_at(*at) == Some(layer)) else { return };
+/// Shows the tooltip of what is under the pointer: an icon at the top, or at the bottom the name of the selected file, if
+/// only a part of it is in sight.
+pub(super) fn name_parts(
+    ctx: &Context,
+    layer: LayerId,
+    (top, bottom): (Rect, Rect),
+    (config, file): (&FileDialogConfig, Option<&str>),
+) {
+    let pointer = ctx.pointer_hover_pos().filter(|at| ctx.layer_id_at(*at) == Some(layer));
+    let Some((pointer, part)) = pointer.and_then(|at| {
+        let part = [top, bottom].into_iter().find(|part| part.contains(at));
+        part.map(|part| (at, part))
+    }) else {
+        return;
+    };
     let icons = icons(config);
-    let named = |shape: &Shape| {
+    let named = |clip: Rect, shape: &Shape| {
         let Shape::Text(text) = shape else { return None };
-        let rect = shape.visual_bounding_rect().expand(ICON);
-        let icon = icons.iter().find(|(icon, _)| *icon == text.galley.text())?;
-        rect.contains(pointer).then_some((rect, icon.1))
+        let (rect, text) = (shape.visual_bounding_rect(), text.galley.text());
+        let words = if part == top {
+            icons.iter().find(|(icon, _)| *icon == text).map(|(_, words)| *words)
+        } else {
+            file.filter(|name| *name == text && !clip.expand(2.0).contains_rect(rect))
+        };
+        let rect = rect.expand(ICON).intersect(part);
+        words.filter(|_| rect.contains(pointer)).map(|words| (rect, words.to_owned()))
     };
     let found = ctx.graphics(|graphics| {
-        graphics.get(layer)?.all_entries().find_map(|ClippedShape { shape, .. }| match shape {
-            Shape::Vec(shapes) => shapes.iter().find_map(named),
-            shape => named(shape),
+        graphics.get(layer)?.all_entries().find_map(|ClippedShape { clip_rect, shape }| match shape {
+            Shape::Vec(shapes) => shapes.iter().find_map(|shape| named(*clip_rect, shape)),
+            shape => named(*clip_rect, shape),
         })
     });
     // One frame measures the tooltip and the next shows it; an idle window would not draw the second.
-    let id = Id::new("words of an icon");
-    let now = found.map(|(_, words)| words);
-    if ctx.data_mut(|d| std::mem::replace(d.get_temp_mut_or_default::<Option<&str>>(id), now)) != now {
+    let id = Id::new("words of a part");
+    let now = found.as_ref().map(|(_, words)| words.clone());
+    let before =
+        ctx.data_mut(|d| std::mem::replace(d.get_temp_mut_or_default::<Option<String>>(id), now.clone()));
+    if before != now {
         ctx.request_repaint();
     }
     if let Some((rect, words)) = found {
-        Tooltip::always_open(ctx.clone(), layer, Id::new("icon of a dialog"), rect)
+        Tooltip::always_open(ctx.clone(), layer, Id::new("part of a dialog"), rect)
             .show(|ui| ui.label(words));
     }
 }

@@ -284,7 +284,12 @@ mod tests {
                 &["incident_spot must be fn incident_spot(light: Light, m: SpotParameters, p"],
             ),
             ("light/spot.wgsl", "m: SpotParameters, ", "", &["spot.wgsl:"]),
-            ("light/spot.wgsl", "m.penumbra", "m.penumbre", &["spot.wgsl:5:", "did you mean penumbra?"]),
+            (
+                "light/spot.wgsl",
+                "m.inner_rise",
+                "m.inner_rice",
+                &["spot.wgsl:5:", "did you mean inner_rise?"],
+            ),
             ("light/spot.wgsl", "unit_or_zero", "unit_or_one", &["spot.wgsl:4:"]),
             (
                 "shading/phong.wgsl",

@@ -686,6 +686,24 @@ fn hard_links_stay_one_file() {
 }
 
 #[test]
+fn a_picture_changes_no_other_file_that_is_linked_to_its_place() {
+    let folder = folder();
+    let at = folder.path();
+    let picture = |arguments: &[&str]| {
+        let ran = run(&mut render(at, &[arguments, &["-o", "a.png"]].concat()));
+        assert_eq!(ran.status, Some(0), "{}", ran.err);
+        fs::read(at.join("a.png")).expect("there")
+    };
+    let before = picture(&[]);
+    // As `cp -l` makes copies.
+    fs::hard_link(at.join("a.png"), at.join("kept.png")).expect("linked");
+    let after = picture(&["--reflection", "ward"]);
+    assert_ne!(after, before);
+    assert_eq!(fs::read(at.join("kept.png")).expect("there"), before);
+    assert_eq!(names(at), ["a.png", "kept.png"]);
+}
+
+#[test]
 fn a_process_killed_while_it_overwrites_a_file_loses_nothing() {
     let folder = folder();
     let at = folder.path();

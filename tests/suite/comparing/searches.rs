@@ -2,41 +2,17 @@
 //! built without optimisation, these would take minutes.
 
 use lights_camera_models::{
-    matching::{Match, MatchError, Request, What, each, match_view, parameters},
+    matching::{What, each, parameters},
     parameter::Value,
     progress::Progress,
     registry::Registry,
-    scene::{Scene, Variant},
+    scene::Scene,
+    testing::shared::{PHONG, matched, two_views as scene},
 };
-
-/// A sphere with one model and some values in view A, and another model in view B.
-fn scene(a: (&str, &[(&'static str, Value)]), b: (&str, &[(&'static str, Value)])) -> Scene {
-    let mut scene = Scene { reflection_model: a.0.to_owned(), ..Scene::default() };
-    a.1.iter().for_each(|(name, value)| scene.objects[0].material.set(*name, value.clone()));
-    let mut variant = Variant { reflection_model: Some(b.0.to_owned()), ..Variant::default() };
-    b.1.iter().for_each(|(name, value)| variant.material.set(*name, value.clone()));
-    scene.variants = vec![variant];
-    scene
-}
 
 fn number(value: f32) -> Value {
     Value::Number(value)
 }
-
-fn matched(scene: &Scene, what: What, parameters: &[&str]) -> Result<Match, MatchError> {
-    match_view(
-        &Request { scene, view: 1, measure: what.into(), parameters },
-        &Registry::builtin(),
-        &Progress::NONE,
-    )
-}
-
-const PHONG: [(&str, Value); 4] = [
-    ("k_a", Value::Number(0.25)),
-    ("k_d", Value::Number(0.6)),
-    ("k_s", Value::Number(0.35)),
-    ("alpha", Value::Integer(50)),
-];
 
 #[test]
 fn a_model_matched_with_itself_finds_its_own_values() {

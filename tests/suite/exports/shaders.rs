@@ -108,6 +108,8 @@ fn the_manifest_has_the_numbers_of_the_scene_at_their_offsets() {
     assert_eq!(field("parameters", "alpha")["value"], 32.0);
     assert_eq!(field("illumination", "lights[0].position")["value"], json!([1.0, 2.0, 3.0]));
     assert_eq!(field("illumination", "lights[1].cone_angle")["value"], 20.0);
+    let edge = field("illumination", "lights[1].outer_rise")["value"].as_f64().expect("a number");
+    assert!((edge - (1.0 - 20_f64.to_radians().cos())).abs() < 1e-7, "{edge}");
     assert_eq!(field("illumination", "lights[0].light_type")["value"], 0);
     assert_eq!(field("view", "observer_position")["value"], json!([5.0, 5.0, 9.5]));
     let exposure = field("view", "exposure")["value"].as_f64().expect("a number");
@@ -123,6 +125,7 @@ fn the_manifest_has_the_numbers_of_the_scene_at_their_offsets() {
     assert_eq!(bytes, stride * manifest["vertices"]["count"].as_u64().expect("a number"));
     let shader = fs::read_to_string(folder.path().join("wgsl/shader.wgsl")).expect("there");
     assert!(shader.contains("@location(5) face_centre") && shader.contains("fn tone_aces"), "{shader}");
+    assert!(shader.contains("light.outer_rise") && !shader.contains("radians("), "{shader}");
 }
 
 #[test]

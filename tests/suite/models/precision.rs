@@ -4,7 +4,9 @@ use std::{fs, path::Path};
 
 use glam::Vec3;
 use lights_camera_models::{
-    optics::radiometry,
+    optics::{colour::Encoding, radiometry},
+    parameter::{Value, Values},
+    registry::Registry,
     shader::{
         check::validate,
         compose::{Composed, OPTICS},
@@ -47,6 +49,28 @@ fn no_shader_takes_a_drivers_cosine_of_a_parameter() {
     assert_eq!(inexact("let a = 1;\nlet b = cos(radians(m.cone_angle));").len(), 1);
 }
 
+#[test]
+fn lights_send_what_is_the_same_in_every_pixel() {
+    let folder = root().join("assets/shaders/light");
+    let mut seen = 0;
+    for entry in fs::read_dir(folder).expect("readable") {
+        let path = entry.expect("readable").path();
+        let text = fs::read_to_string(&path).expect("readable");
+        let angles = ["radians(", "_degrees("].map(|function| text.contains(function));
+        assert_eq!(angles, [false; 2], "{}: declare the number as DERIVED", path.display());
+        seen += 1;
+    }
+    assert!(seen > 10, "{seen}");
+    // 1 − cos 9°, which a driver's cosine may miss by 4 %.
+    let registry = Registry::builtin();
+    let spot = registry.light("spot").expect("built in");
+    let values = Values([("cone_angle".into(), Value::Number(9.0))].into());
+    let words = spot.words(&values, Encoding::default());
+    let at = spot.fields().iter().position(|field| field.name == "outer_rise").expect("derived");
+    let sent = f64::from(f32::from_bits(words[at]));
+    assert!((sent / (1.0 - 9_f64.to_radians().cos()) - 1.0).abs() < 1e-6, "{sent}");
+}
+
 /// A function of the shaders' first file as the CPU interprets it, in the precision of shaders.
 fn shader_function(name: &str) -> Program {
     let text: String = OPTICS[..1].iter().map(|source| source.text).collect();
@@ -60,14 +84,15 @@ fn narrow_cones_of_shaders_fade_as_those_of_the_cpu_renderer_do() {
     let axis = Vec3::new(0.3, -0.8, 0.52).normalize();
     let across = axis.any_orthonormal_vector();
     for cone_angle in [0.01_f32, 0.1, 0.5, 5.0, 30.0, 90.0] {
+        let edges = radiometry::cone_edges(cone_angle, 0.1);
         for step in 0..=100 {
             let angle = (cone_angle * (0.85 + 0.002 * step as f32)).to_radians();
             let ray = axis * angle.cos() + across * angle.sin();
             let arguments = [axis.to_array(), ray.to_array()].concat();
-            let words: Vec<_> = arguments.iter().chain(&[cone_angle, 0.1]).map(|v| v.to_bits()).collect();
+            let words: Vec<_> = arguments.iter().chain(&edges.to_array()).map(|v| v.to_bits()).collect();
             let mut result = [0];
             cone.run(&words, &mut result).expect("no loops");
-            let (found, expected) = (f32::from_bits(result[0]), radiometry::cone(axis, ray, cone_angle, 0.1));
+            let (found, expected) = (f32::from_bits(result[0]), radiometry::cone(axis, ray, edges));
             assert!((found - expected).abs() < 1e-4, "{cone_angle}°, step {step}: {found} and {expected}");
         }
     }

@@ -2,33 +2,14 @@
 
 use std::sync::atomic::AtomicBool;
 
-use glam::Vec3;
 use lights_camera_models::{
-    optics::{TermSelection, colour::luminance},
+    optics::colour::luminance,
     parameter::Value,
-    progress::Progress,
-    reference::{LightSamples, Picture, Reached, Settings, Until, render_samples, render_until},
+    reference::{LightSamples, Reached, Until, render_samples},
     registry::Registry,
-    scene::{Light, Scene},
+    scene::Scene,
+    testing::shared::{SMALL, lit, until},
 };
-
-const SMALL: Settings = Settings { width: 48, height: 32, samples: 1, terms: TermSelection::All };
-
-fn lit(registry: &Registry) -> Scene {
-    let mut scene = Scene::default();
-    let mut light = Light { position: Some(Vec3::new(7.0, 8.0, 7.0)), ..scene.lights[0].clone() };
-    light.set_type(registry.light("rectangle").expect("built in"), registry, scene.scene_size);
-    light.direction = Some(Vec3::new(-2.0, -3.0, -2.0));
-    light.parameters.set("visible", Value::Choice("false".into()));
-    scene.lights = vec![light];
-    scene
-}
-
-/// Renders without reporting progress.
-fn until(scene: &Scene, registry: &Registry, samples: u32, noise: Option<f32>) -> (Picture, Reached) {
-    let (odd, until) = (AtomicBool::default(), Until { samples, noise });
-    render_until(scene, registry, &SMALL, until, &odd, &Progress::NONE).expect("nobody cancels")
-}
 
 #[test]
 fn a_picture_that_does_not_depend_on_chance_ends_as_soon_as_that_is_known() {

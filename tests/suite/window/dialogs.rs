@@ -3,7 +3,7 @@
 use std::fs;
 
 use bevy_egui::egui::{
-    Color32, Event, Id, Key, Modifiers, Order, Rect, Shape, containers::panel::PanelState, vec2,
+    Color32, Event, Id, Key, Modifiers, Order, Rect, Shape, containers::panel::PanelState, pos2, vec2,
 };
 use lights_camera_models::{
     document::Edit,
@@ -497,6 +497,29 @@ fn the_name_of_the_selected_file_is_whole() {
         _ => false,
     });
     assert!(whole, "beside the list, in as many lines as it takes");
+}
+
+#[test]
+fn a_name_that_does_not_fit_below_the_list_is_whole_under_the_pointer() {
+    const NAME: &str = "a_room_with_many_lamps_as_it_was_lit_on_the_first_evening.json";
+    let (mut bench, folder) = open(ThemeChoice::Dark, 150);
+    for name in [NAME, "short.json"] {
+        bench.key(Key::Escape, Modifiers::NONE);
+        fs::copy(folder.path().join("shapes.json"), folder.path().join(name)).expect("copied");
+        bench.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL);
+        until(&mut bench, "the list", |b: &mut Bench| b.tree.iter().any(|s| s.label.contains(&name[..5])));
+        select(&mut bench, &name[..5]);
+        until(&mut bench, "the name", |b: &mut Bench| b.tree.iter().any(|s| s.label == name));
+        let shown =
+            |bench: &mut Bench| bench.texts_in_sight().iter().filter(|(text, _)| text == name).count();
+        // Off the list, which has tooltips of its own.
+        bench.hover(pos2(2.0, 2.0));
+        let before = shown(&mut bench);
+        let label = bench.texts_in_sight().into_iter().find(|(text, _)| text == "File:").expect("below").1;
+        bench.hover(label.right_center() + vec2(20.0, 0.0));
+        let expected = if name == NAME { before + 1 } else { before };
+        assert_eq!(shown(&mut bench), expected, "{name}");
+    }
 }
 
 #[test]
