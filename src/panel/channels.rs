@@ -157,7 +157,7 @@ impl Plate {
         let palette = Palette::here(ui);
         let painter = ui.painter_at(rect);
         let [swatch, gap] = [Self::SWATCH, Self::GAP].map(|v| v * self.scale);
-        painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.92));
+        painter.rect_filled(place, 4.0, palette.plate());
         let inner = place.shrink2(Self::PADDING * self.scale);
         let mut at = inner.min;
         let below = self.title.size().y;

@@ -160,7 +160,7 @@ fn plate(
     if others.iter().any(|other| other.intersects(place)) {
         return None;
     }
-    ui.painter_at(rect).rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
+    ui.painter_at(rect).rect_filled(place, 4.0, palette.plate());
     Some(place)
 }
 

@@ -516,7 +516,7 @@ fn plate(ui: &Ui, rect: Rect, put: impl FnOnce(Vec2) -> Rect, text: &str, font: 
     let galley = ui.painter().layout(text.to_owned(), font, palette.text, room);
     let place = put(galley.size() + 2.0 * padding + vec2(left, 0.0));
     let painter = ui.painter_at(rect);
-    painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
+    painter.rect_filled(place, 4.0, palette.plate());
     painter.galley(place.min + padding + vec2(left, 0.0), galley, palette.text);
     place
 }
@@ -634,7 +634,7 @@ fn caption(ui: &Ui, rect: Rect, session: &Session, registry: &Registry) -> Rect 
     let lines = Lines::of(ui, caption::parts(session, registry), size, palette.text, room);
     let size = lines.size + 2.0 * padding + vec2(left, 0.0);
     let place = Align2::LEFT_BOTTOM.anchor_size(rect.left_bottom() + vec2(8.0, -8.0), size);
-    ui.painter().rect_filled(place, 4.0, palette.panel.gamma_multiply(0.88));
+    ui.painter().rect_filled(place, 4.0, palette.plate());
     if lines.cut {
         let whole = ui.interact(place, ui.id().with("caption"), Sense::hover());
         whole.on_hover_text(caption_text(session, registry));

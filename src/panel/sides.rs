@@ -4,6 +4,7 @@
 use bevy_egui::egui::{Frame, Margin};
 
 use super::{
+    compare,
     context::{Listed, PanelContext, Panels},
     focus::{self, Region},
     glyphs, keys,
@@ -178,6 +179,14 @@ const CODE_STRIP: f32 = 240.0;
 /// Minimum height of the strip with the materials, in points: a row of them.
 const MATERIAL_STRIP: f32 = 212.0;
 
+/// Height of the tabs, with the borders of the strip, in points.
+const TABS: f32 = 40.0;
+/// Fraction of the height of a window that the strip takes at most, and the one that the picture keeps.
+const STRIP: f32 = 0.6;
+const PICTURE: f32 = 0.4;
+/// Minimum height of the strip in any window, in points.
+const LOWEST: f32 = 48.0;
+
 /// The strip at the bottom. Tabs appear if there is more than one panel.
 pub(super) fn bottom(
     ui: &mut Ui,
@@ -187,7 +196,7 @@ pub(super) fn bottom(
     context: &mut PanelContext<'_>,
 ) {
     let session = context.session();
-    let most = 0.6 * whole.height();
+    let most = most_of_strip(ui, whole, context);
     // High enough for a complete error with its source line.
     let share = |(least, part): (f32, f32)| least.max(part * whole.height());
     let (kind, least, start) = match session.view.bottom_tab.as_str() {
@@ -216,15 +225,8 @@ pub(super) fn bottom(
                 context.on_click(&button, || Action::View(ViewChange::Bottom(false)));
             });
         });
-        match all.get_mut(shown) {
-            Some((info, panel)) if info.guest => {
-                ScrollArea::vertical().id_salt(info.id).auto_shrink(false).show(ui, |ui| {
-                    ui.set_max_width(ui.available_width() - 8.0);
-                    panel.show(ui, context);
-                });
-            }
-            Some((_, panel)) => panel.show(ui, context),
-            None => {}
+        if let Some((info, panel)) = all.get_mut(shown) {
+            tab(ui, (&*info, &mut **panel), most < least, least - TABS, context);
         }
         ui.take_available_height();
     });
@@ -232,6 +234,42 @@ pub(super) fn bottom(
     if response.response.rect.height() > least + 1.0 {
         *height = response.response.rect.height();
     }
+}
+
+/// Maximum height of the strip, which leaves the picture its part of a window, without the headers and the bar of
+/// compared views.
+fn most_of_strip(ui: &Ui, whole: Rect, context: &PanelContext<'_>) -> f32 {
+    let (session, before) = (context.session(), context.area().rect);
+    let width = if before.is_positive() { before.width() } else { PICTURE * whole.width() };
+    let mut most = STRIP * whole.height();
+    // The bar has fewer rows in less room.
+    for _ in 0..4 {
+        let room = Rect::from_min_size(whole.min, vec2(width, (ui.available_height() - most).max(0.0)));
+        let picture = compare::arrange(session, room, 0.0, 0.0).picture.height().max(0.0);
+        most -= (PICTURE * whole.height() - picture).max(0.0);
+    }
+    most.max(LOWEST)
+}
+
+/// The panel of a tab. Guests scroll; the window's own panels have a height of their own in a strip that is too low.
+fn tab(
+    ui: &mut Ui,
+    (info, panel): (&PanelInfo, &mut Listed),
+    is_low: bool,
+    own: f32,
+    context: &mut PanelContext<'_>,
+) {
+    if !info.guest && !is_low {
+        return panel.show(ui, context);
+    }
+    ScrollArea::vertical().id_salt(info.id).auto_shrink(false).min_scrolled_height(0.0).show(ui, |ui| {
+        ui.set_max_width(ui.available_width() - 8.0);
+        if info.guest {
+            return panel.show(ui, context);
+        }
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), own), Sense::hover());
+        ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| panel.show(ui, context));
+    });
 }
 
 /// The tabs of panels, with their notes.

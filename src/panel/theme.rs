@@ -85,6 +85,12 @@ impl Palette {
         if ui.visuals().dark_mode { DARK } else { LIGHT }
     }
 
+    /// Background of badges, captions, labels and legends over a picture, on which they can be read whatever it shows.
+    #[must_use]
+    pub fn plate(&self) -> Color32 {
+        self.panel.gamma_multiply(PLATE)
+    }
+
     /// The data colour of a term of an equation, for lines and areas.
     #[must_use]
     pub fn term(&self, term: Term) -> Color32 {
@@ -130,6 +136,8 @@ pub fn scale_here(ui: &Ui) -> f32 {
     ui.style().text_styles.get(&TextStyle::Body).map_or(1.0, |f| f.size / BODY)
 }
 
+/// Opacity of plates over a picture.
+const PLATE: f32 = 0.97;
 /// Opacity of scroll bars relative to the text's colour while the pointer is elsewhere.
 const SCROLL_BAR: f32 = 0.55;
 /// Size of secondary text, in points.
@@ -277,7 +285,7 @@ pub(super) fn beside(ui: &Ui, painter: &Painter, pointer: Pos2, words: String) {
         at.y = pointer.y - 16.0 - size.y;
     }
     let place = Rect::from_min_size(at.max(room.min), size);
-    painter.rect_filled(place, 4.0, palette.panel.gamma_multiply(0.92));
+    painter.rect_filled(place, 4.0, palette.plate());
     painter.galley(place.min + padding, galley, palette.text);
 }
 
@@ -482,6 +490,26 @@ mod tests {
                 }
                 for term in [Term::Total, Term::Ambient, Term::Diffuse, Term::Specular, Term::Transmitted] {
                     assert!(contrast(p.term_text(term), ground) >= 4.5, "{term:?} on {ground:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn text_can_be_read_on_plates_over_white_and_black() {
+        for p in [DARK, LIGHT] {
+            let plate = p.plate();
+            let rest = 1.0 - f32::from(plate.a()) / 255.0;
+            for behind in [Color32::WHITE, Color32::BLACK] {
+                // The light behind shines through by display codes or as light, as the renderer blends.
+                let codes = plate.r() + (rest * f32::from(behind.r())).round() as u8;
+                let light = (1.0 - rest) * luminance(p.panel) + rest * luminance(behind);
+                for ground in [luminance(grey(codes)), light] {
+                    for ink in [p.text, p.accent, p.error, p.warning] {
+                        let (a, b) = (luminance(ink) + 0.05, ground + 0.05);
+                        let ratio = a.max(b) / a.min(b);
+                        assert!(ratio >= 4.5, "{ink:?} on a plate over {behind:?}: {ratio}");
+                    }
                 }
             }
         }

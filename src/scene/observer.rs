@@ -115,10 +115,9 @@ impl Scene {
     /// their size, or as much more as the objects and rows of the scene need.
     #[must_use]
     pub fn view_angle(&self) -> ViewAngle {
-        let beside = self.comparison.layout.is_beside() && !self.variants.is_empty();
         ViewAngle {
             degrees: self.observer.field_of_view,
-            keeps: if beside {
+            keeps: if self.is_beside() {
                 self.width_of_objects().max(self.width_of_rows()).clamp(1.0, WIDE)
             } else {
                 WIDE
@@ -126,20 +125,35 @@ impl Scene {
         }
     }
 
-    /// The ratio of width to height of a picture that shows the objects from side to side, with a margin: those
-    /// that a wide picture shows from top to bottom. Floors and backdrops reach beyond it, and do not count.
+    /// True if views stand beside each other.
+    fn is_beside(&self) -> bool {
+        self.comparison.layout.is_beside() && !self.variants.is_empty()
+    }
+
+    /// The ratio of width to height that views beside each other keep at least for an object of a size at a position;
+    /// `None` for other views.
+    pub(crate) fn widened_by(&self, position: Vec3, size: f32) -> Option<f32> {
+        self.is_beside().then(|| self.width_around(std::iter::once((position, size))).clamp(1.0, WIDE))
+    }
+
     fn width_of_objects(&self) -> f32 {
+        let objects = self.objects.iter().filter(|object| object.visible);
+        self.width_around(objects.map(|object| (object.position, object.size)))
+    }
+
+    /// The ratio of width to height of a picture that shows objects at positions with sizes from side to side, with a
+    /// margin: those that a wide picture shows from top to bottom. Floors and backdrops reach beyond it, and do not count.
+    fn width_around(&self, objects: impl Iterator<Item = (Vec3, f32)>) -> f32 {
         let to_eye = orientation(self.observer.direction).transpose();
         let up = (0.5 * self.observer.field_of_view.to_radians()).tan();
-        let of_object = |object: &Object| {
-            let seen = to_eye * (object.position - self.observer.position);
-            let (depth, radius) = (-seen.z, 0.5 * object.size);
+        let of_object = |(position, size): (Vec3, f32)| {
+            let seen = to_eye * (position - self.observer.position);
+            let (depth, radius) = (-seen.z, 0.5 * size);
             if depth <= radius + NEAR || seen.x.abs() > WIDE * up * depth {
                 return 0.0;
             }
             if outer_edge(seen.y, depth, radius) <= up { outer_edge(seen.x, depth, radius) } else { 0.0 }
         };
-        let objects = self.objects.iter().filter(|object| object.visible);
         MARGIN * objects.map(of_object).fold(0.0, f32::max) / up
     }
 

@@ -1,6 +1,8 @@
 //! The arrows along the axes of the room, which move the selection.
 
-use bevy_egui::egui::Pos2;
+use std::f32::consts::TAU;
+
+use bevy_egui::egui::{Pos2, Vec2};
 use glam::Vec3;
 
 use super::{
@@ -19,7 +21,12 @@ use crate::{
 
 /// Minimum projected length of an arrow, in points: an axis seen end on cannot be dragged along.
 const SHORTEST: f32 = 30.0;
-/// Maximum number of other objects that arrows at an edge of the view keep clear of, and the radius in points from which
+/// Number of directions from an object, and of distances from it, in which arrows beside it are tried.
+const WAYS: u8 = 16;
+const STEPS: u8 = 8;
+/// Lengths of arrows beside an object that are tried, relative to the usual one there.
+const SHORTER: [f32; 3] = [1.0, 0.8, 0.64];
+/// Maximum number of other objects that arrows beside an object keep clear of, and the radius in points from which
 /// they are floors and rooms.
 const MOST_OTHERS: usize = 256;
 const WIDEST: f32 = 600.0;
@@ -44,7 +51,7 @@ pub(super) static SORT: Sort = Sort {
                 };
                 around.filter(is_clear).unwrap_or_else(|| {
                     let others = others(session, target.at, lens);
-                    arrows_at_edge(target.at, *middle, STUB * part * ARM, (*extent, &others[..]), lens)
+                    arrows_beside(target.at, *middle, STUB * part * ARM, (*extent, &others[..]), lens)
                 })
             }
             (Body::Light(light, _), HandleMode::Move) if light.position.is_some() => {
@@ -94,19 +101,26 @@ fn others(session: &Session, at: Vec3, lens: &Lens) -> Vec<(Pos2, f32)> {
     objects.take(MOST_OTHERS).filter_map(disc).filter(|(_, radius)| *radius < WIDEST).collect()
 }
 
-/// Arrows for an object that leaves no room around it, at an edge of the view where they cover it and the discs over
-/// others least. They are dragged like any others: only the motion of the pointer counts.
-fn arrows_at_edge(
-    at: Vec3,
-    middle: Pos2,
-    arm: f32,
-    (extent, others): (Option<Extent>, &[(Pos2, f32)]),
-    lens: &Lens,
-) -> Vec<Placed> {
+/// Places for the middle of arrows beside an object, the nearest first. Those below come before others at the same
+/// distance: badges and captions tend to be at the top.
+fn origins(middle: Pos2, arm: f32, extent: Extent, lens: &Lens) -> impl Iterator<Item = Pos2> {
+    let step = (LONGEST * arm + LETTER + LETTER_RADIUS) / f32::from(STEPS);
+    let way = |k: u8| {
+        // Downwards, then to either side in turn.
+        let turned = f32::from(k.div_ceil(2)) * if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        Vec2::angled(0.25 * TAU + turned / f32::from(WAYS) * TAU)
+    };
+    let all = (0..=STEPS).flat_map(move |n| (0..WAYS).map(move |k| (n, way(k))));
+    let all = all.map(move |(n, way)| middle + way * (extent.towards(way) + f32::from(n) * step));
+    let rect = lens.rect;
+    all.filter(move |at| rect.contains(*at))
+}
+
+/// Places for the middle of arrows at the edges of the view, the bottom corners first.
+fn edges(arm: f32, lens: &Lens) -> [Pos2; 8] {
     let inset = (LONGEST * arm + LETTER + LETTER_RADIUS).min(0.5 * lens.rect.size().min_elem());
     let inside = lens.rect.shrink(inset);
-    // Bottom corners first: badges and captions tend to be at the top.
-    let places = [
+    [
         inside.left_bottom(),
         inside.right_bottom(),
         inside.right_top(),
@@ -115,15 +129,42 @@ fn arrows_at_edge(
         inside.center_top(),
         inside.left_center(),
         inside.right_center(),
-    ];
+    ]
+}
+
+/// Arrows for an object that leaves no room around it: in the view, as near to the object as they cover neither it nor
+/// the discs over others, and shorter where that takes less room; at an edge of the view for an object that fills it.
+/// Where they cover something everywhere, they are where they cover least. They are dragged like any others: only the
+/// motion of the pointer counts.
+fn arrows_beside(
+    at: Vec3,
+    middle: Pos2,
+    arm: f32,
+    (extent, others): (Option<Extent>, &[(Pos2, f32)]),
+    lens: &Lens,
+) -> Vec<Placed> {
+    let inside = lens.rect.shrink(LETTER_RADIUS);
     let mut best: Option<(f32, Vec<Placed>)> = None;
-    for origin in places {
+    let lengths = SHORTER.map(|part| part * arm);
+    let near = lengths.into_iter().flat_map(|arm| {
+        let origins = extent.into_iter().flat_map(move |extent| origins(middle, arm, extent, lens));
+        origins.map(move |origin| (true, arm, origin))
+    });
+    let edges = edges(arm, lens).map(|origin| (false, arm, origin));
+    for (is_near, arm, origin) in near.chain(edges) {
+        // Near the object is better than far away from everything.
+        if !is_near && best.as_ref().is_some_and(|(most, _)| *most > -FIRST) {
+            break;
+        }
         let all = arrows(at, [origin, middle], arm, None, lens);
-        let beside = |p: Pos2| others.iter().map(move |(other, radius)| p.distance(*other) - radius);
-        let beside = all.iter().flat_map(Placed::points).flat_map(beside).fold(f32::INFINITY, f32::min);
+        let is_inside = all.iter().flat_map(Placed::points).all(|p| inside.contains(p));
         let own = all.iter().map(|handle| gap(handle, middle, extent)).fold(f32::INFINITY, f32::min);
+        let beside = |p: Pos2| others.iter().map(move |(other, radius)| p.distance(*other) - radius);
         // Others count where the object itself is not covered.
-        let free = if own < 0.0 { own - FIRST } else { own.min(beside) };
+        let free = match own < 0.0 || !is_inside {
+            true => own.min(0.0) - if is_inside { FIRST } else { 2.0 * FIRST },
+            false => all.iter().flat_map(Placed::points).flat_map(beside).fold(0.0, f32::min),
+        };
         if free >= 0.0 {
             return all;
         }
@@ -169,4 +210,69 @@ fn arrows(
     }
     all.push(plane::disc(at, origin, arm, clear, &all));
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_egui::egui::{Rect, pos2, vec2};
+
+    use super::*;
+    use crate::{
+        panel::handles::shape::{Target, placed},
+        registry::Registry,
+        scene::Scene,
+    };
+
+    /// The handles that move a sphere at a position, in a picture of a size, with the picture, and the place and the
+    /// extent of the sphere in it.
+    fn handles(position: Vec3, [width, height]: [f32; 2]) -> (Vec<Placed>, Rect, Pos2, Extent) {
+        let object = Object { position, size: 2.1, ..Object::default() };
+        let session = Session::new(Scene { objects: vec![object], ..Scene::default() });
+        let registry = Registry::builtin();
+        let rect = Rect::from_min_size(pos2(300.0, 40.0), vec2(width, height));
+        let lens = Lens::of(&session, rect);
+        let target = Target::of(&session, &registry, None, Vec::new).expect("selected");
+        let all = placed(&target, HandleMode::Move, &session, &lens);
+        let middle = lens.project(position).expect("in view");
+        let extent = Extent::of(&target, middle, &lens).expect("in front of the camera");
+        (all, rect, middle, extent)
+    }
+
+    #[test]
+    fn arrows_stay_near_an_object_among_others() {
+        let session = || {
+            let object = |x: f32| Object { position: Vec3::new(x, 5.0, 5.0), size: 2.1, ..Object::default() };
+            Session::new(Scene { objects: [2.75, 5.0, 7.25].map(object).into(), ..Scene::default() })
+        };
+        for size in [vec2(900.0, 500.0), vec2(360.0, 210.0)] {
+            let (session, registry) = (session(), Registry::builtin());
+            let rect = Rect::from_min_size(pos2(300.0, 40.0), size);
+            let lens = Lens::of(&session, rect);
+            let target = Target::of(&session, &registry, None, Vec::new).expect("selected");
+            let middle = lens.project(target.at).expect("in view");
+            let extent = Extent::of(&target, middle, &lens);
+            let all = placed(&target, HandleMode::Move, &session, &lens);
+            let nearest = all.iter().map(|handle| gap(handle, middle, extent)).fold(f32::INFINITY, f32::min);
+            assert!(!all.is_empty() && nearest < 24.0, "{size:?}: {nearest} points from the object");
+        }
+    }
+
+    #[test]
+    fn arrows_stay_near_an_object_at_the_edge_of_the_view() {
+        for position in [[2.75, 5.0, 5.0], [7.25, 5.0, 5.0], [5.0, 6.6, 5.0], [2.0, 3.6, 5.0]].map(Vec3::from)
+        {
+            for size in [[900.0, 620.0], [560.0, 420.0], [420.0, 260.0]] {
+                let (all, rect, middle, extent) = handles(position, size);
+                let here = format!("{position} in {size:?}");
+                let points: Vec<_> = all.iter().flat_map(Placed::points).collect();
+                let apart: Vec<_> =
+                    points.iter().map(|p| p.distance(middle) - extent.towards(*p - middle)).collect();
+                let nearest = apart.iter().copied().fold(f32::INFINITY, f32::min);
+                assert!((-1.0..24.0).contains(&nearest), "{here}: {nearest} points from the object");
+                let farthest = apart.into_iter().fold(0.0, f32::max);
+                assert!(farthest < 2.5 * ARM, "{here}: {farthest} points from the object");
+                assert!(points.iter().all(|p| rect.contains(*p)), "{here}: {points:?} outside {rect:?}");
+            }
+        }
+    }
 }

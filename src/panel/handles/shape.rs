@@ -30,8 +30,8 @@ pub(super) const DISC: f32 = 6.0;
 const REACH: f32 = 6.0;
 /// Distance of handles from their object, which they must not cover, in points.
 pub(super) const CLEAR: f32 = 7.0;
-/// Minimum length of an arrow beyond the object, relative to [`ARM`]; also the length of arrows at the edge of the
-/// view.
+/// Minimum length of an arrow beyond the object, relative to [`ARM`]; also the length of arrows beside an object that
+/// leaves no room around it.
 pub(super) const STUB: f32 = 0.5;
 /// Grab radius of a letter, in points.
 pub(super) const LETTER_RADIUS: f32 = 8.0;
@@ -225,7 +225,7 @@ pub(super) struct Extent([Vec2; 3]);
 
 impl Extent {
     /// Extent of the target's object; `None` if the target is a light or an axis ends behind the camera.
-    fn of(target: &Target, middle: Pos2, lens: &Lens) -> Option<Self> {
+    pub(super) fn of(target: &Target, middle: Pos2, lens: &Lens) -> Option<Self> {
         let Body::Object(object, half) = target.body else { return None };
         let turned = rotation(object.rotation);
         let axis = |i: usize| {

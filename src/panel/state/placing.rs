@@ -19,6 +19,7 @@ use crate::{
 use block::Block;
 
 mod block;
+mod copy;
 mod lamp;
 mod several;
 
@@ -37,12 +38,9 @@ const HIGHLIGHTS: f32 = 0.006;
 /// Fraction of the lit pixels that are brightened at least that much.
 const VISIBLE_PART: f32 = 0.05;
 
-/// Distances of a copy from the original, in widths or heights of a copy; farther away it would no longer be beside it.
+/// Distances of copies of lights and of several parts from the originals, in widths or heights of a copy; farther away
+/// they would no longer be beside them.
 const APART: [f32; 8] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
-/// Distances of a copy that stands a little in the original rather than out of the picture, the largest first.
-const CLOSE: [f32; 9] = [0.93, 0.88, 0.83, 0.78, 0.73, 0.68, 0.63, 0.58, 0.53];
-/// Distances at which a copy may cover up to half of the original.
-const OVER: [f32; 2] = [0.45, 0.7];
 /// Width or height of a copy that leaves a small gap, in multiples of the copy's reach.
 const GAP: f32 = 2.2;
 /// Factor from bounding boxes and spheres to the slightly smaller outlines.
@@ -102,53 +100,6 @@ impl<'a> Stand<'a> {
         (anywhere.unwrap_or_else(|| self.lattice(wanted)), size)
     }
 
-    /// Position of a copy of the object with the given index: beside the original as seen by the camera, at the same
-    /// depth. Prefers being cut off by the edge of the picture over standing in the original, and that over standing in
-    /// others.
-    pub(super) fn copy(&self, index: usize) -> Vec3 {
-        let objects = &self.scene.objects;
-        let Some(original) = objects.get(index) else { return self.middle() };
-        let block = Block::of(original, self.registry);
-        let others = objects.iter().enumerate().filter(|(i, _)| *i != index);
-        let others: Vec<_> = others.map(|(_, other)| Block::of(other, self.registry)).collect();
-        // Objects behind or around the original are not neighbours.
-        let beside: Vec<_> =
-            others.iter().filter(|other| !self.hides(other, &block.at(original.position), true)).collect();
-        let clear = |p: Vec3| {
-            let block = block.at(p);
-            self.has_room(&block)
-                && others.iter().all(|other| !block.touches(other))
-                && beside.iter().all(|other| !self.hides(other, &block, false))
-        };
-        // A copy of an object outside the picture is still placed beside it.
-        let out = !self.sees(original.position, 0.0);
-        let whole = |p: Vec3| out || self.shows(&block.at(p));
-        let middle = |p: Vec3| out || self.sees(p, 0.0);
-        let axes = [Vec3::X, Vec3::Y].map(|axis| self.turn * axis);
-        let steps = axes.map(|axis| GAP * block.reach(axis).max(0.05));
-        let place =
-            |counts: &[f32], fits: &dyn Fn(Vec3) -> bool| self.beside(original.position, steps, counts, fits);
-        // Two objects at the same position look like one.
-        let least = 0.2 * block.radius;
-        let another = |p: Vec3| {
-            self.is_inside(p, Vec3::ZERO)
-                && self.is_in_air(p, 0.0)
-                && others.iter().all(|other| other.centre.distance(p) > least)
-        };
-        place(&APART, &|p| clear(p) && whole(p))
-            .or_else(|| place(&APART, &|p| clear(p) && middle(p)))
-            .or_else(|| place(&CLOSE, &|p| clear(p) && whole(p)))
-            .or_else(|| place(&CLOSE, &|p| clear(p) && middle(p)))
-            .or_else(|| place(&OVER, &|p| clear(p) && whole(p)))
-            .or_else(|| place(&OVER, &|p| clear(p) && middle(p)))
-            .or_else(|| place(&OVER, &|p| another(p) && whole(p)))
-            .or_else(|| place(&OVER, &|p| another(p) && middle(p)))
-            .or_else(|| place(&APART, &another))
-            .or_else(|| place(&OVER, &another))
-            .or_else(|| self.search(original.position, 0.55 * original.size, |p| self.free(p, block.radius)))
-            .unwrap_or_else(|| self.lattice(original.position))
-    }
-
     /// The nearest valid position beside another as seen by the camera, at the same depth: to the right, to the left,
     /// above or below, at the given numbers of steps. Sideways and upward steps may differ.
     fn beside(
@@ -192,12 +143,6 @@ impl<'a> Stand<'a> {
         // If the centres coincide, they define no separating direction.
         let ways = [Some(Vec2::X), Some(Vec2::Y), between.try_normalize()];
         ways.into_iter().flatten().all(|way| between.dot(way).abs() < reach(way))
-    }
-
-    /// True if a block is inside the room, and away from lights and cameras.
-    fn has_room(&self, block: &Block) -> bool {
-        let reach = Vec3::from([Vec3::X, Vec3::Y, Vec3::Z].map(|axis| block.reach(axis)));
-        self.is_inside(block.centre, reach.max(self.margin())) && self.is_in_air(block.centre, block.radius)
     }
 
     /// Position of a new light of a type.
@@ -510,40 +455,4 @@ fn clearance(radius: f32) -> f32 {
 /// Rounds to the given number of steps per metre.
 fn round(v: Vec3, steps: f32) -> Vec3 {
     (v * steps).round() / steps
-}
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use super::*;
-    use crate::{
-        panel::state::Session,
-        scene::load::{self, Defaults},
-    };
-
-    /// An object of a shipped scene, its copy, and whether the centre of the copy is in the picture.
-    fn copied(name: &str, index: usize) -> (Block, Block, bool) {
-        let registry = Registry::builtin();
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.json"));
-        let scene = load::file(&file, &registry, Defaults::Refuse).expect("legal").scene;
-        let session = Session::new(scene);
-        let stand = Stand::new(&session.document, &registry, session.facts.eye, session.facts.camera);
-        let original = stand.taken[index];
-        let copy = original.at(stand.copy(index));
-        (original, copy, stand.sees(copy.centre, 0.0))
-    }
-
-    #[test]
-    fn a_copy_with_little_room_stands_as_far_from_the_original_as_the_picture_reaches() {
-        let (original, copy, seen) = copied("models_from_files", 0);
-        assert!(seen && !copy.scaled(0.85).touches(&original.scaled(0.85)), "{copy:?} in {original:?}");
-    }
-
-    #[test]
-    fn a_copy_is_seen_in_the_narrow_views_of_a_comparison() {
-        let (original, copy, seen) = copied("compare_phong_blinn_phong", 0);
-        assert!(seen, "{copy:?}");
-        assert!(copy.centre.distance(original.centre) > 1.1 * original.radius, "{copy:?}");
-    }
 }

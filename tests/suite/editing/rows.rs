@@ -566,7 +566,7 @@ fn labels_in_the_window_suit_the_background() {
     scene.objects = vec![entry];
     let mut bench = Bench::new(Session::new(scene.expanded(&Registry::builtin()).expect("legal")));
     let plates = |bench: &mut Bench, palette: theme::Palette| {
-        let fill = palette.panel.gamma_multiply(0.88);
+        let fill = palette.plate();
         let is = |shape: &Shape| matches!(shape, Shape::Rect(rect) if rect.fill == fill);
         bench.shapes().iter().filter(|shape| is(shape)).count()
     };

@@ -226,7 +226,7 @@ fn lines(bench: &mut Bench, colour: Color32) -> Vec<Vec<Pos2>> {
 
 /// The texts over the picture: badges, caption, axes.
 fn written(bench: &mut Bench) -> Vec<Rect> {
-    let [plate, disc] = [0.88, 0.72].map(|part| theme::DARK.panel.gamma_multiply(part));
+    let (plate, disc) = (theme::DARK.plate(), theme::DARK.panel.gamma_multiply(0.72));
     let part = |shape| match shape {
         Shape::Rect(r) if r.fill == plate => Some(r.rect),
         Shape::Circle(c) if c.fill == disc => {

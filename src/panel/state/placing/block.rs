@@ -66,6 +66,15 @@ impl Block {
         edges.map(|(axis, half)| half * axis.dot(way).abs()).sum::<f32>().min(self.radius)
     }
 
+    /// The corners of the box.
+    pub(super) fn corners(&self) -> [Vec3; 8] {
+        let edges: [Vec3; 3] = std::array::from_fn(|i| self.half[i] * self.axes[i]);
+        std::array::from_fn(|n| {
+            let side = |i: usize| if (n >> i) & 1 == 0 { -edges[i] } else { edges[i] };
+            self.centre + side(0) + side(1) + side(2)
+        })
+    }
+
     /// True if a position is inside the sphere.
     pub(super) fn ball_holds(&self, p: Vec3) -> bool {
         p.distance(self.centre) < self.radius
@@ -107,6 +116,8 @@ mod tests {
         assert!(Vec3::from(reaches).distance(Vec3::new(2.25, 1.0, 1.0)) < 1e-6, "{around:?}");
         assert!((Block::end(&balls, Vec3::NEG_X) + 0.5).abs() < 1e-6);
         assert!((around.scaled(0.5).reach(Vec3::X) - 1.125).abs() < 1e-6);
+        let corners = around.corners().map(|corner| (corner - around.centre).abs());
+        assert!(corners.iter().all(|c| c.distance(Vec3::new(2.25, 1.0, 1.0)) < 1e-6), "{corners:?}");
     }
 
     #[test]

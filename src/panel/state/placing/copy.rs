@@ -1,0 +1,355 @@
+//! The position of a copy of an object, by the bounds of all objects in the picture.
+
+use glam::{Vec2, Vec3};
+
+use super::{GAP, Stand, block::Block, round};
+use crate::scene::{Object, observer::WIDE};
+
+/// Distances of a copy from the original, in widths or heights of a copy with a small gap: with that gap, closer down
+/// to where the two touch, and then farther away in steps of [`FARTHER`].
+const NEXT_TO: [f32; 6] = [1.0, 0.98, 0.96, 0.94, 0.925, 0.915];
+const FARTHER: f32 = 0.03;
+const MOST_FARTHER: u8 = 150;
+/// Number of places across and down the picture that are tried all over it.
+const PLACES: [i16; 2] = [48, 32];
+/// Number of points across a copy that are tested for being covered or cut off.
+const POINTS: i16 = 12;
+/// Cost of a covered part of a copy relative to that of a part that is cut off.
+const COVERED: f32 = 2.0;
+/// Cost of a copy that is cut off by more than half.
+const MOSTLY_CUT: f32 = 1.0;
+/// Cost of a copy that is neither level with the original nor right above or below it.
+const ASKEW: f32 = 0.03;
+
+/// Bounds in the picture, as tangents to the right and up.
+#[derive(Clone, Copy, Debug)]
+struct Framed {
+    low: Vec2,
+    high: Vec2,
+}
+
+impl Framed {
+    fn middle(&self) -> Vec2 {
+        0.5 * (self.low + self.high)
+    }
+
+    fn half(&self) -> Vec2 {
+        0.5 * (self.high - self.low)
+    }
+
+    fn is_within(&self, [across, up]: [f32; 2]) -> bool {
+        let opening = Vec2::new(across, up);
+        self.low.cmpge(-opening).all() && self.high.cmple(opening).all()
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        self.low.cmplt(other.high).all() && other.low.cmplt(self.high).all()
+    }
+
+    fn holds(&self, p: Vec2) -> bool {
+        self.low.cmple(p).all() && self.high.cmpge(p).all()
+    }
+
+    /// True if a position is in the ellipse within the bounds.
+    fn covers(&self, p: Vec2) -> bool {
+        ((p - self.middle()) / self.half()).length_squared() <= 1.0
+    }
+}
+
+/// The tangents of the angles at which a ball begins and ends that is aside of the line of sight. It is wholly in front
+/// of the camera.
+fn edges(aside: f32, depth: f32, radius: f32) -> [f32; 2] {
+    let rest = (aside * aside + depth * depth - radius * radius).sqrt();
+    [-1.0, 1.0].map(|side| (aside * depth + side * radius * rest) / (depth * depth - radius * radius))
+}
+
+/// An object, and what its copy keeps clear of.
+struct Around<'s> {
+    stand: &'s Stand<'s>,
+    original: &'s Object,
+    block: Block,
+    /// The bounds of the original and of its neighbours.
+    neighbours: Vec<Framed>,
+    /// Floors and backdrops, on which a copy may stand, but not in them.
+    ground: Vec<Block>,
+    /// True if the original is out of the picture: its copy stands beside it nevertheless.
+    is_out: bool,
+}
+
+impl Stand<'_> {
+    /// Position of a copy of the object with the given index: beside the original as seen by the camera, at the same
+    /// depth, wholly in the picture and over no other object; farther away at that depth if there is no such place, and
+    /// where the least of it is covered or cut off if the picture has none.
+    pub(in crate::panel::state) fn copy(&self, index: usize) -> Vec3 {
+        let Some(original) = self.scene.objects.get(index) else { return self.middle() };
+        let around = Around::new(self, original, index);
+        let places: Vec<_> = around.along_axes().chain(around.all_over()).collect();
+        let clear = |widens: bool| places.iter().copied().find(|p| around.is_clear(*p, widens));
+        clear(false)
+            .or_else(|| clear(true))
+            .or_else(|| around.least_hidden(&places))
+            .or_else(|| {
+                self.search(original.position, 0.55 * original.size, |p| self.free(p, around.block.radius))
+            })
+            .unwrap_or_else(|| self.lattice(original.position))
+    }
+
+    /// The bounds of a block in the picture; `None` if it is around the camera or behind it.
+    fn framed(&self, block: &Block) -> Option<Framed> {
+        let to_camera = self.turn.inverse();
+        let seen = to_camera * (block.centre - self.eye);
+        let depth = -seen.z;
+        if depth <= block.radius.max(0.1) {
+            return None;
+        }
+        let [[left, right], [bottom, top]] = [seen.x, seen.y].map(|aside| edges(aside, depth, block.radius));
+        let mut all = Framed { low: Vec2::new(left, bottom), high: Vec2::new(right, top) };
+        let corners = block.corners().map(|corner| to_camera * (corner - self.eye));
+        if corners.iter().all(|corner| corner.z < -0.1) {
+            let flat = corners.map(|corner| corner.truncate() / -corner.z);
+            all.low = all.low.max(flat.into_iter().fold(Vec2::INFINITY, Vec2::min));
+            all.high = all.high.min(flat.into_iter().fold(Vec2::NEG_INFINITY, Vec2::max));
+        }
+        Some(all)
+    }
+
+    /// What the picture shows at least if views beside each other are as wide as they can become, as tangents.
+    fn widest(&self) -> Vec2 {
+        let [across, up] = self.opening;
+        Vec2::new(across.max(WIDE * up), up)
+    }
+
+    /// True if a block is inside the room, and away from lights and cameras.
+    fn has_room(&self, block: &Block) -> bool {
+        let reach = Vec3::from([Vec3::X, Vec3::Y, Vec3::Z].map(|axis| block.reach(axis)));
+        self.is_inside(block.centre, reach.max(self.margin())) && self.is_in_air(block.centre, block.radius)
+    }
+}
+
+impl<'s> Around<'s> {
+    fn new(stand: &'s Stand<'s>, original: &'s Object, index: usize) -> Self {
+        let block = Block::of(original, stand.registry);
+        let is_out = !stand.sees(original.position, 0.0);
+        let own = stand.framed(&block);
+        let (mut neighbours, mut ground): (Vec<_>, Vec<_>) = (own.into_iter().collect(), Vec::new());
+        let (at, depth) = stand.flat(block.centre);
+        let picture = Framed { low: -stand.widest(), high: stand.widest() };
+        for (_, other) in stand.taken.iter().enumerate().filter(|(i, _)| *i != index) {
+            let framed = stand.framed(other);
+            // What is behind or around the original, and larger, is no neighbour.
+            let is_ground = |framed: &Framed| {
+                let is_larger = own
+                    .is_none_or(|own| framed.half().element_product() > 2.0 * own.half().element_product());
+                framed.holds(at) && is_larger && stand.flat(other.centre).1 + other.radius > depth
+            };
+            let is_in_sight = |framed: &Framed| is_out || framed.meets(&picture);
+            neighbours.extend(framed.filter(|framed| !is_ground(framed) && is_in_sight(framed)));
+            // A room holds the camera or the original.
+            let is_room = other.gap(stand.eye) <= 0.0 || other.gap(block.centre) <= 0.0;
+            if !is_room && (is_out || framed.is_none_or(|framed| is_ground(&framed))) {
+                ground.push(*other);
+            }
+        }
+        Self { stand, original, block, neighbours, ground, is_out }
+    }
+
+    /// The place of a copy at an offset to the right and up, at the depth of the original.
+    fn at(&self, offset: Vec2) -> Vec3 {
+        // Fine enough to preserve the depth.
+        round(self.original.position + self.stand.turn * offset.extend(0.0), 10.0 * self.stand.steps())
+    }
+
+    /// Places beside the original, the nearest first: to the right, to the left, above and below.
+    fn along_axes(&self) -> impl Iterator<Item = Vec3> {
+        let [side, up] =
+            [Vec3::X, Vec3::Y].map(|axis| GAP * self.block.reach(self.stand.turn * axis).max(0.05));
+        let farther = (1..=MOST_FARTHER).map(|n| 1.0 + FARTHER * f32::from(n));
+        let ways = [side * Vec2::X, side * Vec2::NEG_X, up * Vec2::Y, up * Vec2::NEG_Y];
+        NEXT_TO.into_iter().chain(farther).flat_map(move |count| ways.map(|way| self.at(count * way)))
+    }
+
+    /// Places all over the picture, the nearest first; none for an object out of it.
+    fn all_over(&self) -> impl Iterator<Item = Vec3> {
+        let (at, depth) = self.stand.flat(self.original.position);
+        let opening = self.stand.widest();
+        let [columns, rows] = PLACES;
+        let step = 2.0 * opening / Vec2::new(f32::from(columns), f32::from(rows));
+        let mut offsets = Vec::new();
+        for i in -columns..=columns {
+            for j in -rows..=rows {
+                let offset = step * Vec2::new(f32::from(i), f32::from(j));
+                if !self.is_out && (at + offset).abs().cmple(opening).all() {
+                    offsets.push(depth * offset);
+                }
+            }
+        }
+        offsets.sort_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+        offsets.into_iter().map(|offset| self.at(offset))
+    }
+
+    /// What the picture shows at least, as tangents across and up; if it `widens`, as soon as a copy stands there, as views
+    /// beside each other do.
+    fn opening(&self, p: Vec3, widens: bool) -> [f32; 2] {
+        let [across, up] = self.stand.opening;
+        let widens = widens && self.original.visible;
+        let keeps = widens.then(|| self.stand.scene.widened_by(p, self.original.size)).flatten();
+        [across.max(keeps.map_or(0.0, |keeps| keeps * up)), up]
+    }
+
+    /// True if a copy there stands in nothing, is wholly in the picture, and is over no neighbour.
+    fn is_clear(&self, p: Vec3, widens: bool) -> bool {
+        let block = self.block.at(p);
+        let is_seen = |framed: &Framed| {
+            (self.is_out || framed.is_within(self.opening(p, widens)))
+                && self.neighbours.iter().all(|other| !other.meets(framed))
+        };
+        self.stand.has_room(&block)
+            && self.stand.framed(&block).map_or(self.is_out, |framed| is_seen(&framed))
+            && self.ground.iter().all(|other| !block.touches(other))
+    }
+
+    /// The place of which the least is covered or cut off, with its centre in the picture if possible.
+    fn least_hidden(&self, places: &[Vec3]) -> Option<Vec3> {
+        let stand = self.stand;
+        // Two objects at the same position look like one.
+        let least = 0.2 * self.block.radius;
+        let is_another = |p: Vec3| {
+            stand.is_inside(p, Vec3::ZERO)
+                && stand.is_in_air(p, 0.0)
+                && stand.taken.iter().all(|other| other.centre.distance(p) > least)
+        };
+        let find = |is_seen: &dyn Fn(Vec3) -> bool| {
+            let places = places.iter().copied().filter(|p| is_seen(*p) && is_another(*p));
+            let costs = places.map(|p| (self.hidden(p), p));
+            costs.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, p)| p)
+        };
+        find(&|p| self.is_out || stand.sees(p, 0.0)).or_else(|| find(&|_| true))
+    }
+
+    /// The part of a copy there that is cut off, and that which is covered or stands in something, as a cost.
+    fn hidden(&self, p: Vec3) -> f32 {
+        let block = self.block.at(p);
+        let Some(framed) = self.stand.framed(&block) else { return f32::MAX };
+        let opening = Vec2::from(self.opening(p, true));
+        let near: Vec<_> = self.neighbours.iter().filter(|other| other.meets(&framed)).collect();
+        let (mut count, mut cut, mut covered) = (0.0f32, 0.0, 0.0);
+        for i in 0..POINTS {
+            for j in 0..POINTS {
+                let part = Vec2::new(f32::from(i), f32::from(j)) + 0.5;
+                let part = 2.0 * part / f32::from(POINTS) - 1.0;
+                let point = framed.middle() + part * framed.half();
+                if part.length_squared() > 1.0 {
+                    continue;
+                }
+                count += 1.0;
+                if !self.is_out && point.abs().cmpgt(opening).any() {
+                    cut += 1.0;
+                } else if near.iter().any(|other| other.covers(point)) {
+                    covered += 1.0;
+                }
+            }
+        }
+        let stands_in = self.ground.iter().any(|other| block.touches(other));
+        let mostly = if cut > 0.5 * count { MOSTLY_CUT } else { 0.0 };
+        let offset = (self.stand.turn.inverse() * (p - self.original.position)).truncate().abs();
+        let askew = if offset.min_element() > 0.02 * self.block.radius { ASKEW } else { 0.0 };
+        (COVERED * covered + cut) / count + mostly + askew + if stands_in { COVERED } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::{
+        document::Selection,
+        panel::state::{Action, Session},
+        registry::Registry,
+        scene::load::{self, Defaults},
+    };
+
+    fn session_of(name: &str) -> Session {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.json"));
+        let scene = load::file(&file, &Registry::builtin(), Defaults::Refuse).expect("legal").scene;
+        Session::new(scene)
+    }
+
+    fn stand<'a>(session: &'a Session, registry: &'a Registry) -> Stand<'a> {
+        Stand::new(&session.document, registry, session.facts.eye, session.facts.camera)
+    }
+
+    /// An object of a shipped scene, its copy, and whether the centre of the copy is in the picture.
+    fn copied(name: &str, index: usize) -> (Block, Block, bool) {
+        let (registry, session) = (Registry::builtin(), session_of(name));
+        let stand = stand(&session, &registry);
+        let original = stand.taken[index];
+        let copy = original.at(stand.copy(index));
+        (original, copy, stand.sees(copy.centre, 0.0))
+    }
+
+    #[test]
+    fn a_copy_with_little_room_stands_as_far_from_the_original_as_the_picture_reaches() {
+        let (original, copy, seen) = copied("models_from_files", 0);
+        assert!(seen && !copy.scaled(0.85).touches(&original.scaled(0.85)), "{copy:?} in {original:?}");
+    }
+
+    #[test]
+    fn a_copy_is_seen_in_the_narrow_views_of_a_comparison() {
+        let (original, copy, seen) = copied("compare_phong_blinn_phong", 0);
+        assert!(seen, "{copy:?}");
+        assert!(copy.centre.distance(original.centre) > 1.1 * original.radius, "{copy:?}");
+    }
+
+    /// The bounds of all objects after copies of one were made, each wholly in the picture and over no other object.
+    fn all_clear(what: &str, mut session: Session, index: usize, copies: usize) {
+        let registry = Registry::builtin();
+        for _ in 0..copies {
+            let _ = session.apply(Action::Duplicate(Selection::Object(index)), &registry);
+        }
+        let stand = stand(&session, &registry);
+        let all: Vec<_> = stand.taken.iter().filter_map(|block| stand.framed(block)).collect();
+        let depths = stand.taken.iter().map(|block| stand.flat(block.centre).1);
+        let depths: Vec<_> = depths.skip(index).take(copies + 1).collect();
+        assert!(depths.iter().all(|depth| (depth - depths[0]).abs() < 0.02), "{what}: {depths:?}");
+        for (i, one) in all.iter().enumerate() {
+            assert!(one.is_within(stand.opening), "{what}: {i} is cut off: {one:?} in {:?}", stand.opening);
+            assert!(all[..i].iter().all(|other| !other.meets(one)), "{what}: {i} overlaps: {all:?}");
+        }
+    }
+
+    #[test]
+    fn copies_are_whole_and_overlap_nothing_where_the_picture_has_room() {
+        all_clear("default", session_of("default"), 0, 2);
+        let mut beside = session_of("default");
+        beside.document.amend(|scene| {
+            scene.comparison.layout = crate::scene::comparison::Layout::SideBySide;
+            scene.variants.push(crate::scene::Variant::default());
+        });
+        all_clear("beside another view", beside, 0, 2);
+        // No room on the axes of the picture, but in its corners.
+        let object =
+            |x: f32, y: f32| Object { position: Vec3::new(x, y, 5.0), size: 0.9, ..Object::default() };
+        let mut cross = session_of("default");
+        cross.document.amend(|scene| {
+            scene.objects =
+                [(0.0, 0.0), (1.1, 0.0), (2.2, 0.0), (-1.1, 0.0), (-2.2, 0.0), (0.0, 1.1), (0.0, -1.1)]
+                    .map(|(x, y)| object(5.0 + x, 5.0 + y))
+                    .into();
+        });
+        all_clear("a cross", cross, 0, 1);
+    }
+
+    #[test]
+    fn a_copy_without_room_is_covered_and_cut_off_least() {
+        let (registry, session) = (Registry::builtin(), session_of("compare_phong_blinn_phong"));
+        let stand = stand(&session, &registry);
+        let around = Around::new(&stand, &session.document.objects[0], 0);
+        let copy = stand.copy(0);
+        let least = around.hidden(copy);
+        assert!(least > 0.1, "there is no free place, {least}");
+        for p in around.all_over().filter(|p| stand.sees(*p, 0.0)) {
+            assert!(around.hidden(p) >= least, "{p} rather than {copy}");
+        }
+    }
+}
