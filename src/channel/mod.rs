@@ -31,8 +31,10 @@ use crate::{
 
 pub use crate::debug::{DebugChannel, Legend, colours};
 pub use layer::{Layer, LayerKind, layers, settle, too_large};
+pub use plate::{Plate, Spacing};
 
 mod layer;
+mod plate;
 
 /// A channel with its settings.
 #[derive(Clone, Copy, Debug, PartialEq)]

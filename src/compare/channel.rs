@@ -3,7 +3,7 @@
 use super::{
     canvas::{Canvas, Rect, in_corner},
     layout::areas,
-    legend::Plate,
+    legend::Lettered,
 };
 use crate::{channel::Legend, optics::viridis::viridis, scene::Comparison};
 
@@ -40,7 +40,7 @@ pub fn with_legends(
 /// rectangle, or `None` without room.
 fn draw(canvas: &mut Canvas, room: Rect, corner: [bool; 2], legend: &Legend) -> Option<Rect> {
     let [_, _, across, down] = room;
-    let plate = Plate::new(canvas.scale(), [across, down], legend, 2)?;
+    let plate = Lettered::new(canvas.scale(), [across, down], legend, 2)?;
     let place = in_corner(room, corner, plate.size, plate.margin);
     plate.draw(canvas, place, |at| (255.0 * viridis(at)).to_array().map(|c| c.round() as u8));
     Some(place)

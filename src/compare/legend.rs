@@ -6,7 +6,7 @@ use super::{
     pair::Largest,
 };
 use crate::{
-    channel::Legend,
+    channel::{Legend, Plate, Spacing},
     lettering::Lettering,
     scene::{
         comparison::{Channel, Compared, Comparison, Sign},
@@ -71,69 +71,82 @@ pub fn short(number: f32) -> String {
     trimmed(format!("{number:.*}", usize::try_from(digits).unwrap_or_default()))
 }
 
-/// The parts of a legend below each other on a plate: a title, a bar, and further colours with their meanings.
-pub(super) struct Plate<'a> {
+/// A legend laid out in letters of a picture.
+pub(super) struct Lettered<'a> {
     legend: &'a Legend,
     title: Vec<String>,
     px: f32,
-    /// A small gap, and the heights of the bar and of a line.
-    heights: [u32; 3],
+    /// Height of a line, and side of a square with a colour.
+    line: u32,
+    side: u32,
+    plate: Plate,
     /// The distance of the parts from the sides of the plate, and of the plate from those of the picture.
     pub(super) margin: u32,
     pub(super) size: [u32; 2],
 }
 
-impl<'a> Plate<'a> {
+impl<'a> Lettered<'a> {
     /// Lays out a legend at a scale, with so many gaps above the bar and below its numbers; a title that is too wide is
     /// broken into lines. `None` without room.
     pub(super) fn new(scale: f32, [across, down]: [u32; 2], legend: &'a Legend, gaps: u32) -> Option<Self> {
         let Legend { title, scale: numbers, colours } = legend;
         let (px, style) = (LETTERS_PX * scale, Lettering::Regular);
-        let [margin, gap, bar] = [10.0, 4.0, 14.0].map(|v| (v * scale).round() as u32);
+        let [margin, gap, bar] = [10.0, 4.0, 14.0].map(|v| (v * scale).round());
         let line = style.height(px);
-        let of_colours = colours.iter().map(|(_, text)| bar + 2 * gap + style.width(px, text));
-        let of_numbers =
-            |numbers: &[String; 3]| numbers.iter().map(|n| style.width(px, n)).sum::<u32>() + 4 * gap;
-        let least = of_colours.fold(numbers.as_ref().map_or(0, of_numbers), u32::max);
-        let width = style.width(px, title).max(least).min(across.saturating_sub(4 * margin));
+        let size = |text: &String| [style.width(px, text) as f32, line as f32];
+        let numbers: Vec<_> = numbers.iter().flatten().map(size).collect();
+        let texts: Vec<_> = colours.iter().map(|(_, text)| size(text)).collect();
+        let least =
+            if numbers.is_empty() { 0.0 } else { numbers.iter().map(|n| n[0]).sum::<f32>() + 4.0 * gap };
+        let below = if gaps > 1 { gap } else { 0.0 };
+        let spacing = Spacing {
+            padding: [margin; 2],
+            bar,
+            least,
+            gaps: [gap, 0.0, below],
+            beside: 2.0 * gap,
+            line: 0.0,
+        };
+        let room = across.saturating_sub(4 * margin as u32);
+        let all = |width: u32, lines: usize| {
+            let title = [width as f32, (line as usize * lines) as f32];
+            Plate::new(&spacing, title, &numbers, &texts)
+        };
+        let least = all(0, 0).size[0] as u32 - 2 * margin as u32;
+        let width = style.width(px, title).max(least).min(room);
         let title = style.lines(px, title, width, 3);
-        let of_scale = numbers.as_ref().map_or(0, |_| gaps * gap + bar + line);
-        let height = line * (title.len() + colours.len()) as u32 + of_scale;
         let is_wide = title.iter().any(|text| style.width(px, text) > width);
-        let fits = width > 0 && width >= least && !is_wide && height + 4 * margin <= down;
-        let size = [width + 2 * margin, height + 2 * margin];
-        fits.then_some(Self { legend, title, px, heights: [gap, bar, line], margin, size })
+        let plate = all(width, title.len());
+        let (size, margin) = (plate.size.map(|v| v as u32), margin as u32);
+        let fits = width > 0 && width >= least && !is_wide && size[1] + 2 * margin <= down;
+        fits.then_some(Self { legend, title, px, line, side: bar as u32, plate, margin, size })
     }
 
     /// Draws the legend in a rectangle of its size, with the colours of the bar from 0 to 1.
     pub(super) fn draw(&self, canvas: &mut Canvas, place: Rect, colour: impl Fn(f32) -> [u8; 3]) {
-        let (px, style, [gap, bar, line]) = (self.px, Lettering::Regular, self.heights);
-        let width = self.size[0] - 2 * self.margin;
+        let (px, style, plate) = (self.px, Lettering::Regular, &self.plate);
+        let at = |[x, y]: [f32; 2]| [place[0] + x as u32, place[1] + y as u32];
         canvas.fill(place, DARK, 0.88);
-        let (left, mut y) = (place[0] + self.margin, place[1] + self.margin);
+        let [left, mut top] = at(plate.title);
         for text in &self.title {
-            canvas.text(style, [left, y], px, text);
-            y += line;
+            canvas.text(style, [left, top], px, text);
+            top += self.line;
         }
-        if let Some(numbers) = &self.legend.scale {
-            y += gap;
-            canvas.fill([left - 1, y - 1, width + 2, bar + 2], BRIGHT, 0.5);
+        if let Some([x, y, width, height]) = plate.bar {
+            let ([left, top], [width, height]) = (at([x, y]), [width, height].map(|v| v as u32));
+            canvas.fill([left - 1, top - 1, width + 2, height + 2], BRIGHT, 0.5);
             for x in 0..width {
-                canvas.fill([left + x, y, 1, bar], colour((x as f32 + 0.5) / width as f32), 1.0);
+                canvas.fill([left + x, top, 1, height], colour((x as f32 + 0.5) / width as f32), 1.0);
             }
-            y += bar;
-            for (number, at) in numbers.iter().zip([0.0, 0.5, 1.0]) {
-                let free = width.saturating_sub(style.width(px, number));
-                canvas.text(style, [left + (at * free as f32) as u32, y], px, number);
-            }
-            y += line + gap;
         }
-        for (colour, text) in &self.legend.colours {
-            let top = y + line.saturating_sub(bar) / 2;
-            canvas.fill([left - 1, top - 1, bar + 2, bar + 2], BRIGHT, 0.5);
-            canvas.fill([left, top, bar, bar], *colour, 1.0);
-            canvas.text(style, [left + bar + 2 * gap, y], px, text);
-            y += line;
+        for (number, place) in self.legend.scale.iter().flatten().zip(&plate.numbers) {
+            canvas.text(style, at(*place), px, number);
+        }
+        for ((colour, text), [square, words]) in self.legend.colours.iter().zip(&plate.colours) {
+            let ([left, top], side) = (at(*square), self.side);
+            canvas.fill([left - 1, top - 1, side + 2, side + 2], BRIGHT, 0.5);
+            canvas.fill([left, top, side, side], *colour, 1.0);
+            canvas.text(style, at(*words), px, text);
         }
     }
 }
@@ -150,7 +163,7 @@ pub fn legend_alone(
 ) -> Vec<u8> {
     let mut canvas = Canvas { size, rgb8: ground.repeat(size[0] as usize * size[1] as usize) };
     let legend = legend_between(comparison, amplification, names.each_ref().map(String::as_str));
-    if let Some(plate) = Plate::new(canvas.scale(), size, &legend, 1) {
+    if let Some(plate) = Lettered::new(canvas.scale(), size, &legend, 1) {
         let [width, height] = plate.size;
         let place = [(size[0] - width) / 2, (size[1] - height) / 2, width, height];
         plate.draw(&mut canvas, place, |at| Colours::of(comparison.sign).at(at));
@@ -172,13 +185,13 @@ pub(super) fn draw(
 ) {
     let legend = legend_of(comparison, factor);
     let (size, usual) = (canvas.size, canvas.scale());
-    let scaled = |scale: f32| Plate::new(scale, size, &legend, 1);
+    let scaled = |scale: f32| Lettered::new(scale, size, &legend, 1);
     let wanted = px.into_iter().flat_map(|px| SMALLER.map(|part| part * px / LETTERS_PX));
     let mut plates: Vec<_> = wanted.filter_map(scaled).collect();
     if plates.is_empty() {
         plates.extend(scaled(usual));
     }
-    let place = |plate: &Plate<'_>, at_right: bool| {
+    let place = |plate: &Lettered<'_>, at_right: bool| {
         in_corner([0, 0, size[0], size[1]], [at_right, true], plate.size, plate.margin)
     };
     let hides_mark = |place: Rect| largest.is_some_and(|mark| hides(place, mark, usual));

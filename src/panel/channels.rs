@@ -9,7 +9,7 @@ use super::{
     wires,
 };
 use crate::{
-    channel::{DebugChannel, Legend, Setting},
+    channel::{DebugChannel, Legend, Plate, Setting, Spacing},
     optics::viridis::{VIRIDIS, viridis},
 };
 
@@ -28,8 +28,8 @@ pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(Deb
     Some((channel, setting.legend(scene, registry)))
 }
 
-/// Maximum height of a legend with all its colours, as a fraction of the picture: in a smaller picture there is the title
-/// alone, and where that would be cut, the name of the channel.
+/// Maximum height of a legend, as a fraction of the picture: in a smaller picture there are the title and the ends of
+/// the scale, or the title alone; where that would be cut, the name of the channel.
 const TALLEST: f32 = 0.4;
 /// The same beside other views, where pictures are small and objects large in them.
 const TALLEST_OF_SEVERAL: f32 = 0.25;
@@ -88,18 +88,27 @@ pub(super) fn legend(
     Some(place)
 }
 
-/// A legend in a picture, at most so tall: whole, or its title, or else the name of its channel. Returns also true if
-/// something is left out.
-fn that_fits(ui: &Ui, rect: Rect, legend: &Legend, name: &str, tallest: f32) -> (Plate, bool) {
-    let whole = Plate::new(ui, rect, legend, usize::MAX);
-    if whole.size.x <= rect.width() - 2.0 * EDGE && whole.size.y <= tallest {
+/// A legend in a picture, at most so tall: whole; or its title, or else the name of its channel, with the ends of the
+/// scale; or else without. Returns also true if something is left out.
+fn that_fits(ui: &Ui, rect: Rect, legend: &Legend, name: &str, tallest: f32) -> (LaidOut, bool) {
+    let fits =
+        |all: &LaidOut| all.size.x <= rect.width() - 2.0 * EDGE && all.size.y <= tallest && !all.title.elided;
+    let whole = LaidOut::new(ui, rect, legend, usize::MAX);
+    if fits(&whole) {
         return (whole, false);
     }
-    let title = Plate::new(ui, rect, &Legend::new(legend.title.clone()), 1);
+    let short = [legend.title.as_str(), name]
+        .map(|title| Legend { scale: legend.scale.clone(), ..Legend::new(title) });
+    let ends = short.iter().filter(|legend| legend.scale.is_some());
+    let mut ends = ends.map(|legend| LaidOut::with_ends(ui, rect, legend));
+    if let Some(ends) = ends.find(fits) {
+        return (ends, true);
+    }
+    let title = LaidOut::new(ui, rect, &Legend::new(legend.title.clone()), 1);
     if !title.title.elided {
         return (title, true);
     }
-    let named = |rows| Plate::new(ui, rect, &Legend::new(name.to_owned()), rows);
+    let named = |rows| LaidOut::new(ui, rect, &Legend::new(name.to_owned()), rows);
     let two = named(2);
     (if two.size.y <= tallest { two } else { named(1) }, true)
 }
@@ -112,79 +121,79 @@ fn in_words(legend: &Legend) -> String {
 }
 
 /// A legend, laid out.
-pub(super) struct Plate {
+pub(super) struct LaidOut {
     title: Arc<Galley>,
-    numbers: Option<[Arc<Galley>; 3]>,
+    numbers: Vec<Arc<Galley>>,
     colours: Vec<([u8; 3], Arc<Galley>)>,
-    scale: f32,
+    plate: Plate,
+    /// Side of the square that shows a colour.
+    swatch: f32,
     /// Its size, with the space around the text.
     pub(super) size: Vec2,
 }
 
-impl Plate {
-    /// Side of the square that shows a colour, at scale 1.
-    const SWATCH: f32 = 12.0;
-    const GAP: f32 = 4.0;
-    const PADDING: Vec2 = vec2(10.0, 6.0);
+impl LaidOut {
+    /// Width of the bar with three numbers below it, and minimum width of one between two, at scale 1.
+    const BARS: [f32; 2] = [180.0, 40.0];
 
     /// Lays out a legend for a picture, with at most so many rows of the title.
     pub(super) fn new(ui: &Ui, rect: Rect, legend: &Legend, rows: usize) -> Self {
+        let numbers: Vec<_> = legend.scale.iter().flatten().collect();
+        Self::of(ui, rect, legend, (&numbers[..], Self::BARS[0]), rows)
+    }
+
+    /// Lays out a legend with a title in one line, and the ends of the scale at those of its bar.
+    fn with_ends(ui: &Ui, rect: Rect, legend: &Legend) -> Self {
+        let ends: Vec<_> = legend.scale.iter().flat_map(|[from, _, to]| [from, to]).collect();
+        Self::of(ui, rect, legend, (&ends[..], Self::BARS[1]), 1)
+    }
+
+    fn of(ui: &Ui, rect: Rect, legend: &Legend, (numbers, bar): (&[&String], f32), rows: usize) -> Self {
         let ink = Palette::here(ui).text;
         let scale = theme::scale_here(ui);
-        let [swatch, gap] = [Self::SWATCH, Self::GAP].map(|v| v * scale);
-        let room = (rect.width() - 2.0 * EDGE - 2.0 * Self::PADDING.x * scale).max(64.0);
+        let [swatch, gap, side, above, bar] = [12.0, 4.0, 10.0, 6.0, bar].map(|v| v * scale);
+        let room = (rect.width() - 2.0 * EDGE - 2.0 * side).max(64.0);
         let small = FontId::proportional(TextStyle::Small.resolve(ui.style()).size);
         let title = theme::lines(ui, &legend.title, theme::bold(ui), ink, (room, rows));
         let lay_out = |text: &String| ui.painter().layout_no_wrap(text.clone(), small.clone(), ink);
-        let numbers = legend.scale.as_ref().map(|numbers| numbers.each_ref().map(lay_out));
+        let numbers: Vec<_> = numbers.iter().map(|text| lay_out(text)).collect();
         let colours: Vec<_> = legend.colours.iter().map(|(c, text)| (*c, lay_out(text))).collect();
-        let rows = colours.iter().map(|(_, text)| swatch + 2.0 * gap + text.size().x);
-        let bar = if numbers.is_some() { 180.0 * scale } else { 0.0 };
-        let width = rows.fold(title.size().x.max(bar.min(room)), f32::max);
-        let of_scale = numbers.as_ref().map_or(0.0, |n| 2.0 * gap + swatch + n[0].size().y);
-        let lines: f32 = colours.iter().map(|(_, text)| Self::line(text, scale)).sum();
-        let size = vec2(width, title.size().y + of_scale + lines) + 2.0 * Self::PADDING * scale;
-        Self { title, numbers, colours, scale, size }
-    }
-
-    /// Height of the line of a colour.
-    fn line(text: &Galley, scale: f32) -> f32 {
-        text.size().y.max(Self::SWATCH * scale) + 0.5 * Self::GAP * scale
+        let spacing = Spacing {
+            padding: [side, above],
+            bar: swatch,
+            least: bar.min(room),
+            gaps: [gap, 0.5 * gap, 0.5 * gap],
+            beside: 2.0 * gap,
+            line: 0.5 * gap,
+        };
+        let size = |text: &Arc<Galley>| <[f32; 2]>::from(text.size());
+        let sizes: Vec<_> = numbers.iter().map(size).collect();
+        let texts: Vec<_> = colours.iter().map(|(_, text)| size(text)).collect();
+        let plate = Plate::new(&spacing, size(&title), &sizes, &texts);
+        let size = Vec2::from(plate.size);
+        Self { title, numbers, colours, plate, swatch, size }
     }
 
     /// Paints the legend into a picture.
     pub(super) fn paint(self, ui: &Ui, rect: Rect, place: Rect) {
         let palette = Palette::here(ui);
         let painter = ui.painter_at(rect);
-        let [swatch, gap] = [Self::SWATCH, Self::GAP].map(|v| v * self.scale);
+        let at = |p: [f32; 2]| place.min + Vec2::from(p);
         painter.rect_filled(place, 4.0, palette.plate());
-        let inner = place.shrink2(Self::PADDING * self.scale);
-        let mut at = inner.min;
-        let below = self.title.size().y;
-        painter.galley(at, self.title, palette.text);
-        at.y += below;
-        if let Some(numbers) = self.numbers {
-            at.y += gap;
-            let bar = Rect::from_min_size(at, vec2(inner.width(), swatch));
+        painter.galley(at(self.plate.title), self.title, palette.text);
+        if let Some([x, y, width, height]) = self.plate.bar {
+            let bar = Rect::from_min_size(at([x, y]), vec2(width, height));
             painter.add(gradient(bar));
             painter.rect_stroke(bar, CornerRadius::ZERO, Stroke::new(1.0, palette.line), StrokeKind::Outside);
-            at.y = bar.bottom() + 0.5 * gap;
-            let below = numbers[0].size().y + 0.5 * gap;
-            for (number, part) in numbers.into_iter().zip([0.0, 0.5, 1.0]) {
-                let x = at.x + part * (inner.width() - number.size().x);
-                painter.galley(pos2(x, at.y), number, palette.text);
-            }
-            at.y += below;
         }
-        for ([r, g, b], text) in self.colours {
-            let height = Self::line(&text, self.scale);
-            let middle = pos2(at.x, at.y + 0.5 * height);
-            let square = Align2::LEFT_CENTER.anchor_size(middle, vec2(swatch, swatch));
+        for (number, place) in self.numbers.into_iter().zip(self.plate.numbers) {
+            painter.galley(at(place), number, palette.text);
+        }
+        for (([r, g, b], text), [square, words]) in self.colours.into_iter().zip(self.plate.colours) {
+            let square = Rect::from_min_size(at(square), Vec2::splat(self.swatch));
             let (colour, stroke) = (Color32::from_rgb(r, g, b), Stroke::new(1.0, palette.weak));
             painter.rect(square, 2.0, colour, stroke, StrokeKind::Outside);
-            let y = at.y + 0.5 * (height - text.size().y);
-            painter.galley(pos2(square.right() + 2.0 * gap, y), text, palette.text);
-            at.y += height;
+            painter.galley(at(words), text, palette.text);
         }
     }
 }

@@ -295,7 +295,7 @@ fn plate(ui: &Ui, rect: Rect, legend: Legend) -> Option<Rect> {
     }
     let left = (rect.right() - LEGEND * theme::scale_here(ui)).max(rect.left());
     let side = Rect::from_min_max(pos2(left, rect.top()), rect.max);
-    let plate = channels::Plate::new(ui, side, &legend, usize::MAX);
+    let plate = channels::LaidOut::new(ui, side, &legend, usize::MAX);
     let place = Align2::RIGHT_TOP.anchor_size(side.right_top() + vec2(-8.0, 8.0), plate.size);
     plate.paint(ui, side, place);
     Some(place)

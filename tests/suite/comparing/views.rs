@@ -767,6 +767,30 @@ fn in_large_letters_legends_beside_each_other_are_low_and_not_cut() {
 }
 
 #[test]
+fn legends_beside_each_other_say_both_ends_of_their_scales() {
+    for scale in [100, 150] {
+        let mut bench = bench();
+        bench.size = vec2(1280.0, 720.0);
+        bench.key(Key::B, CTRL);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        for view in [0, 1] {
+            bench.apply(Action::Compare(CompareCommand::Activate(view)));
+            bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotV))));
+        }
+        bench.settle();
+        let texts = crate::window::layout::texts(&mut bench);
+        for cell in bench.area.cells.clone() {
+            let name = format!("Channel: {} · ", ["A", "B"][cell.view]);
+            let legend = bench.tree.iter().find(|s| s.label.starts_with(&name)).expect("its legend").rect;
+            assert!(cell.rect.contains_rect(legend), "{scale} %: {legend:?} in {:?}", cell.rect);
+            let inside = texts.iter().filter(|(_, place)| legend.expand(1.0).contains_rect(*place));
+            let said: Vec<_> = inside.map(|(text, _)| text.as_str()).collect();
+            assert!(said.contains(&"0") && said.contains(&"1"), "{scale} %: {said:?}");
+        }
+    }
+}
+
+#[test]
 fn the_bar_says_in_full_why_views_are_not_compared() {
     let mut bench = bench();
     bench.key(Key::B, CTRL);
