@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Mat4, Quat, Vec3};
 
-use super::{Field, Object, Scene, field::Kind, part::part, rows::Row};
+use super::{Field, Scene, field::Kind, part::part, rows::Row};
 
 /// Passes the declaration to a macro: [`part!`], or that of the component.
 macro_rules! observer {
@@ -195,7 +195,7 @@ mod tests {
     use super::*;
     use crate::{
         registry::Registry,
-        scene::{Repeat, Repetition, comparison::Layout},
+        scene::{Object, Repeat, Repetition, comparison::Layout},
     };
 
     #[test]
