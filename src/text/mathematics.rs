@@ -8,6 +8,12 @@ pub const LONGEST_LINE: usize = 2000;
 /// Maximum nesting of brackets in an equation, which also bounds the recursion of typesetting.
 pub const MAX_DEPTH: usize = 24;
 
+/// The sentence about brackets nested deeper than a limit, in equations and in WGSL.
+#[must_use]
+pub fn nested_beyond(most: usize) -> String {
+    format!("this is nested more than {most} brackets deep, the most allowed")
+}
+
 /// The first position at which an equation exceeds a limit: its byte, and a sentence.
 #[must_use]
 pub fn beyond_limits(equation: &str) -> Option<(usize, String)> {
@@ -23,10 +29,7 @@ pub fn beyond_limits(equation: &str) -> Option<(usize, String)> {
             _ => {}
         }
         if open.len() > MAX_DEPTH {
-            return Some((
-                at,
-                format!("this is nested more than {MAX_DEPTH} brackets deep, the most allowed"),
-            ));
+            return Some((at, nested_beyond(MAX_DEPTH)));
         }
         if length > LONGEST_LINE {
             let what = format!("this line of the equation has more than {LONGEST_LINE} characters; break it");

@@ -193,6 +193,8 @@ pub struct GpuRenderer {
     pub(super) target: Handle<Image>,
     /// The background and the render graph of the camera, if the last picture took several batches.
     pub(super) batched: Option<(ClearColorConfig, CameraRenderGraph)>,
+    /// True once frames have run that prepare the first picture.
+    pub(super) started: bool,
     /// The channel that is shown.
     pub(super) channel: Option<DebugChannel>,
     /// True if frames take a part of the samples each.
@@ -276,6 +278,7 @@ impl GpuRenderer {
             app,
             target,
             batched: None,
+            started: false,
             channel: None,
             by_parts: false,
             on_demand: false,

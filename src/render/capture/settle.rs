@@ -1,11 +1,11 @@
 //! Complete pictures: draws frames until nothing is missing, in batches if the shapes do not all fit into
 //! memory at once.
 
-use std::time::Duration;
+use std::{any::TypeId, time::Duration};
 
 use bevy::{
-    camera::Camera3dDepthLoadOp,
-    pbr::PreparedMaterial,
+    camera::{Camera3dDepthLoadOp, visibility::VisibleEntities},
+    pbr::{PreparedMaterial, SpecializedMaterialPipelineCache},
     prelude::*,
     render::{
         RenderApp,
@@ -14,7 +14,9 @@ use bevy::{
         mesh::RenderMesh,
         render_asset::RenderAssets,
         render_resource::{CachedPipeline, CachedPipelineState, PipelineCache, PipelineDescriptor},
+        sync_world::MainEntity,
         texture::GpuImage,
+        view::RetainedViewEntity,
     },
     shader::ShaderCacheError,
 };
@@ -40,8 +42,6 @@ use crate::{
     scene::Object,
 };
 
-/// Duration above which a frame is drawn only once, if possible.
-const SLOW: Duration = Duration::from_millis(150);
 /// The number of samples of a frame that cannot take all.
 const PART: u32 = 8;
 
@@ -68,7 +68,6 @@ impl GpuRenderer {
     /// several batches.
     pub fn settle_until(&mut self, noise: Option<f32>, progress: &Progress) -> Result<Reached, GpuError> {
         let by_parts = self.takes_parts(noise.is_some());
-        self.set_parts(by_parts);
         // Means are of frames with all objects.
         let most = if by_parts || self.on_demand { u64::MAX } else { self.most_triangles };
         self.limit_frames(most);
@@ -100,6 +99,8 @@ impl GpuRenderer {
             // The camera may be elsewhere.
             ShapeMeshes::restart(self.app.world_mut());
         }
+        self.start()?;
+        self.set_parts(by_parts);
         self.draw_frames()?;
         if let Some(why) = self.refused() {
             if by_parts && noise.is_some() {
@@ -257,24 +258,52 @@ impl GpuRenderer {
         self.wait();
     }
 
-    /// Draws frames until nothing is waiting to be loaded or compiled.
+    /// Runs the first frames without the camera, so that what they cannot show yet costs no drawing. A picture needs several
+    /// frames only at the start of its renderer:
+    ///
+    /// - Bevy asks for its shaders in the first frame, and other threads load them. A pipeline that lacks its shader is set
+    ///   back in the frame after, and made in the one after that; nothing is drawn before those for instances are there.
+    /// - Cameras take the format of their target from the frame before.
+    ///
+    /// Meanwhile, meshes and materials go to the GPU. Later, a frame shows everything that it gets itself, see
+    /// [`shows_all`](Self::shows_all).
+    fn start(&mut self) -> Result<(), GpuError> {
+        // Views switch their cameras themselves.
+        if self.on_demand || std::mem::replace(&mut self.started, true) {
+            return Ok(());
+        }
+        self.switch_camera(false);
+        let started = self.run_until(|_, ready| ready > 0);
+        self.switch_camera(true);
+        started
+    }
+
+    fn switch_camera(&mut self, on: bool) {
+        self.edit_camera(|camera| {
+            if let Some(mut camera) = camera.get_mut::<Camera>() {
+                camera.is_active = on;
+            }
+        });
+    }
+
+    /// Draws frames until nothing is waiting to be loaded or compiled, and the last one has shown all objects.
     fn draw_frames(&mut self) -> Result<(), GpuError> {
+        // Views draw two pictures after each change.
+        self.run_until(|this, ready| ready == 2 || ready == 1 && !this.on_demand && this.shows_all())?;
+        self.wait();
+        Ok(())
+    }
+
+    /// Runs frames until there are enough, as judged by their number since something was waiting to be loaded or compiled.
+    fn run_until(&mut self, are_enough: impl Fn(&mut Self, u32) -> bool) -> Result<(), GpuError> {
         let (mut ready, mut state, mut since) = (0, None, Instant::now());
-        // The first frame is drawn before the target, hence two; but a slow one for which everything was
-        // ready is not repeated.
-        while ready < 2 {
-            let (before, begun) = (self.prepared(), Instant::now());
+        while !are_enough(self, ready) {
+            let has_target = self.prepared().is_some();
             self.step();
             if self.meshes().is_crowded() {
                 self.wait();
             }
-            ready = if self.is_waiting()? { 0 } else { ready + 1 };
-            if ready == 1 && before.is_some() && before == self.prepared() {
-                self.wait();
-                if self.batched.is_some() || begun.elapsed() > SLOW {
-                    break;
-                }
-            }
+            ready = if self.is_waiting()? || !has_target { 0 } else { ready + 1 };
             if self.app.world().get_resource::<Bench>().is_some_and(Bench::is_waiting) {
                 // Another process is using the processors for trials.
                 std::thread::sleep(Duration::from_millis(2));
@@ -288,6 +317,32 @@ impl GpuRenderer {
             }
         }
         Ok(())
+    }
+
+    /// True if the last frame drew all visible objects. Meshes, materials and pipelines are made before drawing, in this order,
+    /// and so serve the frame in which they were asked for. But a material whose buffer is new, too, may come before the buffer:
+    /// it is made in the next frame, and so is the pipeline of its objects.
+    fn shows_all(&mut self) -> bool {
+        let world = self.app.world_mut();
+        let mut cameras = world.query::<(Entity, &Camera, &VisibleEntities)>();
+        let visible: Vec<_> = cameras
+            .iter(world)
+            .filter(|(_, camera, _)| camera.is_active)
+            .map(|(camera, _, visible)| {
+                let view = RetainedViewEntity::new(camera.into(), None, 0);
+                (view, visible.get(TypeId::of::<Mesh3d>()).to_vec())
+            })
+            .collect();
+        let Some(render_app) = self.app.get_sub_app(RenderApp) else { return false };
+        let Some(made) = render_app.world().get_resource::<SpecializedMaterialPipelineCache>() else {
+            return false;
+        };
+        visible.iter().all(|(view, objects)| {
+            let made = made.get(view);
+            let is_made =
+                |object: &Entity| made.is_some_and(|made| made.contains_key(&MainEntity::from(*object)));
+            objects.iter().all(is_made)
+        })
     }
 
     /// The number of pipelines that are compiled.

@@ -6,6 +6,7 @@ use super::{
     Limits, Refusal, expansion, limited,
     token::{Finding, Kind, Token, at_most, tokens},
 };
+use crate::text::mathematics::nested_beyond;
 
 /// Finds anything beyond a limit. `binds` is true for bytes at which bindings may be declared.
 pub(super) fn check(text: &str, limits: &Limits, binds: impl Fn(usize) -> bool) -> Result<(), Refusal> {
@@ -142,8 +143,9 @@ impl Walk<'_> {
         let above = group.above + group.operators;
         let nesting = if group.open == b'{' { 1 } else { group.nesting + 1 };
         self.check_depth(token, above)?;
-        let what = || format!("this is nested {nesting} brackets deep");
-        at_most(nesting, self.limits.nesting, token.at, "", what)?;
+        if nesting > self.limits.nesting {
+            return Err((token.at, nested_beyond(self.limits.nesting)));
+        }
         self.groups.push(Group::new(token.text.as_bytes()[0], above, nesting));
         Ok(())
     }
@@ -296,10 +298,10 @@ mod tests {
             assert_eq!(said(text), "", "{text}");
         }
         for (text, found, what) in [
-            ("fn f() { let y = ((((x)))); }", "(x)", "nested 4 brackets deep; at most 3"),
-            ("fn f() { let y = a[b[c[d[0]]]]; }", "[0]", "nested 4 brackets"),
-            ("fn f() { let y = a<b<c<d<e>>>>(); }", "<e>", "nested 4 brackets"),
-            ("fn f() { let y = a<1, b<1, c<1, d<1, e>>>>(); }", "<1, e>", "nested 4 brackets"),
+            ("fn f() { let y = ((((x)))); }", "(x)", "nested more than 3 brackets deep, the most allowed"),
+            ("fn f() { let y = a[b[c[d[0]]]]; }", "[0]", "nested more than 3 brackets"),
+            ("fn f() { let y = a<b<c<d<e>>>>(); }", "<e>", "nested more than 3 brackets"),
+            ("fn f() { let y = a<1, b<1, c<1, d<1, e>>>>(); }", "<1, e>", "nested more than 3 brackets"),
             ("fn f() { let y = a+b+c+d+e+f+g+h+i+j; }", "+j", "has 9 operators"),
             ("fn f() { let y = - - - - - - - - -x; }", "-x", "has 9 operators"),
             ("fn f() { let y = x.x.x.x.x.x.x.x.x.y; }", ".y", "has 9 operators"),

@@ -7,6 +7,7 @@ mod channels;
 mod contact_sheet;
 mod converging;
 mod finite;
+mod frames;
 pub(crate) mod golden;
 mod gpu_parity;
 mod hot_swap;
