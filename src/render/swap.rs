@@ -264,10 +264,7 @@ fn find(
         let Some(object) = world.get_entity(entity).ok().and_then(|e| e.get_ref::<ShownObject>()) else {
             continue;
         };
-        let (model, shading) = overrides.map_or_else(
-            || (scene.model_of(&object.0), scene.shading_model_of(&object.0)),
-            |o| (o.model_of(scene, &object.0), o.shading_model_of(scene, &object.0)),
-        );
+        let [model, shading] = Overrides::models_of(overrides, scene, &object.0);
         let mut shown = None;
         if let Some(overrides) = overrides {
             overrides.dress(shown.get_or_insert_with(|| object.0.clone()), registry);
