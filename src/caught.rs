@@ -3,14 +3,20 @@
 
 use std::{
     any::Any,
-    panic::{AssertUnwindSafe, catch_unwind},
+    cell::Cell,
+    panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook},
     sync::{
-        LockResult, Mutex, MutexGuard, PoisonError,
+        LockResult, Mutex, MutexGuard, Once, PoisonError,
         atomic::{AtomicUsize, Ordering},
     },
 };
 
 static COUNT: AtomicUsize = AtomicUsize::new(0);
+
+thread_local! {
+    /// True while a panic of this thread is not shown.
+    static IS_SILENT: Cell<bool> = const { Cell::new(false) };
+}
 
 /// The result of a call, or its panic. Callers must leave no inconsistent state that others see.
 pub fn catch<T>(call: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
@@ -18,6 +24,24 @@ pub fn catch<T>(call: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
     if result.is_err() {
         COUNT.fetch_add(1, Ordering::SeqCst);
     }
+    result
+}
+
+/// Like [`catch`], and shows nothing of the panic of this call. Panics of other threads are shown as before.
+pub fn catch_silently<T>(call: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
+    static SILENCE: Once = Once::new();
+    // The hook belongs to all threads, and stays: to put the former one back would undo what others set meanwhile.
+    SILENCE.call_once(|| {
+        let usual = take_hook();
+        set_hook(Box::new(move |info| {
+            if !IS_SILENT.get() {
+                usual(info);
+            }
+        }));
+    });
+    let before = IS_SILENT.replace(true);
+    let result = catch(call);
+    IS_SILENT.set(before);
     result
 }
 
@@ -58,6 +82,20 @@ mod tests {
         assert_eq!(message(&7), "it gave no reason");
         assert!(count() >= before + 2);
     }
+
+    #[test]
+    fn a_silent_panic_silences_its_thread_alone_and_no_longer_than_it_lasts() {
+        let silent = || {
+            let other = std::thread::spawn(|| IS_SILENT.get()).join().expect("it does not panic");
+            (IS_SILENT.get(), other)
+        };
+        assert_eq!(catch_silently(silent).ok(), Some((true, false)));
+        let within = || (catch_silently(|| panic!("the driver")).err(), IS_SILENT.get());
+        let (inner, still) = catch_silently(within).expect("the panic is caught");
+        assert_eq!((message(&*inner.expect("it panicked")), still), ("the driver", true));
+        assert_eq!(silent(), (false, false));
+    }
+
     #[test]
     fn a_panic_under_a_lock_does_not_close_it() {
         use std::sync::RwLock;

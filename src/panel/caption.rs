@@ -23,12 +23,6 @@ pub fn caption_text(session: &Session, registry: &Registry) -> String {
     line(&parts(session, registry))
 }
 
-/// Ids of the models that the picture shows.
-#[must_use]
-pub fn models_shown(session: &Session) -> BTreeSet<&str> {
-    session.scene().shown().map(|o| session.scene().model_of(o)).collect()
-}
-
 /// Parts of the caption of the picture.
 #[must_use]
 pub fn parts(session: &Session, registry: &Registry) -> Vec<Part> {
@@ -43,7 +37,7 @@ pub(super) fn compiling(session: &Session, view: usize) -> Option<Part> {
 
 /// The reflection model of a scene.
 pub(super) fn model_part(scene: &Scene, registry: &Registry) -> Part {
-    let models: BTreeSet<_> = scene.shown().map(|o| scene.model_of(o)).collect();
+    let models = scene.models_shown(0);
     let text = match single(&models) {
         Some(id) => registry.model(id).map_or(id, |m| m.declaration.name).to_owned(),
         None if models.is_empty() => "nothing visible".to_owned(),

@@ -1,6 +1,6 @@
 //! The overlays of the picture: badges, caption, axes, hints.
 
-use std::{collections::BTreeSet, iter};
+use std::iter;
 
 use bevy_egui::egui::FontFamily;
 
@@ -405,10 +405,9 @@ fn stale_cell<'c>(
     let stale = session.shaders.stale();
     let names: Vec<_> = stale.iter().map(|name| name.trim_end_matches(STAND_IN)).collect();
     let is_shown = |cell: &&Cell| {
-        let seen = session.document.seen(cell.view, registry).map(|(scene, _)| scene.alone());
         let shows =
             |id: &str| registry.model(id).is_some_and(|model| names.contains(&model.declaration.name));
-        seen.is_some_and(|scene| scene.models().into_iter().any(shows))
+        session.document.models_shown(cell.view).into_iter().any(shows)
     };
     let active = cells.clone().find(|cell| cell.view == session.active());
     let first = active.or_else(|| cells.clone().next());
@@ -553,12 +552,7 @@ fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<S
         TermSelection::All => return None,
         other => other.id(),
     };
-    let over = session.document.overrides(view).and_then(|variant| variant.reflection_model);
-    let models = match &over {
-        Some(id) => [id.as_str()].into(),
-        None => session.document.shown().map(|o| session.document.model_of(o)).collect::<BTreeSet<_>>(),
-    };
-    let whose = match single(&models).and_then(|id| registry.model(id)) {
+    let whose = match single(&session.document.models_shown(view)).and_then(|id| registry.model(id)) {
         _ if !session.lacks_term(view, registry) => String::new(),
         Some(model) => format!(", which is 0 with {}", model.declaration.name),
         None => ", which is 0 in this picture".to_owned(),

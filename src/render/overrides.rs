@@ -6,6 +6,7 @@ use crate::{
     channel::Setting,
     optics::TermSelection,
     parameter::Values,
+    reflection::{ModelEntry, Passage},
     registry::Registry,
     scene::{Background, Display, Object, Scene},
 };
@@ -75,11 +76,31 @@ impl Overrides {
         object.material.0.extend(self.parameters.0.clone());
     }
 
-    pub(super) fn model_of<'a>(&'a self, scene: &'a Scene, object: &'a Object) -> &'a str {
+    /// The reflection model and the shading model of an object in a view with these overrides, or without any.
+    pub(super) fn models_of<'a>(of: Option<&'a Self>, scene: &'a Scene, object: &'a Object) -> [&'a str; 2] {
+        match of {
+            Some(of) => [of.model_of(scene, object), of.shading_model_of(scene, object)],
+            None => [scene.model_of(object), scene.shading_model_of(object)],
+        }
+    }
+
+    /// The passage of light through an object with a model in a view with these overrides, or without any.
+    pub(super) fn passage_of(of: Option<&Self>, model: &ModelEntry, object: &Object) -> Passage {
+        match of.filter(|of| model.passage_varies() && !of.parameters.0.is_empty()) {
+            Some(of) => {
+                let mut material = object.material.clone();
+                material.0.extend(of.parameters.0.clone());
+                model.passage(&material)
+            }
+            None => model.passage(&object.material),
+        }
+    }
+
+    fn model_of<'a>(&'a self, scene: &'a Scene, object: &'a Object) -> &'a str {
         self.reflection_model.as_deref().unwrap_or_else(|| scene.model_of(object))
     }
 
-    pub(super) fn shading_model_of<'a>(&'a self, scene: &'a Scene, object: &'a Object) -> &'a str {
+    fn shading_model_of<'a>(&'a self, scene: &'a Scene, object: &'a Object) -> &'a str {
         self.shading_model.as_deref().unwrap_or_else(|| scene.shading_model_of(object))
     }
 
@@ -98,5 +119,33 @@ impl Overrides {
 
     pub(super) fn display_of(&self, scene: &Scene) -> Display {
         self.display.unwrap_or(scene.display)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameter::Value;
+
+    #[test]
+    fn models_and_passage_are_those_of_an_object_with_the_overrides() {
+        let registry = Registry::builtin();
+        let scene = Scene::default();
+        let own = Object { reflection_model: Some("openpbr".to_owned()), ..Object::default() };
+        let mut glass = Overrides { shading_model: Some("flat".to_owned()), ..Overrides::default() };
+        glass.parameters.set("transmission_weight", Value::Number(1.0));
+        let phong = Overrides { reflection_model: Some("phong".to_owned()), ..glass.clone() };
+        let mut passages = Vec::new();
+        for overrides in [None, Some(&Overrides::default()), Some(&glass), Some(&phong)] {
+            let mut dressed = own.clone();
+            overrides.into_iter().for_each(|overrides| overrides.dress(&mut dressed, &registry));
+            let models = Overrides::models_of(overrides, &scene, &own);
+            assert_eq!(models, [scene.model_of(&dressed), scene.shading_model_of(&dressed)]);
+            let model = registry.model(models[0]).expect("built in");
+            let passage = Overrides::passage_of(overrides, model, &own);
+            assert_eq!(passage, model.passage(&dressed.material));
+            passages.push(passage);
+        }
+        assert!(passages[0] == passages[1] && passages[1] != passages[2], "the weight lets light through");
     }
 }

@@ -264,10 +264,7 @@ fn find(
         let Some(object) = world.get_entity(entity).ok().and_then(|e| e.get_ref::<ShownObject>()) else {
             continue;
         };
-        let (model, shading) = overrides.map_or_else(
-            || (scene.model_of(&object.0), scene.shading_model_of(&object.0)),
-            |o| (o.model_of(scene, &object.0), o.shading_model_of(scene, &object.0)),
-        );
+        let [model, shading] = Overrides::models_of(overrides, scene, &object.0);
         let mut shown = None;
         if let Some(overrides) = overrides {
             overrides.dress(shown.get_or_insert_with(|| object.0.clone()), registry);
@@ -344,11 +341,19 @@ fn without_hidden<T>(
             continue;
         }
         let Pending { drawable, now, .. } = of.1;
-        take_off(world, drawable);
-        world.entity_mut(drawable).insert_if_new(now);
+        leave_out(world, drawable, now);
         world.resource_mut::<ShapeMeshes>().note_hidden();
     }
     rest
+}
+
+/// Takes an object out of the picture. It keeps the settings that it was drawn with; one that never was gets these, and counts
+/// as finished.
+fn leave_out(world: &mut World, drawable: Entity, now: Drawn) {
+    take_off(world, drawable);
+    if let Ok(mut drawable) = world.get_entity_mut(drawable) {
+        drawable.insert_if_new(now);
+    }
 }
 
 /// False if all views show copies, not the objects themselves. Views of windows may show these at any time.
@@ -376,8 +381,7 @@ fn draw(world: &mut World, registry: &Registry, pending: Pending, bytes: &[u8], 
     let mesh = match ShapeMeshes::put_on(world, drawable, key, vertices, is_seen) {
         Ok(mesh) => mesh,
         Err(triangles) => {
-            take_off(world, drawable);
-            world.entity_mut(drawable).insert_if_new(now);
+            leave_out(world, drawable, now);
             world.resource_mut::<ShapeMeshes>().leave_out(object, triangles);
             return;
         }
@@ -445,4 +449,24 @@ fn row_of(world: &mut World, object: Entity) -> Option<Row> {
     let row = world.resource_mut::<ParameterTables>().bypass_change_detection().take()?;
     world.entity_mut(object).insert(row);
     Some(row)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_object_that_is_left_out_has_no_mesh_and_keeps_the_settings_it_was_drawn_with() {
+        let mut world = World::new();
+        let with = |model: &str| Drawn { model: model.to_owned(), ..Drawn::default() };
+        let fresh = world.spawn(Mesh3d::default()).id();
+        let drawn = world.spawn((Mesh3d::default(), with("phong"))).id();
+        for (drawable, expected) in [(fresh, "ward"), (drawn, "phong")] {
+            leave_out(&mut world, drawable, with("ward"));
+            assert!(!world.entity(drawable).contains::<Mesh3d>());
+            assert_eq!(world.get::<Drawn>(drawable).map(Drawn::model), Some(expected));
+        }
+        world.despawn(fresh);
+        leave_out(&mut world, fresh, with("ward"));
+    }
 }

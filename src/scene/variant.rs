@@ -3,6 +3,8 @@
 //! The scene itself is view A; its variants are the views B, C and D. A variant inherits everything and overrides what
 //! it gives.
 
+use std::collections::BTreeSet;
+
 pub use super::views::{LETTERS, MAX_VARIANTS};
 use super::{
     Comparison, Display, Field, Object, Scene,
@@ -163,6 +165,26 @@ impl Scene {
         Some(Variant { based_on: None, ..variant })
     }
 
+    /// The reflection model that a view shows instead of those of the objects, if it does.
+    fn model_over(&self, view: usize) -> Option<&str> {
+        let mut variant = self.variants.get(view.checked_sub(1)?)?;
+        // Each variant in a cycle is visited at most once.
+        for _ in 0..self.variants.len() {
+            if let Some(model) = &variant.reflection_model {
+                return Some(model);
+            }
+            variant = self.variant(variant.based_on.as_deref()?)?;
+        }
+        None
+    }
+
+    /// The ids of the reflection models of the objects that a view shows, each once.
+    #[must_use]
+    pub fn models_shown(&self, view: usize) -> BTreeSet<&str> {
+        let over = self.model_over(view);
+        self.shown().map(|object| over.unwrap_or_else(|| self.model_of(object))).collect()
+    }
+
     /// The scene shown by a view, and its terms; view 0 is the scene itself. `None` if the view does not
     /// exist.
     #[must_use]
@@ -247,6 +269,31 @@ mod tests {
 
     fn named(name: &str, based_on: Option<&str>) -> Variant {
         Variant { name: Some(name.to_owned()), based_on: based_on.map(str::to_owned), ..Variant::default() }
+    }
+
+    #[test]
+    fn a_view_shows_the_models_of_visible_objects_unless_its_variant_gives_another() {
+        let with = |model: &str, visible: bool| Object {
+            reflection_model: Some(model.to_owned()),
+            visible,
+            ..Object::default()
+        };
+        let mut phong = named("phong", None);
+        phong.reflection_model = Some("phong".to_owned());
+        let based = named("based", Some("phong"));
+        let plain = named("plain", None);
+        let cycles = named("cycles", Some("cycles"));
+        let mut scene = scene(vec![phong, based, plain, cycles]);
+        scene.objects = vec![with("ward", true), with("ward", true), with("gooch", false), Object::default()];
+        let own: BTreeSet<&str> = ["ward", scene.reflection_model.as_str()].into();
+        assert_eq!(own.len(), 2);
+        for (view, expected) in
+            [(0, own.clone()), (1, ["phong"].into()), (2, ["phong"].into()), (3, own.clone()), (4, own)]
+        {
+            assert_eq!(scene.models_shown(view), expected, "{view}");
+            let seen = scene.seen(view, &Registry::builtin()).expect("there is one").0;
+            assert_eq!(seen.models_shown(0), expected, "{view}");
+        }
     }
 
     #[test]

@@ -9,7 +9,7 @@ use std::{
 use bevy_egui::egui::CornerRadius;
 
 use super::{
-    caption::{self, Lines, models_shown},
+    caption::{self, Lines},
     inspector::model::meaning,
     keys,
     marks::Lens,
@@ -212,7 +212,7 @@ impl Stage {
 }
 
 fn model_of<'r>(session: &Session, registry: &'r Registry) -> Option<&'r ModelEntry> {
-    let models = models_shown(session);
+    let models = session.document.models_shown(session.active());
     models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1)
 }
 

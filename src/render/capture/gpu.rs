@@ -27,7 +27,7 @@ use thiserror::Error;
 use wgpu::PollError;
 
 use crate::{
-    caught::catch,
+    caught::catch_silently,
     channel::{DebugChannel, Setting},
     optics::TermSelection,
     platform::{self, backends},
@@ -159,11 +159,7 @@ pub(super) fn device() -> Result<RenderResources, GpuError> {
 
 /// The device, unless the driver fails, as with too little memory: Bevy then panics, which is neither shown nor passed on.
 fn start_device() -> Option<RenderResources> {
-    let hook = std::panic::take_hook();
-    std::panic::set_hook(Box::new(|_| {}));
-    let device = catch(|| block_on(initialize_renderer(backends(), None, &wgpu_settings())));
-    std::panic::set_hook(hook);
-    device.ok()
+    catch_silently(|| block_on(initialize_renderer(backends(), None, &wgpu_settings()))).ok()
 }
 
 /// The contents of the target.

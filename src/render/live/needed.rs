@@ -26,14 +26,11 @@ impl NeededShaders<'_> {
     pub fn lacks_one(&self, overrides: Option<&Overrides>) -> bool {
         let scene = self.scene();
         scene.objects.iter().any(|object| {
-            let mut object = object.clone();
-            if let Some(overrides) = overrides {
-                overrides.dress(&mut object, &self.registry);
-            }
-            let model = self.registry.model(scene.model_of(&object));
-            let shading = self.registry.shading_model(scene.shading_model_of(&object));
+            let [model, shading] = Overrides::models_of(overrides, scene, object);
+            let (model, shading) = (self.registry.model(model), self.registry.shading_model(shading));
             model.zip(shading).is_some_and(|(model, shading)| {
-                self.live.is_announced((model, model.passage(&object.material), shading, self.shown.types))
+                let passage = Overrides::passage_of(overrides, model, object);
+                self.live.is_announced((model, passage, shading, self.shown.types))
             })
         })
     }

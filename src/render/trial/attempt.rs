@@ -1,6 +1,6 @@
 //! The trial itself: composes a candidate and builds a pipeline from it.
 
-use std::{borrow::Cow, cell::Cell, panic, sync::Once};
+use std::borrow::Cow;
 
 use bevy::{
     asset::uuid::Uuid,
@@ -18,7 +18,6 @@ use super::{
     verdict::Verdict,
 };
 use crate::{
-    caught::catch,
     platform,
     shader::{check::locate, compose::Composed, limits, pitfall},
 };
@@ -56,28 +55,6 @@ pub(super) fn attempt(
     let fragment = descriptor.fragment.as_ref().map(|f| module_of(&f.shader_defs)).unwrap_or_default();
     build(&descriptor, &example.layouts, vertex, fragment, tools.device)
         .map_err(|error| Verdict::Bad(refused(composed, &error)))
-}
-
-thread_local! {
-    /// True if a panic on this thread is expected, and not reported.
-    static EXPECTED: Cell<bool> = const { Cell::new(false) };
-}
-
-/// Calls a function that may panic; `None` if it did, without any output.
-pub(super) fn quietly<T>(call: impl FnOnce() -> T) -> Option<T> {
-    static HOOK: Once = Once::new();
-    HOOK.call_once(|| {
-        let usual = panic::take_hook();
-        panic::set_hook(Box::new(move |info| {
-            if !EXPECTED.get() {
-                usual(info);
-            }
-        }));
-    });
-    EXPECTED.set(true);
-    let result = catch(call);
-    EXPECTED.set(false);
-    result.ok()
 }
 
 /// A cache with Bevy's shaders.

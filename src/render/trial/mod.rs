@@ -21,7 +21,7 @@ use bevy::{
 use naga::Module;
 
 use crate::{
-    caught::lock,
+    caught::{catch_silently, lock},
     shader::{compose::Composed, limits},
 };
 
@@ -35,7 +35,7 @@ pub(crate) use explain::refused;
 pub use tools::{COMPOSED, MARK, Tools};
 pub use verdict::Verdict;
 
-use attempt::{attempt, quietly};
+use attempt::attempt;
 use explain::without_place;
 use process::TrialProcess;
 use tools::Example;
@@ -131,9 +131,9 @@ impl Bench {
         let example = example.lock();
         let Some(example) = example.as_ref() else { return Verdict::NotYet };
         // The shader composer calls unwrap in places.
-        match quietly(|| attempt(&mut self.cache, composed, faces, example, tools)) {
-            Some(outcome) => outcome.err().unwrap_or(Verdict::Good),
-            None => {
+        match catch_silently(|| attempt(&mut self.cache, composed, faces, example, tools)) {
+            Ok(outcome) => outcome.err().unwrap_or(Verdict::Good),
+            Err(_) => {
                 // The cache may be left in an inconsistent state.
                 self.cache = None;
                 Verdict::Bad(without_place(composed))
