@@ -26,8 +26,9 @@ use crate::{
     reference::Settings,
     reflection::{ModelEntry, Surface, ends::check_that_it_ends},
     registry::Registry,
-    scene::{Object, Scene, emitter, error::Path},
-    text::quoted,
+    scene::{Light, Object, Scene, emitter, error::Path},
+    shader::definitions::definition,
+    text::{place::Lines, quoted},
 };
 
 /// Angles between light and normal to try, in degrees; a model must be finite behind the surface too.
@@ -36,6 +37,9 @@ const LIGHTS: [f32; 10] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.9, 100.0,
 const VIEWS: [f32; 6] = [0.0, 30.0, 45.0, 60.0, 85.0, 89.9];
 /// Angles between their planes to try, in degrees.
 const PLANES: [f32; 5] = [0.0, 60.0, 120.0, 180.0, 270.0];
+/// The functions of models in WGSL: for light from a direction, and from everywhere.
+const RESPONSE: &str = "response";
+const AMBIENT: &str = "ambient_response";
 /// Maximum number of objects at which lights are tried.
 const MOST_OBJECTS: usize = 64;
 /// Maximum number of places at which the WGSL of lights is interpreted.
@@ -118,7 +122,7 @@ pub fn probe(scene: &Scene, registry: &Registry, scope: Scope, tried: &mut Tried
         if met.len() >= MOST_SURFACES || !met.insert(key.clone()) {
             continue;
         }
-        let what = tried.surfaces.entry(key).or_insert_with(|| surface(scene, object, model));
+        let what = tried.surfaces.entry(key).or_insert_with(|| surface(scene, object, model, registry));
         let of = |what| NotFinite { path: part("objects", i), name: object.name.clone(), what };
         found.extend(what.clone().map(of));
         // It did not run too long before, so this object triggers it.
@@ -289,12 +293,26 @@ fn direction(theta: f32, phi: f32) -> Vec3 {
 }
 
 /// A description of the first of these directions for which an object's surface is not finite.
-fn surface(scene: &Scene, object: &Object, model: &ModelEntry) -> Option<String> {
+fn surface(scene: &Scene, object: &Object, model: &ModelEntry, registry: &Registry) -> Option<String> {
     // As before a GPU runs the model.
     check_that_it_ends(model, &object.material, scene.display.encoding).ok()?;
     let surface = model.instantiate(&object.material, scene.display.encoding);
-    let (value, where_) = directed(&*surface, model).or_else(|| everywhere(&*surface, scene))?;
-    Some(of_model(model.declaration.id, value, &where_))
+    let by = |function| move |(value, where_): (Vec3, String)| (value, where_, function);
+    let found = directed(&*surface, model).map(by(RESPONSE));
+    let (value, where_, function) = found.or_else(|| everywhere(&*surface, scene).map(by(AMBIENT)))?;
+    Some(of_model(model.declaration.id, value, &where_, &place_of(model, function, registry)))
+}
+
+/// The function of a custom model in its file, after a colon, if its text defines the function: by default, ambient light
+/// is that of the response.
+fn place_of(model: &ModelEntry, function: &str, registry: &Registry) -> String {
+    let Some(file) = registry.custom_file(model.declaration.id) else { return String::new() };
+    let text = registry.sources().text(&model.declaration.wgsl);
+    let defined = [function, RESPONSE].into_iter().find_map(|name| Some((name, definition(text, name)?)));
+    defined.map_or_else(
+        || format!(": {}", file.shown()),
+        |(name, at)| format!(": {name} at {}:{}", file.shown(), Lines::new(text).place(at)),
+    )
 }
 
 fn too_long(model: &ModelEntry, registry: &Registry) -> String {
@@ -304,9 +322,9 @@ fn too_long(model: &ModelEntry, registry: &Registry) -> String {
     format!("has the reflection model {id}{file}, which cannot be run: {why}")
 }
 
-fn of_model(model: &str, value: Vec3, where_: &str) -> String {
+fn of_model(model: &str, value: Vec3, where_: &str, place: &str) -> String {
     let value = triple(value);
-    format!("has the reflection model {model}, which gives {value} for {where_}; it must be finite")
+    format!("has the reflection model {model}, which gives {value} for {where_}; it must be finite{place}")
 }
 
 /// The sum of the terms, if any of them is not finite.
@@ -401,7 +419,12 @@ fn of_pixel(
                 None => {
                     let value = odd(&lit.response).unwrap_or(lit.contribution);
                     let where_ = format!("{} at pixel {x},{y}", part("lights", *index));
-                    of(of_model(seen.model.id, value, &where_))
+                    let is_ambient = |l: &Light| l.position.is_none() && l.direction.is_none();
+                    let ambient = scene.lights.get(lit.light.index).is_some_and(is_ambient);
+                    let function = if ambient { AMBIENT } else { RESPONSE };
+                    let place =
+                        registry.model(seen.model.id).map(|model| place_of(model, function, registry));
+                    of(of_model(seen.model.id, value, &where_, &place.unwrap_or_default()))
                 }
             });
         }

@@ -136,6 +136,7 @@ fn a_broken_claim_is_found_with_numbers_and_a_kept_one_that_nobody_makes_too() {
     let haze = run(folder.path(), "models check haze --models models", "");
     let told = "for light from everywhere and a viewer at 0°";
     assert!(haze.status == Some(1) && haze.err.contains(told), "{}{}", haze.out, haze.err);
+    assert!(haze.err.contains("it must be finite: ambient_response at models/haze.wgsl:"), "{}", haze.err);
     let phong = run(folder.path(), "models check phong", "");
     assert_eq!(phong.status, Some(0));
     assert!(phong.out.contains("reciprocal: not claimed and broken"), "{}", phong.out);

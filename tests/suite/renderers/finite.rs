@@ -432,6 +432,8 @@ fn check_and_render_report_a_custom_model_that_gives_no_number() {
     let expected = "s.json: objects[1] (\"Bad\") has the reflection model torn_file, which gives (NaN, NaN, NaN) for \
                     light at 0°";
     assert!(said.err.starts_with(expected), "{}", said.err);
+    let place = "it must be finite: response at models/torn_file.wgsl:5:4";
+    assert!(said.err.contains(place), "{}", said.err);
     let json = run(folder.path(), &["check", "s.json", "--json"]);
     let report: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
     assert_eq!((json.status, &report[0]["valid"]), (Some(1), &serde_json::json!(false)));
@@ -447,6 +449,7 @@ fn check_and_render_report_a_custom_model_that_gives_no_number() {
         assert!((20..2000).contains(&count), "{renderer}: {}", drawn.err);
         let whose = "objects[1] (\"Bad\") has the reflection model torn_file";
         assert!(drawn.err.contains(whose) && !drawn.err.contains("objects[0]"), "{}", drawn.err);
+        assert!(drawn.err.contains(place), "{}", drawn.err);
     }
 }
 
