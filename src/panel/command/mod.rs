@@ -26,6 +26,11 @@ pub(super) const BAR: [(&str, &str); 4] =
 /// The id of the finder.
 pub(super) const FINDER: &str = "find";
 
+/// The id and the tooltip of the command that opens unsaved text of an earlier window.
+pub(super) const CONTINUE: &str = "continue_text";
+pub(super) const CONTINUE_TIP: &str =
+    "Opens the text in the panel Code; no file is overwritten until you save it there";
+
 /// The menus that others show too, or add to.
 pub(super) const EXAMPLES: &str = "Examples";
 pub(super) const LESSONS: &str = "Lessons";
