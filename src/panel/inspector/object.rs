@@ -21,10 +21,16 @@ use crate::{
     shading::ShadingEntry,
 };
 
+/// What the picture lacks, and the remedy.
+const NOT_DRAWN: &str = "Not drawn: the objects are too much for the window. Lower the tessellation of this one or of others, or hide others.";
+
 pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
     let Some(object) = session.scene().objects.get(i) else { return };
     header(ui, Selection::Object(i), object.name.as_deref(), context);
+    if session.is_not_drawn(i) {
+        not_drawn(ui);
+    }
     let row = session.document.row(i);
     let (in_row, varied) = (row.is_some(), row.map_or_else(Vec::new, |row| fixed(&row, session, registry)));
     if in_row {
@@ -43,6 +49,16 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
         // Not the section of a row, which is open.
         section(ui, "Copies", false, |ui| row::row(ui, i, context));
     }
+}
+
+/// Says that the picture lacks the object.
+fn not_drawn(ui: &mut Ui) {
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        icon::sign(ui, [16.0, 20.0], 6.0, Severity::Error);
+        ui.add(Label::new(NOT_DRAWN).wrap());
+    });
+    ui.add_space(4.0);
 }
 
 /// The values of a row that its copies do not share. Those that the active view sets are its own.
