@@ -408,6 +408,19 @@ mod tests {
     }
 
     #[test]
+    fn the_list_of_keys_follows_headings_then_ranks_then_declarations() {
+        let (session, registry) = (Session::default(), Registry::builtin());
+        let root = declared(&session, &registry, true, false);
+        let all = root.commands();
+        let order = |(_, command): &(Vec<&str>, &Command)| {
+            let at = all.iter().position(|(_, other)| other.id == command.id);
+            (command.heading(), command.rank, at)
+        };
+        let listed: Vec<_> = with_keys(&root).iter().map(order).collect();
+        assert!(listed.len() > 60 && listed.is_sorted(), "{listed:?}");
+    }
+
+    #[test]
     fn a_default_key_that_cannot_be_read_is_reported_and_the_others_stay() {
         let command = command("save", "Save", Action::Save).keys("Strg+S F4");
         assert_eq!(command.keys, [Shortcut::read("F4").expect("a key")]);
