@@ -7,7 +7,7 @@ use super::{
     Sort,
     grasp::{Dragged, snapped},
     paint, plane,
-    shape::{ARM, Around, Body, Extent, GAP, LETTER, LETTER_RADIUS, LETTERS, Placed, STUB},
+    shape::{ARM, Around, Body, GAP, HalfAxes, LETTER, LETTER_RADIUS, LETTERS, Placed, STUB},
 };
 use crate::{
     panel::{
@@ -77,7 +77,7 @@ pub(super) static SORT: Sort = Sort {
 };
 
 /// Distance of a handle from an object with that extent around `middle`, in points; negative if the handle covers it.
-fn gap(handle: &Placed, middle: Pos2, extent: Option<Extent>) -> f32 {
+fn gap(handle: &Placed, middle: Pos2, extent: Option<HalfAxes>) -> f32 {
     let of = |p: Pos2| extent.map_or(0.0, |extent| p.distance(middle) - extent.towards(p - middle));
     handle.points().map(of).fold(f32::INFINITY, f32::min)
 }
@@ -100,7 +100,7 @@ fn arrows_at_edge(
     at: Vec3,
     middle: Pos2,
     arm: f32,
-    (extent, others): (Option<Extent>, &[(Pos2, f32)]),
+    (extent, others): (Option<HalfAxes>, &[(Pos2, f32)]),
     lens: &Lens,
 ) -> Vec<Placed> {
     let inset = (LONGEST * arm + LETTER + LETTER_RADIUS).min(0.5 * lens.rect.size().min_elem());
@@ -140,7 +140,7 @@ fn arrows(
     at: Vec3,
     [origin, middle]: [Pos2; 2],
     arm: f32,
-    clear: Option<Extent>,
+    clear: Option<HalfAxes>,
     lens: &Lens,
 ) -> Vec<Placed> {
     let length = lens.metres(at, arm);

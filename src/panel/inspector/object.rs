@@ -38,7 +38,7 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
         section(ui, "Row", true, |ui| row::row(ui, i, context));
     }
     let model = registry.model(session.scene().model_of(object));
-    let shown = Shown { session, registry, part: Part::Object(i), object, model, varied };
+    let shown = ObjectPanel { session, registry, part: Part::Object(i), object, model, varied };
     shown.files(ui, i, context);
     section(ui, "Reflection", true, |ui| shown.reflection(ui, context));
     section(ui, "Material", true, |ui| shown.material(ui, context));
@@ -71,7 +71,7 @@ fn fixed(row: &Row, session: &Session, registry: &Registry) -> Vec<Key> {
 }
 
 /// The object that is shown, and its surroundings.
-pub(super) struct Shown<'a> {
+pub(super) struct ObjectPanel<'a> {
     pub(super) session: &'a Session,
     pub(super) registry: &'a Registry,
     pub(super) part: Part,
@@ -81,7 +81,7 @@ pub(super) struct Shown<'a> {
     pub(super) varied: Vec<Key>,
 }
 
-impl Shown<'_> {
+impl ObjectPanel<'_> {
     /// The reason why a value cannot be changed here.
     pub(super) fn fixed(&self, key: impl Into<Key>) -> Option<&'static str> {
         let why = "it differs from copy to copy: change its range or its list under “Row”, above";
