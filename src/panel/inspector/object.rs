@@ -22,7 +22,8 @@ use crate::{
 };
 
 /// What the picture lacks, and the remedy.
-const NOT_DRAWN: &str = "Not drawn: the objects are too much for the window. Lower the tessellation of this one or of others, or hide others.";
+const NOT_DRAWN: &str = "Not drawn: the objects are too much for the window. Lower the tessellation of this one or of \
+                         others, or hide others.";
 
 pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());

@@ -41,7 +41,7 @@ impl Stand<'_> {
         let apart = |p: Vec3| self.is_apart(p, step, None);
         let in_view = |p: Vec3| self.shows_light(p) && apart(p);
         let has_dark_side = entry.declaration.has_direction && !is_tube(entry);
-        let is_bright = |p: Vec3| !has_dark_side || self.sees_bright_side(p);
+        let is_bright = |p: Vec3| !has_dark_side || self.sees_bright_side(p, target);
         let fits = |p: Vec3| in_view(p) && is_bright(p);
         // Where the picture is narrower than the usual distance between lights.
         let is_tight = |p: Vec3| self.shows_light(p) && self.is_outside_objects(p);
@@ -66,8 +66,8 @@ impl Stand<'_> {
     }
 
     /// True if the camera sees the side of a lamp that faces what it lights.
-    fn sees_bright_side(&self, at: Vec3) -> bool {
-        let (way, back) = (self.target() - at, self.eye - at);
+    fn sees_bright_side(&self, at: Vec3, target: Vec3) -> bool {
+        let (way, back) = (target - at, self.eye - at);
         way.dot(back) > BRIGHT_SIDE[1] * way.cross(back).length()
     }
 
