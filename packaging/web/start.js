@@ -56,7 +56,7 @@ async function start() {
     }
     const adapter = await Promise.race([navigator.gpu?.requestAdapter(), silence()]);
     if (adapter === SILENT) {
-        return refuse("This browser does not say whether it has WebGPU. Start it anew, or open the page in another one.");
+        return refuse("This browser does not say whether it has WebGPU. Start it anew, or try another one.");
     }
     if (!adapter) {
         return refuse("The laboratory draws with WebGPU, which this browser does not offer. Chrome and Edge from 113, "

@@ -51,8 +51,8 @@ fn row(ui: &mut Ui, i: usize, message: &Note, context: &mut PanelContext<'_>) {
     }
 }
 
-/// The button of a message, whose tooltip says what its action does where the label does not, with the key that does the
-/// same.
+/// The button of a message, with a tooltip where the label does not say what its action does, and with the key that does
+/// the same.
 pub(super) fn explained(button: Response, session: &Session, action: &Action) -> Response {
     let Action::Code(CodeCommand::Recover(path)) = action else { return button };
     let is_next = session.code.kept.last().is_some_and(|kept| kept.path == *path);

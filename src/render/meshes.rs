@@ -153,8 +153,8 @@ impl ShapeMeshes {
         self.known.is_empty()
     }
 
-    /// The objects that are not drawn, as their meshes or their triangles do not fit. One that several views leave out comes
-    /// several times.
+    /// The objects that are not drawn, as their meshes or their triangles do not fit. One that several views leave out
+    /// comes several times.
     pub fn left_out(&self) -> impl Iterator<Item = Entity> {
         self.omitted.iter().map(|(object, _)| *object)
     }

@@ -618,8 +618,8 @@ fn a_page_says_what_it_does_until_its_first_picture_is_there() {
     assert!(said.last().is_some_and(|last| last.starts_with("Web")), "{said:?}");
 }
 
-/// As if by the system: the device is lost, there is no adapter, nothing answers, work on the GPU ends in errors, nothing
-/// reaches the screen.
+/// As if by the system: the device is lost, there is no adapter, nothing answers, work on the GPU ends in errors,
+/// nothing reaches the screen.
 #[test]
 fn a_page_goes_on_with_webgl_when_webgpu_fails() {
     let Some(browser) = Browser::start() else { return };
