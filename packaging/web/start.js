@@ -46,11 +46,18 @@ async function program() {
     return new Response(unpacked, { headers: { "Content-Type": "application/wasm" } });
 }
 
+/** What stands for the graphics card where the browser does not answer within ten seconds: some never do. */
+const SILENT = Symbol("silent");
+const silence = () => new Promise((done) => setTimeout(done, 10000, SILENT));
+
 async function start() {
     if (!globalThis.isSecureContext) {
         return refuse("Browsers give pages a graphics card over https or from this computer alone: open this page so.");
     }
-    const adapter = await navigator.gpu?.requestAdapter();
+    const adapter = await Promise.race([navigator.gpu?.requestAdapter(), silence()]);
+    if (adapter === SILENT) {
+        return refuse("This browser does not say whether it has WebGPU. Start it anew, or try another one.");
+    }
     if (!adapter) {
         return refuse("The laboratory draws with WebGPU, which this browser does not offer. Chrome and Edge from 113, "
             + "Safari from 26 and Firefox from 141 do on most computers.");

@@ -5,7 +5,7 @@ use std::{io, path::PathBuf};
 use super::{
     Options, Outcome, complain,
     engine::ENGINE,
-    evaluate::{Machine, Settings, find},
+    evaluate::{Machine, SetParameters, find},
     print_json, print_paths, print_text,
     workshop::{Places, Workshop, valid},
 };
@@ -103,7 +103,7 @@ fn on_cpu(id: &str, material: Values, registry: &Registry) -> Option<String> {
 /// `lcm models check ID`: for all values of parameters, except for those that are set.
 pub(super) fn check(
     id: &str,
-    set: &Settings,
+    set: &SetParameters,
     as_json: bool,
     options: Options,
     workshop: &mut Workshop,

@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     /// ID of the model, as listed by `lcm models`
     pub model: String,
     #[command(flatten)]
-    pub set: Settings,
+    pub set: SetParameters,
     /// Evaluate on the CPU or on the GPU
     #[arg(long, value_enum, default_value_t = Machine::Cpu)]
     pub on: Machine,
@@ -65,7 +65,7 @@ impl Arguments {
 
 /// Parameters of a model on the command line.
 #[derive(Args, Debug)]
-pub(super) struct Settings {
+pub(super) struct SetParameters {
     /// Set a parameter of the model, such as k_d=0.7 or base_colour=255,128,0; can be repeated
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = Setting::read)]
     pub settings: Vec<Setting>,
@@ -205,7 +205,7 @@ pub(super) fn unknown(registry: &Registry, id: &str, what: String) -> Failure {
     }
 }
 
-impl Settings {
+impl SetParameters {
     /// The values for a model.
     pub(super) fn values(&self, model: &ModelEntry) -> Result<Values, Failure> {
         let mut values = Values::default();

@@ -1,6 +1,6 @@
 //! `lcm models`: the reflection models, shading models, light types and object types.
 
-use super::{Options, Outcome, custom, evaluate::Settings, print_json, print_text, workshop::Places};
+use super::{Options, Outcome, custom, evaluate::SetParameters, print_json, print_text, workshop::Places};
 use crate::files::Shown as _;
 use crate::{
     failure::Failure,
@@ -45,7 +45,7 @@ enum Command {
         /// ID of the model, as listed by `lcm models`
         id: String,
         #[command(flatten)]
-        set: Settings,
+        set: SetParameters,
         /// Print the result as JSON
         #[arg(long)]
         json: bool,

@@ -9,7 +9,7 @@ use clap::{Args, builder::PossibleValuesParser, builder::TypedValueParser as _};
 
 use super::{
     Options, Outcome, complain,
-    evaluate::{Machine, Settings, find, setting},
+    evaluate::{Machine, SetParameters, find, setting},
     outputs, print, progress,
     workshop::{Workshop, valid},
 };
@@ -50,7 +50,7 @@ pub(super) struct Arguments {
     #[arg(value_name = "MODEL[:NAME=VALUE]", required_unless_present = "data")]
     wanted: Vec<String>,
     #[command(flatten)]
-    set: Settings,
+    set: SetParameters,
     #[arg(long, value_parser = kind(), default_value = "f", hide_possible_values = true, help = format!("The quantity: {}", Kind::listed()))]
     kind: Kind,
     /// The angle between light and normal, degrees, for kinds in the plane of incidence
@@ -135,7 +135,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
 }
 
 /// The models with their parameters.
-fn subjects(models: &[Wanted], set: &Settings, registry: &Registry) -> Result<Vec<Subject>, Failure> {
+fn subjects(models: &[Wanted], set: &SetParameters, registry: &Registry) -> Result<Vec<Subject>, Failure> {
     let mut subjects = Vec::new();
     let mut problems = Vec::new();
     let mut entries = Vec::new();

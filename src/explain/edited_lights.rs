@@ -36,7 +36,7 @@ impl EditedLights {
         light: &Light,
         registry: &Registry,
         encoding: Encoding,
-    ) -> Option<Lamp<'_>> {
+    ) -> Option<EditedLamp<'_>> {
         let sources = registry.sources();
         if self.sources != *sources {
             (self.sources, self.functions) = (sources.clone(), HashMap::new());
@@ -46,7 +46,7 @@ impl EditedLights {
         let functions = known.or_insert_with(|| Functions::of(entry, sources)).as_ref()?;
         let (own, files) = entry.arguments(&light.parameters, encoding);
         let fits = files.len() <= numbers_of_files(entry);
-        fits.then(|| Lamp { functions, own, files, record: record(light, registry, encoding) })
+        fits.then(|| EditedLamp { functions, own, files, record: record(light, registry, encoding) })
     }
 }
 
@@ -76,14 +76,14 @@ impl Functions {
 }
 
 /// A light with its parameters.
-pub(super) struct Lamp<'a> {
+pub(super) struct EditedLamp<'a> {
     functions: &'a Functions,
     own: Vec<u32>,
     files: Vec<u32>,
     record: LightRecord,
 }
 
-impl Lamp<'_> {
+impl EditedLamp<'_> {
     /// True if the type has extent: [`sample`](Self::sample) and [`seen`](Self::seen) instead of
     /// [`incident`](Self::incident).
     pub(super) fn has_extent(&self) -> bool {

@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3};
 
 use super::{
     Part, Seen as Explained,
-    edited_lights::{EditedLights, Lamp},
+    edited_lights::{EditedLamp, EditedLights},
     numbers::{number, triple},
     pixel,
 };
@@ -212,7 +212,7 @@ fn given(entry: &LightEntry, emitter: &dyn Emitter, record: &LightRecord, p: Vec
 }
 
 /// The same by its functions in WGSL.
-fn interpreted(lamp: &Lamp, p: Vec3) -> Option<Odd> {
+fn interpreted(lamp: &EditedLamp, p: Vec3) -> Option<Odd> {
     match lamp.has_extent() {
         true => with_extent(|u| lamp.sample(p, u), |l| lamp.seen(p, l)),
         false => of_direction(lamp.incident(p)),

@@ -67,7 +67,7 @@ impl<T> PartialEq for Same<T> {
 }
 
 /// The answers of a thread to questions, one at a time.
-pub(super) struct Background<Q, A> {
+pub(super) struct Answers<Q, A> {
     /// The latest answer, with its question.
     pub(super) shown: Option<(Q, A)>,
     running: Option<(Q, Receiver<A>)>,
@@ -75,13 +75,13 @@ pub(super) struct Background<Q, A> {
     pub(super) calculations: u64,
 }
 
-impl<Q, A> Default for Background<Q, A> {
+impl<Q, A> Default for Answers<Q, A> {
     fn default() -> Self {
         Self { shown: None, running: None, calculations: 0 }
     }
 }
 
-impl<Q: Clone + PartialEq, A: Send + 'static> Background<Q, A> {
+impl<Q: Clone + PartialEq, A: Send + 'static> Answers<Q, A> {
     /// True while an answer is being calculated.
     pub(super) fn is_busy(&self) -> bool {
         self.running.is_some()

@@ -1,8 +1,10 @@
 //! The strip at the bottom: messages, which stay until they are dismissed.
 
 use super::{
+    command::{CONTINUE, CONTINUE_TIP},
+    keys,
     prelude::*,
-    state::{Effect, Note},
+    state::{CodeCommand, Effect, Note},
 };
 
 /// The *Messages* panel.
@@ -37,7 +39,7 @@ fn row(ui: &mut Ui, i: usize, message: &Note, context: &mut PanelContext<'_>) {
         ui.add_space(2.0);
         ui.add(Label::new(RichText::new(&message.text)).wrap().selectable(true));
         if let Some((label, action)) = &message.offer
-            && ui.button(*label).clicked()
+            && explained(ui.button(*label), context.session(), action).clicked()
         {
             context.act((**action).clone());
         }
@@ -47,4 +49,13 @@ fn row(ui: &mut Ui, i: usize, message: &Note, context: &mut PanelContext<'_>) {
     if icon::button(ui, Icon::Cross, "Dismiss the message").clicked() {
         context.act(Action::Dismiss(i));
     }
+}
+
+/// The button of a message, with a tooltip where the label does not say what its action does, and with the key that does
+/// the same.
+pub(super) fn explained(button: Response, session: &Session, action: &Action) -> Response {
+    let Action::Code(CodeCommand::Recover(path)) = action else { return button };
+    let is_next = session.code.kept.last().is_some_and(|kept| kept.path == *path);
+    let tip = if is_next { keys::hint(&button.ctx, CONTINUE_TIP, CONTINUE) } else { CONTINUE_TIP.to_owned() };
+    button.on_hover_text(tip)
 }

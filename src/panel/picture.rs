@@ -14,7 +14,7 @@ use super::{
     handles, keys, labels, marks,
     placer::{self, Placer},
     prelude::*,
-    presentation::{self, CAPTION, Footer, Needed, Spot, Stage},
+    presentation::{self, CAPTION, Footer, Needed, PlatePlace, Stage},
     state::{Badge, Cell, SHADER_TAB},
     wires,
 };
@@ -61,8 +61,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         over.single(ui, [whole, frame], stage.as_ref());
         (whole, frame, stage.map_or_else(Vec::new, |stage| vec![stage.free()]))
     } else {
-        let spot = several.then(|| Spot::of_pictures(ui, arrangement.cells[0].rect, session, needed));
-        if let Some(Spot::Band(band)) = spot {
+        let spot = several.then(|| PlatePlace::of_pictures(ui, arrangement.cells[0].rect, session, needed));
+        if let Some(PlatePlace::Band(band)) = spot {
             arrangement = compare::arrange(session, whole, high, band);
         }
         over.views(ui, &arrangement, spot);
@@ -187,7 +187,7 @@ impl<'a> Overlaid<'_, 'a> {
 
     /// Paints the overlays of a comparison: marks and handles into every view, and messages about the picture into the
     /// active one. In a presentation, `spot` is the place of its plates.
-    fn views(&mut self, ui: &mut Ui, arrangement: &Arrangement, spot: Option<Spot>) {
+    fn views(&mut self, ui: &mut Ui, arrangement: &Arrangement, spot: Option<PlatePlace>) {
         let (session, registry) = (self.context.session(), self.context.registry());
         let cells = &arrangement.cells;
         let layout = session.document.comparison.layout;
@@ -226,7 +226,7 @@ impl<'a> Overlaid<'_, 'a> {
     }
 
     /// Paints the plates of a presentation of several views, where they hide no object.
-    fn on_slide(&mut self, ui: &mut Ui, cells: &[Cell], spot: Spot) {
+    fn on_slide(&mut self, ui: &mut Ui, cells: &[Cell], spot: PlatePlace) {
         let (session, registry) = (self.context.session(), self.context.registry());
         let layout = session.document.comparison.layout;
         let palette = Palette::here(ui);

@@ -1,7 +1,7 @@
 //! The status line at the bottom: messages, shader errors, the selection.
 
 use super::{
-    export, fits, keys, matching,
+    export, fits, keys, matching, messages,
     prelude::*,
     state::{Converging, MESSAGES_TAB, SHADER_TAB},
     taking,
@@ -117,10 +117,9 @@ fn latest(ui: &mut Ui, beside: f32, context: &mut PanelContext<'_>) {
     let galley = theme::elided(ui, &message.text, TextStyle::Small, colour, room);
     let label = ui.add(Label::new(galley));
     label.on_hover_text(&message.text);
-    if let Some((text, action)) = &message.offer
-        && ui.add(Button::new(theme::small(ui, *text).color(colour)).small()).clicked()
-    {
-        context.act((**action).clone());
+    if let Some((text, action)) = &message.offer {
+        let button = ui.add(Button::new(theme::small(ui, *text).color(colour)).small());
+        context.on_click(&messages::explained(button, session, action), || (**action).clone());
     }
 }
 

@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, sync::Mutex, time::Duration};
 
 use bevy_egui::egui::Mesh;
 
-use super::{kept::Background, marks::Lens, prelude::*};
+use super::{kept::Answers, marks::Lens, prelude::*};
 use crate::{
     caught::{catch, lock},
     channel::DebugChannel,
@@ -57,7 +57,7 @@ struct OfView {
     /// Scene of the view, without the camera of the window.
     scene: Option<(Revision, Arc<Scene>)>,
     drawer: Arc<Mutex<WireDrawer>>,
-    lines: Background<Question, Arc<Wires>>,
+    lines: Answers<Question, Arc<Wires>>,
     /// The latest drawn mesh.
     drawn: Option<(Arc<Wires>, Sight, Arc<Mesh>)>,
 }

@@ -19,7 +19,7 @@ use crate::{
 
 /// Everything from which a channel is calculated, apart from the point.
 #[derive(Clone)]
-pub(super) struct Sight(Arc<Parts>);
+pub(super) struct ChannelSight(Arc<Parts>);
 
 struct Parts {
     setting: Setting,
@@ -31,7 +31,7 @@ struct Parts {
     encoding: Encoding,
 }
 
-impl Sight {
+impl ChannelSight {
     pub(super) fn new(Shot { scene, registry, settings, .. }: Shot, setting: Setting) -> Self {
         let encoding = scene.display.encoding;
         let size = [settings.width as f32, settings.height as f32];
@@ -146,7 +146,7 @@ mod tests {
         let (mut scene, registry) = (Scene::default(), Registry::builtin());
         scene.display.exposure = exposure;
         let setting = Setting::new(channel, &scene, &registry, scene.observer.position, None);
-        let sight = Sight::new(Shot::new(&scene, &registry, &Settings::default()), setting);
+        let sight = ChannelSight::new(Shot::new(&scene, &registry, &Settings::default()), setting);
         Arc::into_inner(sight.0).expect("no one else has it")
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::{Drawing, Picture, Reached, Settings, Shot, Until, channel::Sight, render_until};
+use super::{Drawing, Picture, Reached, Settings, Shot, Until, channel::ChannelSight, render_until};
 use crate::{
     channel::{Layer, Setting, settle},
     linear::Channels,
@@ -16,7 +16,7 @@ use crate::{
 #[must_use]
 pub fn render_numbers(scene: &Scene, registry: &Registry, settings: &Settings, setting: &Setting) -> Picture {
     let shot = Shot::new(scene, registry, settings);
-    let sight = Sight::new(shot, *setting);
+    let sight = ChannelSight::new(shot, *setting);
     Drawing { sight: Some(&|draw| sight.seen(draw)), ..shot.drawing() }.light()
 }
 

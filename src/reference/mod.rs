@@ -66,7 +66,7 @@ pub(crate) mod visible;
 mod wires;
 
 pub use crate::optics::colour::BACKGROUND;
-use channel::Sight;
+use channel::ChannelSight;
 pub(crate) use converge::{BLOCK, ENOUGH, relative_error};
 pub use converge::{Reached, Until, render_until};
 use display::DisplayTransform;
@@ -262,7 +262,7 @@ pub fn render_channel_by(
         return render_rgb8(&setting.lit(scene), registry, settings);
     }
     let shot = Shot::new(scene, registry, settings);
-    let sight = Sight::new(shot, Setting { channel: setting.channel.ground(), ..*setting });
+    let sight = ChannelSight::new(shot, Setting { channel: setting.channel.ground(), ..*setting });
     let remaining = setting.channel.is_of_remaining();
     let drawing = Drawing { sight: Some(&|draw| sight.seen(draw)), remaining, samples, ..shot.drawing() };
     let mut rgb8 = drawing.rgb8(&Display::default());

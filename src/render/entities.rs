@@ -85,7 +85,8 @@ impl SceneEntities {
     }
 
     /// The index of the object represented by an entity.
-    pub(super) fn place_of(&self, object: Entity) -> Option<usize> {
+    #[must_use]
+    pub fn place_of(&self, object: Entity) -> Option<usize> {
         self.places.get(&object).copied().filter(|i| self.objects.get(*i) == Some(&object))
     }
 

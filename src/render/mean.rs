@@ -27,7 +27,7 @@ use bevy::{
 use super::{
     converge::{Convergence, Part},
     illumination::{IlluminationBuffer, SAMPLES_AT, sample_bytes},
-    noise::{Blocks, Frame, Grown, Measuring, Noise},
+    noise::{AddedFrame, Blocks, Grown, Measuring, Noise},
     pass::Cover,
     stage::Stage,
     view::{Drawing, View},
@@ -58,7 +58,7 @@ pub(super) struct MeanSystems;
 /// The contribution of a view's frame to its mean.
 #[derive(Component, Clone, Copy, Debug)]
 struct Joins {
-    frame: Frame,
+    frame: AddedFrame,
     illumination: AssetId<ShaderBuffer>,
 }
 
@@ -121,7 +121,7 @@ fn extract(
         let illumination = stage.map_or(&shared.buffers, |stage| &stage.illumination).lights.id();
         samples.wanted.insert(illumination, part);
         let (number, converged) = (drawing.drawn(), drawing.converged());
-        let frame = Frame { view, number, converged, part };
+        let frame = AddedFrame { view, number, converged, part };
         commands.entity(entity).insert(Joins { frame, illumination });
     }
     // Views that have converged, and cameras that are views no more.

@@ -153,6 +153,12 @@ impl ShapeMeshes {
         self.known.is_empty()
     }
 
+    /// The objects that are not drawn, as their meshes or their triangles do not fit. One that several views leave out
+    /// comes several times.
+    pub fn left_out(&self) -> impl Iterator<Item = Entity> {
+        self.omitted.iter().map(|(object, _)| *object)
+    }
+
     /// The number of omitted objects.
     pub(super) fn omitted(&self) -> usize {
         self.omitted.len()
@@ -558,6 +564,8 @@ mod tests {
             problem.contains("million triangles") && problem.contains("1 object is not drawn; give objects"),
             "{problem}"
         );
+        let left_out: Vec<_> = world.resource::<ShapeMeshes>().left_out().collect();
+        assert_eq!(left_out, [objects[2]]);
 
         take_off(&mut world, objects[0]);
         world.despawn(objects[1]);

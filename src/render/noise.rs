@@ -100,7 +100,7 @@ impl Noise {
 
 /// A frame that is added to the mean of a view.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
+pub(super) struct AddedFrame {
     /// The view in the main world.
     pub(super) view: Entity,
     pub(super) number: u64,
@@ -124,8 +124,8 @@ pub(super) struct Blocks {
 
 impl Blocks {
     /// Adds a frame.
-    pub(super) fn add(&mut self, frame: &Frame) {
-        let Frame { part: Part { first, count }, converged: Converged { done, total }, .. } = *frame;
+    pub(super) fn add(&mut self, frame: &AddedFrame) {
+        let AddedFrame { part: Part { first, count }, converged: Converged { done, total }, .. } = *frame;
         if done == count {
             *self = Self::default();
         }
@@ -142,7 +142,7 @@ impl Blocks {
 
     /// The numbers that `mean.wgsl` needs to add the last frame: its part in the mean, the weight of the square of
     /// the change since the block began, and 1 at the end of a block.
-    pub(super) fn weights(self, frame: &Frame) -> [f32; 4] {
+    pub(super) fn weights(self, frame: &AddedFrame) -> [f32; 4] {
         let done = frame.converged.done;
         let [all, before] = [done, done.saturating_sub(BLOCK)].map(|samples| samples as f32);
         let squares = if self.completes() { all * before / BLOCK as f32 } else { 0.0 };
@@ -153,7 +153,7 @@ impl Blocks {
 /// A picture to which a frame was added.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grown {
-    pub(super) frame: Frame,
+    pub(super) frame: AddedFrame,
     pub(super) blocks: Blocks,
 }
 
@@ -205,7 +205,7 @@ fn read(mut measuring: ResMut<Measuring>, noise: Res<Noise>) {
         let (noise, mapped) = (noise.clone(), buffer.clone());
         buffer.slice(..).map_async(MapMode::Read, move |result| {
             let sums = result.is_ok().then(|| mapped.slice(..).get_mapped_range().to_vec());
-            let Frame { view, number: frame, converged, .. } = grown.frame;
+            let AddedFrame { view, number: frame, converged, .. } = grown.frame;
             let known = sums.and_then(|bytes| noise_of(&bytes, grown.blocks.whole, converged.done));
             noise.tell(view, Known { frame, noise: known });
         });
@@ -247,7 +247,7 @@ mod tests {
     }
 
     /// The frames of a picture of `total` samples that begins with sample `first`, each with at most `most`.
-    fn frames(first: u32, total: u32, most: u32) -> Vec<Frame> {
+    fn frames(first: u32, total: u32, most: u32) -> Vec<AddedFrame> {
         let (mut next, mut done) = (first, 0);
         let mut frames = Vec::new();
         while done < total {
@@ -256,7 +256,7 @@ mod tests {
             let part = Part { first: next, count: aligned.min(1 << room.ilog2()) };
             (next, done) = ((next + part.count) % total, done + part.count);
             let converged = Converged { done, total };
-            frames.push(Frame { view: Entity::PLACEHOLDER, number: 1, converged, part });
+            frames.push(AddedFrame { view: Entity::PLACEHOLDER, number: 1, converged, part });
         }
         frames
     }
@@ -307,7 +307,7 @@ mod tests {
         let grown = |whole, last, done| {
             let (converged, part) = (Converged { done, total: 100 }, Part { first: done - 4, count: 4 });
             let blocks = Blocks { whole, last, ended: done.is_multiple_of(BLOCK) || done == 100 };
-            Grown { frame: Frame { view: entity, number: 1, converged, part }, blocks }
+            Grown { frame: AddedFrame { view: entity, number: 1, converged, part }, blocks }
         };
         for (whole, last, done, is) in [
             (1, BLOCK, 16, false),

@@ -192,9 +192,16 @@ mod tests {
         files.sort();
         known.sort();
         assert_eq!(known, files);
+        let registry = Registry::builtin();
         for example in EXAMPLES.iter() {
             assert!(!example.name.is_empty() && !example.description.is_empty(), "{}", example.file);
             let scene = example.scene(&Registry::builtin()).expect(example.file);
+            for light in &scene.lights {
+                let name = light.name.as_deref().unwrap_or_default();
+                let mut ids = registry.lights().iter().map(|entry| entry.declaration.id);
+                let misled = ids.any(|id| id == name && id != light.light_type);
+                assert!(!misled, "{}: a light of type {} named {name}", example.file, light.light_type);
+            }
             // In prose, parameters have names and not identifiers.
             let names = scene.lights.iter().map(|l| &l.name).chain(scene.objects.iter().map(|o| &o.name));
             for text in names.flatten().chain([&example.name, &example.description]) {

@@ -1,6 +1,6 @@
 //! The document of the window: files, history, and synchronisation with the displayed scene in both directions.
 
-use std::path::Path;
+use std::{collections::BTreeSet, path::Path};
 
 use bevy::prelude::*;
 
@@ -267,9 +267,15 @@ fn take_over(
     mut session: ResMut<Session>,
 ) {
     let problem = meshes.problem();
+    let left_out = meshes.left_out().filter(|_| problem.is_some());
+    let left_out: BTreeSet<_> = left_out.filter_map(|object| entities.place_of(object)).collect();
+    if !session.facts.not_drawn.iter().eq(&left_out) {
+        session.bypass_change_detection().facts.not_drawn = left_out.into_iter().collect();
+    }
     if *reported != problem {
         if let Some(problem) = &problem {
-            session.say(Severity::Error, sentence(problem));
+            let text = format!("{} {}", sentence(problem), session.names_not_drawn(&registry));
+            session.say(Severity::Error, text.trim_end());
         }
         *reported = problem;
     }

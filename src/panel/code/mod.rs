@@ -11,7 +11,7 @@
 use std::{collections::HashMap, sync::Mutex, time::Duration};
 
 use super::{
-    kept::Background,
+    kept::Answers,
     prelude::*,
     state::{CodeCommand, CodeOf, OpenCode, Theirs},
 };
@@ -60,7 +60,7 @@ pub(super) struct CodePanel {
     cursor_at: Rect,
     /// True if the cursor is to be brought into sight.
     reveals: bool,
-    checks: Mutex<Background<Question, Checked>>,
+    checks: Mutex<Answers<Question, Checked>>,
     /// The latest outcome.
     checked: Option<(Question, Checked)>,
     /// The text that was typed last, and when.

@@ -1,6 +1,6 @@
 //! The menu of the parts of the scene and of custom models.
 
-use super::{Group, List, Menu, command};
+use super::{CONTINUE, CONTINUE_TIP, Group, List, Menu, command};
 use crate::{
     document::{Edit, Selection},
     panel::{
@@ -183,6 +183,12 @@ fn models(to: &mut List) {
         to.add(
             code("scene_code", "Edit the scene as JSON", CodeCommand::Scene).keys("Ctrl+Shift+J").at_desk(),
         );
+        // That of the message on top.
+        let kept = to.session.code.kept.last().map(|kept| kept.path.clone());
+        let is_none = kept.is_none();
+        let recover = CodeCommand::Recover(kept.unwrap_or_default());
+        let go_on = code(CONTINUE, "Continue with unsaved text", recover).keys("Ctrl+Shift+R");
+        to.add(go_on.tip(CONTINUE_TIP).at_desk().absent(is_none));
     });
     let export = Action::Do(Effect::Pick(Pick::ShaderFolder));
     to.add(command("export_shaders", "Export shaders for editing…", export).group(Group::CustomModels));

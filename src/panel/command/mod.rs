@@ -26,6 +26,11 @@ pub(super) const BAR: [(&str, &str); 4] =
 /// The id of the finder.
 pub(super) const FINDER: &str = "find";
 
+/// The id and the tooltip of the command that opens unsaved text of an earlier window.
+pub(super) const CONTINUE: &str = "continue_text";
+pub(super) const CONTINUE_TIP: &str =
+    "Opens the text in the panel Code; no file is overwritten until you save it there";
+
 /// The menus that others show too, or add to.
 pub(super) const EXAMPLES: &str = "Examples";
 pub(super) const LESSONS: &str = "Lessons";
@@ -400,6 +405,19 @@ mod tests {
         for tab in lesson::TABS {
             assert!(tabs.contains(tab), "{tab} is not one of {tabs:?}");
         }
+    }
+
+    #[test]
+    fn the_list_of_keys_follows_headings_then_ranks_then_declarations() {
+        let (session, registry) = (Session::default(), Registry::builtin());
+        let root = declared(&session, &registry, true, false);
+        let all = root.commands();
+        let order = |(_, command): &(Vec<&str>, &Command)| {
+            let at = all.iter().position(|(_, other)| other.id == command.id);
+            (command.heading(), command.rank, at)
+        };
+        let listed: Vec<_> = with_keys(&root).iter().map(order).collect();
+        assert!(listed.len() > 60 && listed.is_sorted(), "{listed:?}");
     }
 
     #[test]

@@ -20,7 +20,7 @@ use crate::{
         hemisphere::{Above, DISCS, Hemisphere, Shining, above},
     },
     panel::{
-        kept::{Background, Same},
+        kept::{Answers, Same},
         prelude::*,
     },
 };
@@ -50,7 +50,7 @@ struct Discs {
 }
 
 /// The calculation of discs; none where it crashes.
-type Work = Background<Question, Option<Arc<Discs>>>;
+type Work = Answers<Question, Option<Arc<Discs>>>;
 
 /// The discs or, while they are calculated, the previous discs if they belong to the same point.
 fn answer(

@@ -26,7 +26,7 @@ use crate::{
     optics::TermSelection,
     panel::{
         channels, command,
-        kept::{Background, Same},
+        kept::{Answers, Same},
         keys,
         prelude::*,
         segmented,
@@ -60,7 +60,7 @@ pub struct Lobes {
 type Question = (Same<Explained>, usize, Vec<usize>);
 
 /// Lobes of one view, and their calculation.
-type Work = Background<Question, Arc<Lobes>>;
+type Work = Answers<Question, Arc<Lobes>>;
 
 #[derive(Default)]
 struct Works {

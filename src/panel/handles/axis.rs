@@ -9,7 +9,7 @@ use super::{
     Sort,
     grasp::{Dragged, snapped},
     paint, plane,
-    shape::{ARM, Around, Body, Extent, GAP, LETTER, LETTER_RADIUS, LETTERS, Placed, STUB},
+    shape::{ARM, Around, Body, GAP, HalfAxes, LETTER, LETTER_RADIUS, LETTERS, Placed, STUB},
 };
 use crate::{
     panel::{
@@ -84,7 +84,7 @@ pub(super) static SORT: Sort = Sort {
 };
 
 /// Distance of a handle from an object with that extent around `middle`, in points; negative if the handle covers it.
-fn gap(handle: &Placed, middle: Pos2, extent: Option<Extent>) -> f32 {
+fn gap(handle: &Placed, middle: Pos2, extent: Option<HalfAxes>) -> f32 {
     let of = |p: Pos2| extent.map_or(0.0, |extent| p.distance(middle) - extent.towards(p - middle));
     handle.points().map(of).fold(f32::INFINITY, f32::min)
 }
@@ -103,7 +103,7 @@ fn others(session: &Session, at: Vec3, lens: &Lens) -> Vec<(Pos2, f32)> {
 
 /// Places for the middle of arrows beside an object, the nearest first. Those below come before others at the same
 /// distance: badges and captions tend to be at the top.
-fn origins(middle: Pos2, arm: f32, extent: Extent, lens: &Lens) -> impl Iterator<Item = Pos2> {
+fn origins(middle: Pos2, arm: f32, extent: HalfAxes, lens: &Lens) -> impl Iterator<Item = Pos2> {
     let step = (LONGEST * arm + LETTER + LETTER_RADIUS) / f32::from(STEPS);
     let way = |k: u8| {
         // Downwards, then to either side in turn.
@@ -181,7 +181,7 @@ fn arrows(
     at: Vec3,
     [origin, middle]: [Pos2; 2],
     arm: f32,
-    clear: Option<Extent>,
+    clear: Option<HalfAxes>,
     lens: &Lens,
 ) -> Vec<Placed> {
     let length = lens.metres(at, arm);

@@ -7,7 +7,7 @@ use super::{
     Sort,
     grasp::{Dragged, snapped},
     paint,
-    shape::{ARM, Body, DISC, Extent, GAP, Placed},
+    shape::{ARM, Body, DISC, GAP, HalfAxes, Placed},
 };
 
 /// Distance from the centre of the disc that moves in the picture plane, in points.
@@ -31,7 +31,7 @@ pub(super) static SORT: Sort = Sort {
 };
 
 /// The disc among the arrows of the axes, which place it.
-pub(super) fn disc(at: Vec3, origin: Pos2, arm: f32, clear: Option<Extent>, arrows: &[Placed]) -> Placed {
+pub(super) fn disc(at: Vec3, origin: Pos2, arm: f32, clear: Option<HalfAxes>, arrows: &[Placed]) -> Placed {
     // In the widest gap between the arrows, preferably at the upper right.
     let ways: Vec<Vec2> = arrows.iter().map(|p| (p.end - origin).normalized()).collect();
     let corners = [vec2(1.0, -1.0), vec2(-1.0, -1.0), vec2(1.0, 1.0), vec2(-1.0, 1.0)].map(Vec2::normalized);

@@ -9,7 +9,7 @@ use super::{
     Sort,
     grasp::{DEGREES, Dragged, snapped, twist, wrapped},
     paint,
-    shape::{Around, Body, CLEAR, Extent, LETTER, LETTER_RADIUS, LETTERS, Placed},
+    shape::{Around, Body, CLEAR, HalfAxes, LETTER, LETTER_RADIUS, LETTERS, Placed},
 };
 use crate::{
     panel::{marks::Lens, state::HandleMode},
@@ -31,7 +31,7 @@ pub(super) static SORT: Sort = Sort {
             return Vec::new();
         }
         let most = 0.5 * lens.rect.size().max_elem() - LETTER;
-        let around = |extent: Extent| (extent.most() + CLEAR).min(most).max(part * RING);
+        let around = |extent: HalfAxes| (extent.most() + CLEAR).min(most).max(part * RING);
         let radius = extent.map_or(part * RING, around);
         (0..3).map(|axis| ring(target.at, axis, radius, lens).beyond(*middle, *extent)).collect()
     },

@@ -166,7 +166,7 @@ impl Placed {
     }
 
     /// Removes the parts of the lines that lie in front of the object.
-    pub(super) fn beyond(mut self, middle: Pos2, object: Option<Extent>) -> Self {
+    pub(super) fn beyond(mut self, middle: Pos2, object: Option<HalfAxes>) -> Self {
         let Some(object) = object else { return self };
         for lines in [&mut self.lines, &mut self.far] {
             let runs = lines
@@ -206,7 +206,7 @@ pub(super) struct Around<'a> {
     /// The size of handles in the view.
     pub(super) part: f32,
     /// The extent of the object.
-    pub(super) extent: Option<Extent>,
+    pub(super) extent: Option<HalfAxes>,
 }
 
 /// The handles of a target in a mode, in the order in which they are painted.
@@ -214,16 +214,16 @@ pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens:
     let Some(middle) = lens.project(target.at).filter(|p| lens.rect.contains(*p)) else {
         return Vec::new();
     };
-    let (part, extent) = (part_of(lens), Extent::of(target, middle, lens));
+    let (part, extent) = (part_of(lens), HalfAxes::of(target, middle, lens));
     let around = Around { target, mode, session, lens, middle, part, extent };
     SORTS.iter().flat_map(|sort| (sort.placed)(&around)).collect()
 }
 
 /// Extent of an object in the picture: the projected half axes of the ellipsoid inscribed in its bounds, in points.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Extent([Vec2; 3]);
+pub(super) struct HalfAxes([Vec2; 3]);
 
-impl Extent {
+impl HalfAxes {
     /// Extent of the target's object; `None` if the target is a light or an axis ends behind the camera.
     pub(super) fn of(target: &Target, middle: Pos2, lens: &Lens) -> Option<Self> {
         let Body::Object(object, half) = target.body else { return None };

@@ -7,7 +7,7 @@ use super::{
     Sort,
     grasp::{Dragged, snapped},
     paint,
-    shape::{Around, Body, DISC, Extent, GAP, Placed},
+    shape::{Around, Body, DISC, GAP, HalfAxes, Placed},
 };
 use crate::panel::{
     marks::{Lens, Ray},
@@ -46,7 +46,7 @@ pub(super) static SORT: Sort = Sort {
 };
 
 /// The size handle, to the upper right of the centre.
-fn size(at: Vec3, middle: Pos2, radius: f32, clear: Option<Extent>, lens: &Lens) -> Option<Placed> {
+fn size(at: Vec3, middle: Pos2, radius: f32, clear: Option<HalfAxes>, lens: &Lens) -> Option<Placed> {
     let way = vec2(1.0, -1.0).normalized();
     let clear = clear.map_or(GAP, |clear| clear.towards(way));
     let edge =

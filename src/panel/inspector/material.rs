@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::{CollapsingHeader, TextFormat, text::LayoutJob};
 
-use super::{measured::measured, object::Shown, part::knob_of, variant::marked};
+use super::{measured::measured, object::ObjectPanel, part::knob_of, variant::marked};
 use crate::{
     panel::{
         knob,
@@ -16,7 +16,7 @@ use crate::{
     shading::ShadingEntry,
 };
 
-impl Shown<'_> {
+impl ObjectPanel<'_> {
     /// The knobs of the parameters of the model, and the parameters that it does not use.
     pub(super) fn material(&self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let Self { session, registry, part, object, model, .. } = *self;

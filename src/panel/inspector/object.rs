@@ -21,10 +21,17 @@ use crate::{
     shading::ShadingEntry,
 };
 
+/// What the picture lacks, and the remedy.
+const NOT_DRAWN: &str = "Not drawn: the objects are too much for the window. Lower the tessellation of this one or of \
+                         others, or hide others.";
+
 pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
     let Some(object) = session.scene().objects.get(i) else { return };
     header(ui, Selection::Object(i), object.name.as_deref(), context);
+    if session.is_not_drawn(i) {
+        not_drawn(ui);
+    }
     let row = session.document.row(i);
     let (in_row, varied) = (row.is_some(), row.map_or_else(Vec::new, |row| fixed(&row, session, registry)));
     if in_row {
@@ -32,7 +39,7 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
         section(ui, "Row", true, |ui| row::row(ui, i, context));
     }
     let model = registry.model(session.scene().model_of(object));
-    let shown = Shown { session, registry, part: Part::Object(i), object, model, varied };
+    let shown = ObjectPanel { session, registry, part: Part::Object(i), object, model, varied };
     shown.files(ui, i, context);
     section(ui, "Reflection", true, |ui| shown.reflection(ui, context));
     section(ui, "Material", true, |ui| shown.material(ui, context));
@@ -45,6 +52,16 @@ pub(super) fn object(ui: &mut Ui, i: usize, context: &mut PanelContext<'_>) {
     }
 }
 
+/// Says that the picture lacks the object.
+fn not_drawn(ui: &mut Ui) {
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        icon::sign(ui, [16.0, 20.0], 6.0, Severity::Error);
+        ui.add(Label::new(NOT_DRAWN).wrap());
+    });
+    ui.add_space(4.0);
+}
+
 /// The values of a row that its copies do not share. Those that the active view sets are its own.
 fn fixed(row: &Row, session: &Session, registry: &Registry) -> Vec<Key> {
     let is_of_view = |key: &Key| {
@@ -55,7 +72,7 @@ fn fixed(row: &Row, session: &Session, registry: &Registry) -> Vec<Key> {
 }
 
 /// The object that is shown, and its surroundings.
-pub(super) struct Shown<'a> {
+pub(super) struct ObjectPanel<'a> {
     pub(super) session: &'a Session,
     pub(super) registry: &'a Registry,
     pub(super) part: Part,
@@ -65,7 +82,7 @@ pub(super) struct Shown<'a> {
     pub(super) varied: Vec<Key>,
 }
 
-impl Shown<'_> {
+impl ObjectPanel<'_> {
     /// The reason why a value cannot be changed here.
     pub(super) fn fixed(&self, key: impl Into<Key>) -> Option<&'static str> {
         let why = "it differs from copy to copy: change its range or its list under “Row”, above";

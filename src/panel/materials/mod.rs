@@ -8,7 +8,7 @@ use bevy_egui::egui::{LayerId, Order, TextEdit};
 use super::{
     cover::takes_drops,
     draft::is_new,
-    kept::Background,
+    kept::Answers,
     marks::Lens,
     prelude::*,
     rank::{leave_out_chance, rank},
@@ -55,7 +55,7 @@ struct Found {
 /// See the module.
 #[derive(Default)]
 pub(super) struct MaterialPanel {
-    library: Mutex<Background<Question, Arc<Library>>>,
+    library: Mutex<Answers<Question, Arc<Library>>>,
     opened: u64,
     focused: bool,
     search: String,

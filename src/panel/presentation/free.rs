@@ -83,14 +83,14 @@ fn key(ui: &Ui, whole: Rect, session: &Session) -> u64 {
 
 /// The place of the plates over a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::panel) enum Spot {
+pub(in crate::panel) enum PlatePlace {
     /// A corner, for a column of this height.
     Corner(Align2, f32),
     /// A band of this height above the picture.
     Band(f32),
 }
 
-impl Spot {
+impl PlatePlace {
     /// The spot that is free in every one of several pictures of the same size.
     pub(in crate::panel) fn of_pictures(ui: &Ui, picture: Rect, session: &Session, needed: Needed) -> Self {
         // A turning camera must not move the layout.

@@ -22,7 +22,7 @@ use super::{
 use crate::reflection::{ModelEntry, Term};
 
 pub use footer::Footer;
-pub(super) use free::{Needed, Spot, message};
+pub(super) use free::{Needed, PlatePlace, message};
 
 mod footer;
 mod free;
@@ -79,7 +79,7 @@ pub struct Stage {
     caption: Rect,
     parts: Vec<caption::Part>,
     /// Place of badges, legend and messages.
-    spot: Spot,
+    spot: PlatePlace,
 }
 
 impl Stage {
@@ -104,10 +104,10 @@ impl Stage {
         kept::of_key(&ctx, id, hasher.finish(), || {
             let over = Self::laid_out(ui, whole, 0.0, session, (equation.clone(), parts.clone()));
             let (discs, taken) = (discs(session, over.picture), [over.plate, over.caption]);
-            if let Some(spot) = Spot::corner(&discs, over.free(), needed, &taken) {
+            if let Some(spot) = PlatePlace::corner(&discs, over.free(), needed, &taken) {
                 return Self { spot, ..over };
             }
-            let spot = Spot::band(needed, whole);
+            let spot = PlatePlace::band(needed, whole);
             Self { spot, ..Self::laid_out(ui, whole, spot.above(), session, (equation, parts)) }
         })
     }
@@ -121,7 +121,8 @@ impl Stage {
         (equation, parts): (Vec<Definition>, Vec<caption::Part>),
     ) -> Self {
         let padding = padding(whole);
-        let (spot, below) = (Spot::Corner(Align2::LEFT_TOP, 0.0), whole.with_min_y(whole.top() + above));
+        let (spot, below) =
+            (PlatePlace::Corner(Align2::LEFT_TOP, 0.0), whole.with_min_y(whole.top() + above));
         let most = whole.width() - 2.0 * padding.x;
         let words = Lines::of(ui, parts.clone(), CAPTION * whole.height(), Palette::here(ui).text, most);
         let caption = Align2::LEFT_BOTTOM.anchor_size(whole.left_bottom(), words.size + 2.0 * padding);
@@ -182,8 +183,8 @@ impl Stage {
     /// The places of badges, legend and messages.
     pub(super) fn placer(&self) -> Placer {
         match self.spot {
-            Spot::Corner(..) => self.spot.placer(self.free()),
-            Spot::Band(height) => self.spot.placer(self.whole.with_min_y(self.whole.top() + height)),
+            PlatePlace::Corner(..) => self.spot.placer(self.free()),
+            PlatePlace::Band(height) => self.spot.placer(self.whole.with_min_y(self.whole.top() + height)),
         }
     }
 

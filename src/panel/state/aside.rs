@@ -16,7 +16,7 @@ use crate::{
 
 /// View settings that belong to the shown document rather than to the user.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Shown {
+pub(super) struct DocumentView {
     terms: TermSelection,
     channels: [Option<DebugChannel>; MAX_VARIANTS + 1],
     active: usize,
@@ -27,7 +27,7 @@ pub(super) struct Shown {
     bottom_tab: String,
 }
 
-impl Shown {
+impl DocumentView {
     pub(super) fn of(view: &View) -> Self {
         let View {
             terms, channels, active, pinned, pin_number, show_markers, bottom_open, bottom_tab, ..
@@ -54,7 +54,7 @@ pub struct Aside {
     path: Option<PathBuf>,
     selection: Selection,
     desk: Desk,
-    shown: Shown,
+    shown: DocumentView,
     left_open: bool,
     examples_open: bool,
 }
@@ -69,15 +69,15 @@ impl Aside {
             path: None,
             selection: Selection::Room,
             desk: Desk { model_slots: session.model_slots.clone(), ..Desk::default() },
-            shown: Shown::of(&view),
+            shown: DocumentView::of(&view),
             left_open: true,
             examples_open: false,
         }
     }
 
     /// The view settings with which a lesson begins, where these are the user's own.
-    pub(super) fn beginning(&self) -> Shown {
-        Shown { show_markers: self.shown.show_markers, ..Shown::of(&View::default()) }
+    pub(super) fn beginning(&self) -> DocumentView {
+        DocumentView { show_markers: self.shown.show_markers, ..DocumentView::of(&View::default()) }
     }
 }
 
@@ -91,7 +91,7 @@ impl Session {
         swap(&mut self.desk, &mut aside.desk);
         swap(&mut self.view.left_open, &mut aside.left_open);
         swap(&mut self.view.examples_open, &mut aside.examples_open);
-        let shown = std::mem::replace(&mut aside.shown, Shown::of(&self.view));
+        let shown = std::mem::replace(&mut aside.shown, DocumentView::of(&self.view));
         shown.put(&mut self.view);
         (self.renaming, self.match_draft, self.take_draft) = (None, None, None);
         self.messages.another_document();

@@ -308,7 +308,9 @@ impl Session {
         let before = mem::replace(&mut open.text, text);
         if before == open.text {
             let place = open.path().unwrap_or(Path::new(OF_SCENE)).to_owned();
+            let said = format!("Nothing to continue: {} already has the text that was kept.", open.name);
             self.code.outdated.push(place);
+            self.say(Severity::Info, said);
         } else if !before.is_empty() {
             open.replaced = Some(before);
             let said = format!(
@@ -390,7 +392,7 @@ impl Session {
     pub fn offer_code(&mut self, kept: Vec<KeptCode>) {
         for kept in kept {
             let text = format!(
-                "Unsaved text of {} was kept {}: it can be continued in the editor.",
+                "Unsaved text of {} was kept {}. Continue opens it in the panel Code; until then it stays kept.",
                 kept.path.shown(),
                 kept.when
             );
@@ -574,6 +576,7 @@ mod tests {
         session.offer_code(vec![kept()]);
         command(&mut session, CodeCommand::Recover("models/a.wgsl".into()));
         assert_eq!((of(&session).replaced.clone(), session.code.outdated.len()), (None, 1));
+        assert!(session.messages.last().is_some_and(|note| note.text.starts_with("Nothing to continue")));
     }
 
     #[test]

@@ -25,6 +25,8 @@ pub struct Facts {
     pub clipping: [Option<Clipping>; MAX_VARIANTS + 1],
     /// Lights and objects of each view, view A first, whose light is not a finite number.
     pub not_finite: [Vec<NoNumber>; MAX_VARIANTS + 1],
+    /// The indices of objects that are not drawn, since the shapes or the triangles of the scene are too many; sorted.
+    pub not_drawn: Vec<usize>,
     /// Convergence of each view's picture, view A first.
     pub converged: [Converging; MAX_VARIANTS + 1],
     /// Statistics of the comparison; `None` unless they belong to the pictures on screen.

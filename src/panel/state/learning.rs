@@ -9,7 +9,7 @@ use std::{
 use super::{
     Action, Aside, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Note, OpenLesson,
     PLOTS_TAB, Pin, Plots, Progress, Session, Severity, View,
-    aside::Shown,
+    aside::DocumentView,
     follow::follow_registry,
     open_lesson::{Entered, problem_of},
 };
@@ -174,7 +174,7 @@ impl Session {
         let entered = Entered {
             scene: Arc::new(self.document.scene().clone()),
             selection: self.selection,
-            shown: Shown::of(&self.view),
+            shown: DocumentView::of(&self.view),
             plots: self.plots.clone(),
         };
         let Some(open) = &mut self.lesson else { return };

@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use super::{Aside, Effect, LessonSource, Past, Plots, Progress, aside::Shown};
+use super::{Aside, Effect, LessonSource, Past, Plots, Progress, aside::DocumentView};
 use crate::files::Shown as _;
 use crate::{
     document::Selection,
@@ -20,7 +20,7 @@ use crate::{
 pub(super) struct Entered {
     pub(super) scene: Arc<Scene>,
     pub(super) selection: Selection,
-    pub(super) shown: Shown,
+    pub(super) shown: DocumentView,
     pub(super) plots: Plots,
 }
 

@@ -408,7 +408,8 @@ impl<'a> Stand<'a> {
             }
         }
         offsets.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let steps = self.steps();
+        // The places stay apart when they are rounded.
+        let steps = self.steps().max(10f32.powf((1.0 / step).log10().ceil()));
         offsets.into_iter().map(|(_, way)| round(wanted + step * way, steps)).find(|p| fits(*p))
     }
 

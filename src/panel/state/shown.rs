@@ -9,7 +9,11 @@ use crate::{
     optics::TermSelection,
     registry::Registry,
     scene::{Object, Observer, Part, Scene, Variant, check::same_place},
+    text::listed,
 };
+
+/// Maximum number of objects that a message names.
+const MOST_NAMED: usize = 3;
 
 impl Session {
     /// The title: of the open lesson, otherwise of the user's own document.
@@ -50,6 +54,29 @@ impl Session {
     #[must_use]
     pub fn name_of(&self, part: Selection, registry: &Registry) -> String {
         self.document.name_of(part, registry)
+    }
+
+    /// True if an object is not drawn, since the shapes or the triangles of the scene are too many.
+    #[must_use]
+    pub fn is_not_drawn(&self, object: usize) -> bool {
+        self.facts.not_drawn.binary_search(&object).is_ok()
+    }
+
+    /// A sentence with the names of objects that are not drawn, the selected one first; empty if all are drawn.
+    #[must_use]
+    pub fn names_not_drawn(&self, registry: &Registry) -> String {
+        let all = &self.facts.not_drawn;
+        let selected = match self.selection {
+            Selection::Object(i) if self.is_not_drawn(i) => Some(i),
+            _ => None,
+        };
+        let others = all.iter().copied().filter(|i| Some(*i) != selected);
+        let first = selected.into_iter().chain(others).take(MOST_NAMED);
+        let mut names: Vec<_> = first.map(|i| self.name_of(Selection::Object(i), registry)).collect();
+        if all.len() > names.len() {
+            names.push(format!("{} more", all.len() - names.len()));
+        }
+        if names.is_empty() { String::new() } else { format!("Not drawn: {}.", listed(&names, "and")) }
     }
 
     /// The selected object; none in a presentation.
@@ -198,5 +225,25 @@ impl Session {
             true if taken => Some("The view is at the position of a light or an object."),
             true => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn objects_that_are_not_drawn_are_named_the_selected_one_first() {
+        let registry = Registry::builtin();
+        let objects = ["a", "b", "c", "d", "e", "f"]
+            .map(|name| Object { name: Some(name.to_owned()), ..Object::default() });
+        let mut session = Session::new(Scene { objects: objects.into(), ..Scene::default() });
+        assert_eq!(session.names_not_drawn(&registry), "");
+        session.facts.not_drawn = vec![4];
+        assert_eq!(session.names_not_drawn(&registry), "Not drawn: e.");
+        session.facts.not_drawn = vec![0, 1, 3, 4, 5];
+        session.selection = Selection::Object(4);
+        assert_eq!(session.names_not_drawn(&registry), "Not drawn: e, a, b and 2 more.");
+        assert!(session.is_not_drawn(5) && !session.is_not_drawn(2));
     }
 }

@@ -618,8 +618,8 @@ fn a_page_says_what_it_does_until_its_first_picture_is_there() {
     assert!(said.last().is_some_and(|last| last.starts_with("Web")), "{said:?}");
 }
 
-/// As if by the system: the device is lost, there is no adapter, work on the GPU ends in errors, nothing reaches the
-/// screen.
+/// As if by the system: the device is lost, there is no adapter, nothing answers, work on the GPU ends in errors,
+/// nothing reaches the screen.
 #[test]
 fn a_page_goes_on_with_webgl_when_webgpu_fails() {
     let Some(browser) = Browser::start() else { return };
@@ -632,6 +632,13 @@ fn a_page_goes_on_with_webgl_when_webgpu_fails() {
         "const asks = (what) => window.GPU && location.hash.includes(what);
         const gone = async () => { throw new Error('A valid external Instance reference no longer exists.'); };
         if (asks('broken')) GPU.prototype.requestAdapter = gone;
+        const silent = () => new Promise(() => {});
+        if (asks('mute')) GPU.prototype.requestAdapter = silent;
+        if (asks('silent')) {
+            // So that the test need not wait as long.
+            const after = window.setTimeout;
+            window.setTimeout = (what, ms, ...all) => after(what, ms === 10000 ? 300 : ms, ...all);
+        }
         if (asks('late')) GPUQueue.prototype.onSubmittedWorkDone = gone;
         if (asks('blank')) GPUQueue.prototype.submit = () => {};
         if (asks('unread')) GPUBuffer.prototype.mapAsync = gone;
@@ -642,6 +649,7 @@ fn a_page_goes_on_with_webgl_when_webgpu_fails() {
         if (window.GPU) {
             const made = GPUAdapter.prototype.requestDevice;
             GPUAdapter.prototype.requestDevice = async function (...all) {
+                if (asks('deaf')) return silent();
                 return (window.device = await made.apply(this, all));
             };
         }",
@@ -660,7 +668,7 @@ fn a_page_goes_on_with_webgl_when_webgpu_fails() {
         let off = difference(&browser.look().0, &expected);
         assert!(off.mean < 0.01, "{what}: {off:?}");
     };
-    for what in ["broken", "late", "blank"] {
+    for what in ["broken", "late", "blank", "silent-mute", "silent-deaf"] {
         browser.open(&file, &format!("{what}&{size}"));
         follows(what);
     }

@@ -3,6 +3,7 @@
 use bevy_egui::egui::{self, Color32, Event, Key, Modifiers, Shape, accesskit::Role};
 use lights_camera_models::{
     panel::{
+        command::{all, with_keys},
         state::{Action, CodeCommand, CodeOf, KeptCode, ModelCommand, OpenCode, Session},
         theme::Palette,
     },
@@ -133,6 +134,28 @@ fn undoing_in_the_text_brings_back_what_that_of_an_earlier_window_replaced() {
         bench.key(Key::Z, CTRL);
         assert_eq!(open(&bench).text, before.unwrap_or(base), "open before: {opened}");
     }
+}
+
+#[test]
+fn the_button_that_continues_with_unsaved_text_says_what_it_does_and_has_a_key() {
+    let mut bench = Bench::new(Session::default());
+    let has_key = |bench: &Bench| {
+        let root = all(&bench.session, &bench.registry, false);
+        with_keys(&root).iter().any(|(_, command)| command.id == "continue_text")
+    };
+    assert!(!has_key(&bench), "there is nothing to continue");
+    let kept = KeptCode { path: OF_SCENE.into(), text: "kept".into(), when: "5 minutes ago".to_owned() };
+    bench.session.offer_code(vec![kept]);
+    bench.settle();
+    assert!(has_key(&bench));
+    let button = bench.find("Continue").expect("in the status line").rect.center();
+    bench.hover(button);
+    let texts = bench.texts();
+    let tip = texts.iter().find(|text| text.starts_with("Opens the text in the panel Code"));
+    assert!(tip.is_some_and(|tip| tip.ends_with("(Ctrl+Shift+R)")), "{texts:?}");
+    bench.key(Key::R, CTRL | Modifiers::SHIFT);
+    assert_eq!(&*open(&bench).text, "kept");
+    assert!(!has_key(&bench) && bench.find("Continue").is_none());
 }
 
 #[test]

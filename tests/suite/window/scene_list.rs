@@ -463,6 +463,17 @@ fn what_a_key_cannot_do_is_said_in_a_changed_scene() {
 }
 
 #[test]
+fn the_properties_of_an_object_that_is_not_drawn_say_so() {
+    let mut bench = Bench::new(Session::default());
+    assert!(!bench.says("Not drawn"));
+    bench.session.facts.not_drawn = vec![0];
+    bench.settle();
+    assert!(bench.says("Not drawn"));
+    bench.apply(Action::Duplicate(Selection::Object(0)));
+    assert!(!bench.says("Not drawn"), "there is room for the copy");
+}
+
+#[test]
 fn a_scene_that_was_saved_elsewhere_is_called_so() {
     let mut bench = Bench::new(Session::default());
     let shapes = EXAMPLES.iter().position(|e| e.name == "Shapes and lights").expect("shipped");

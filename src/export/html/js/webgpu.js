@@ -1,12 +1,29 @@
 // Drawing with WebGPU and the scene's own WGSL.
 
+// Milliseconds in which a browser answers whether it has WebGPU: some never do.
+const PATIENCE = 10000;
+
+// The graphics device; nothing where there is no WebGPU. Throws if the browser does not answer.
+async function deviceOfBrowser() {
+  const request = async () => (await navigator.gpu?.requestAdapter())?.requestDevice();
+  const device = request();
+  let timer;
+  const silence = new Promise((_, fails) => {
+    timer = setTimeout(() => {
+      fails(new Error('WebGPU does not answer'));
+      // One that comes too late is given back.
+      device.then((late) => late?.destroy(), () => {});
+    }, PATIENCE);
+  });
+  return Promise.race([device, silence]).finally(() => clearTimeout(timer));
+}
+
 class WebGpu {
   static label = 'WebGPU';
 
   // Null where there is no WebGPU.
   static async create(canvas, samples) {
-    const adapter = await navigator.gpu?.requestAdapter();
-    const device = await adapter?.requestDevice();
+    const device = await deviceOfBrowser();
     const context = device && canvas.getContext('webgpu');
     return context ? new WebGpu(device, context, samples) : null;
   }

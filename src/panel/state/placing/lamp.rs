@@ -9,8 +9,10 @@ use crate::{
     scene::limits::significant,
 };
 
-/// Depth of a lamp, in distances of what it lights: so little in front of it that the camera sees the side that shines.
+/// Depth of a lamp, in distances of what it lights: in front of it, unless the camera then sees the dark side.
 const DEPTH: f32 = 0.87;
+/// Tangents of the angle at which the camera sees the side of a lamp that shines: wanted, and smallest.
+const BRIGHT_SIDE: [f32; 2] = [0.15, 0.08];
 /// Offset of a lamp from what it lights, in halves of the picture: above it, to either side.
 const BESIDE: [[f32; 2]; 2] = [[0.55, 0.7], [-0.55, 0.7]];
 /// Smallest and largest extent of a lamp, in distances from what it lights.
@@ -37,7 +39,12 @@ impl Stand<'_> {
         let is_above = |p: Vec3| (p - target).dot(up) > LEAST_RISE * p.distance(target);
         let step = self.light_step();
         let apart = |p: Vec3| self.is_apart(p, step, None);
-        let fits = |p: Vec3| self.shows_light(p) && apart(p);
+        let in_view = |p: Vec3| self.shows_light(p) && apart(p);
+        let has_dark_side = entry.declaration.has_direction && !is_tube(entry);
+        let is_bright = |p: Vec3| !has_dark_side || self.sees_bright_side(p, target);
+        let fits = |p: Vec3| in_view(p) && is_bright(p);
+        // Where the picture is narrower than the usual distance between lights.
+        let is_tight = |p: Vec3| self.shows_light(p) && self.is_outside_objects(p);
         let (span, others) = (entry.span(&Values::default()), self.in_sight());
         let covers = |p: Vec3, centre: bool| {
             let least = self.span_at(span, p).min(SPAN[0] * p.distance(target));
@@ -48,10 +55,26 @@ impl Stand<'_> {
         let place = |fits: &dyn Fn(Vec3) -> bool| self.search(wanted, step, fits);
         place(&|p| is_above(p) && fits(p) && !covers(p, false))
             .or_else(|| place(&|p| fits(p) && !covers(p, false)))
+            .or_else(|| place(&|p| is_tight(p) && is_bright(p) && !covers(p, false)))
             .or_else(|| place(&|p| is_above(p) && fits(p) && !covers(p, true)))
-            .or_else(|| place(&fits))
+            .or_else(|| place(&|p| fits(p) && !covers(p, true)))
+            .or_else(|| place(&|p| in_view(p) && !covers(p, true)))
+            .or_else(|| place(&in_view))
+            .or_else(|| place(&is_tight))
             .or_else(|| place(&apart))
             .unwrap_or_else(|| self.lattice(wanted))
+    }
+
+    /// True if the camera sees the side of a lamp that faces what it lights.
+    fn sees_bright_side(&self, at: Vec3, target: Vec3) -> bool {
+        let (way, back) = (target - at, self.eye - at);
+        way.dot(back) > BRIGHT_SIDE[1] * way.cross(back).length()
+    }
+
+    /// True if a position is inside the room and outside objects, except those around the camera.
+    fn is_outside_objects(&self, p: Vec3) -> bool {
+        let is_outside = |object: &Block| object.gap(p) > 0.0 || object.gap(self.eye) <= 0.0;
+        self.is_inside(p, self.margin()) && self.taken.iter().all(is_outside)
     }
 
     /// True if a lamp overlaps one of these in the picture, or with `centre`, if it covers the centre of one.
@@ -99,7 +122,10 @@ impl Stand<'_> {
         let right = (self.turn * Vec3::X).reject_from(way).normalize_or(self.turn * Vec3::X);
         let above = right.cross(way.normalize_or(self.turn * Vec3::NEG_Z));
         let all = BESIDE.map(|[side, rise]| {
-            self.eye + DEPTH * (way + way.length() * (side * across * right + rise * up * above))
+            let beside = side * across * right + rise * up * above;
+            // By the law of sines, with the lamp at the given angle. The narrower the picture, the deeper it stands.
+            let seen_from = (1.0 + BRIGHT_SIDE[0] * beside.length()) / (1.0 + beside.length_squared());
+            self.eye + seen_from.max(DEPTH) * (way + way.length() * beside)
         });
         let has_room = |p: Vec3| self.free_for_light(p, 0.5 * SPAN[0] * p.distance(target), None);
         let shows = |p: Vec3| self.sees_light(p);
@@ -117,8 +143,7 @@ impl Stand<'_> {
             return self.towards_middle(from);
         }
         let way = self.target() - from;
-        let is_tube = entry.declaration.sizes.iter().any(|size| matches!(size, Size::Length(_)));
-        let wanted = if is_tube { way.cross(self.turn * Vec3::Y) } else { way };
+        let wanted = if is_tube(entry) { way.cross(self.turn * Vec3::Y) } else { way };
         wanted.try_normalize().map_or(Vec3::NEG_Y, |v| round(v, 100.0))
     }
 
@@ -133,12 +158,13 @@ impl Stand<'_> {
     }
 
     /// Scales the sizes of a new lamp to its distance from what it lights, if they are far too large or too small for it, or
-    /// if it would cover objects or other lamps.
+    /// if it would cover objects or other lamps, or reach out of the picture.
     pub(in crate::panel::state) fn fit_size(&self, entry: &LightEntry, at: Vec3, values: &mut Values) {
         let span = entry.span(values);
         let (mut wanted, others) = (self.span_at(span, at), self.in_sight());
         let least = SPAN[0] * at.distance(self.target());
-        while wanted > least && self.covers(at, wanted, &others, false) {
+        let is_out = |span: f32| self.sees(at, 0.0) && !self.sees(at, 0.5 * span);
+        while wanted > least && (self.covers(at, wanted, &others, false) || is_out(wanted)) {
             wanted = (SMALLER * wanted).max(least);
         }
         if span <= 0.0 || wanted <= 0.0 || wanted == span {
@@ -151,4 +177,9 @@ impl Stand<'_> {
             values.set(parameter.name, Value::Number(scaled.clamp(number.min, number.max)));
         }
     }
+}
+
+/// True for a tube, whose direction is its axis.
+fn is_tube(entry: &LightEntry) -> bool {
+    entry.declaration.sizes.iter().any(|size| matches!(size, Size::Length(_)))
 }
