@@ -1,4 +1,4 @@
-//! The sources of scenes: a file, standard input, or the default scene if none is given; and questions that
+//! The sources of scenes: a file, a link, standard input, or the default scene if none is given; and questions that
 //! reading may raise.
 
 use std::{
