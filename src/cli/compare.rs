@@ -118,7 +118,7 @@ enum Input {
 impl Input {
     fn read(path: &Path, workshop: &mut Workshop, options: Options) -> Result<Self, Failure> {
         let source = Source::named(path);
-        if source != Source::Stdin && pictures::is_picture(path) {
+        if matches!(source, Source::File(_)) && pictures::is_picture(path) {
             return Ok(Self::Picture(source.name(), pictures::read(path)?));
         }
         let scene = Box::new(source.open(workshop, options)?);

@@ -1,4 +1,4 @@
-//! The sources of scenes: a file, standard input, or the default scene if none is given; and questions that
+//! The sources of scenes: a file, a link, standard input, or the default scene if none is given; and questions that
 //! reading may raise.
 
 use std::{
@@ -22,6 +22,7 @@ use crate::{
         Scene,
         error::LoadError,
         examples::{EXAMPLES, Example},
+        link,
         load::{self, Defaults, Loaded, Missing, Stamp},
     },
     text::listed,
@@ -29,6 +30,8 @@ use crate::{
 
 /// Name of the scene inside this program, in messages.
 const INSIDE: &str = "the scene inside this program";
+/// Name of a link with a scene in it, in messages.
+const LINK: &str = "link";
 
 /// The source of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,6 +44,9 @@ pub(super) enum Source {
     Inside(Arc<Payload>),
     /// `-`.
     Stdin,
+    /// A link with a scene in it, or a scene of the site that the address of the page names: its name, and its text or what
+    /// is wrong.
+    Address(String, Result<Vec<u8>, String>),
     /// A file.
     File(PathBuf),
 }
@@ -55,24 +61,35 @@ impl Source {
         }
     }
 
-    /// The shipped scene with this name, with or without the ending of its file, where there are no files.
+    /// The shipped scene with this name, with or without the ending of its file, where there are no files; or else the scene
+    /// that the page has loaded under this name.
     fn shipped(name: &Path) -> Option<Self> {
         let is = |example: &Example| {
             let file = Path::new(example.file);
             file == name || file.file_stem() == Some(name.as_os_str())
         };
-        if platform::SHARES_FILES { None } else { EXAMPLES.iter().position(is).map(Self::Example) }
+        if platform::SHARES_FILES {
+            return None;
+        }
+        EXAMPLES.iter().position(is).map(Self::Example).or_else(|| {
+            let name = name.to_str()?;
+            Some(Self::Address(name.to_owned(), platform::loaded(name)?))
+        })
     }
 
     /// The source with this name.
     pub(super) fn named(path: &Path) -> Self {
-        if path == Path::new("-") { Self::Stdin } else { Self::File(path.to_owned()) }
+        match path.to_str().and_then(link::found) {
+            Some(link) => Self::Address(LINK.to_owned(), link::unpacked(link).map(String::into_bytes)),
+            None if path == Path::new("-") => Self::Stdin,
+            None => Self::File(path.to_owned()),
+        }
     }
 
     /// The path of the source, which no result may replace.
     pub(super) fn path(&self) -> Option<&Path> {
         match self {
-            Self::Default | Self::Inside(_) | Self::Example(_) => None,
+            Self::Default | Self::Inside(_) | Self::Example(_) | Self::Address(..) => None,
             // A shell may have connected it to a file.
             Self::Stdin => Some(Path::new("/dev/stdin")),
             Self::File(path) => Some(path),
@@ -85,9 +102,8 @@ impl Source {
             Self::Default | Self::Example(_) => "default".to_owned(),
             Self::Inside(inside) => inside.about.stem.clone(),
             Self::Stdin => "stdin".to_owned(),
-            Self::File(path) => path
-                .file_stem()
-                .map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned()),
+            Self::Address(name, _) => stem(Path::new(name)),
+            Self::File(path) => stem(path),
         }
     }
 
@@ -98,6 +114,7 @@ impl Source {
             Self::Example(i) => EXAMPLES[*i].file.to_owned(),
             Self::Inside(_) => INSIDE.to_owned(),
             Self::Stdin => load::STDIN.to_owned(),
+            Self::Address(name, _) => name.clone(),
             Self::File(path) => path.shown().to_string(),
         }
     }
@@ -127,6 +144,10 @@ impl Source {
             }
             Self::Stdin => {
                 workshop.load(&load::all_of(io::stdin().lock(), load::STDIN)?, load::STDIN, defaults)
+            }
+            Self::Address(name, Ok(bytes)) => workshop.load(bytes, name, defaults),
+            Self::Address(name, Err(what)) => {
+                Err(LoadError::Address { name: name.clone(), what: what.clone() })
             }
             Self::File(path) => {
                 let bytes = load::input_bytes(path, &workshop.registry)?;
@@ -183,6 +204,11 @@ impl Source {
             None => message,
         })
     }
+}
+
+/// The name of a file without its ending.
+fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Shows the number of files read if reading them takes long.

@@ -9,7 +9,7 @@ use crate::{failure::Failure, files::Shown as _, text::nearest};
 
 #[derive(Args, Debug)]
 pub(super) struct Arguments {
-    /// Scene file; `-` is standard input; without one, the default scene
+    /// Scene file, or a link with a scene in it; `-` is standard input; without one, the default scene
     pub(super) scene: Option<PathBuf>,
     /// Open a lesson: the name of one that comes with the program, or a file
     #[arg(long, value_name = "NAME_OR_FILE")]

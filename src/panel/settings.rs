@@ -90,8 +90,8 @@ pub(super) fn write(path: &Path, value: &impl Serialize) -> Result<(), FileError
     files::write(path, text.as_bytes())
 }
 
-/// Writes the settings to a folder, all or nothing. Keys of the user's own stay as they stand in the file, which was
-/// edited by hand; so does a text that cannot be read, in another file.
+/// Writes the settings to a folder, all or nothing. Keys of the user's own and the address of a page stay as they stand in the
+/// file, which was edited by hand; so does a text that cannot be read, in another file.
 ///
 /// # Errors
 /// Returns an error, as a sentence, if the folder or the file cannot be written.
@@ -101,7 +101,9 @@ pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
         crate::platform::fs::create_dir_all(folder)?;
         let mut settings = settings.clone();
         match read::<Settings>(&path) {
-            Ok(Some(found)) => settings.keys = found.keys,
+            Ok(Some(found)) => {
+                (settings.keys, settings.web_address) = (found.keys, found.web_address);
+            }
             Err(Unreadable::Text(_, bytes)) => files::write(&folder.join(KEPT), &bytes)?,
             Ok(None) | Err(Unreadable::File(_)) => {}
         }
@@ -175,6 +177,24 @@ mod tests {
             let written: String = std::fs::read_to_string(&file)?.split_whitespace().collect();
             let keys = keys.replace("Shift+X", "Shift+Y");
             assert!(written.contains(&format!("\"keys\":{keys}")), "{keys}: {written}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn the_address_of_a_page_stays_as_it_was_typed() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = tempfile::tempdir()?;
+        save(folder.path(), &Settings::default())?;
+        let file = folder.path().join(FILE);
+        assert!(!std::fs::read_to_string(&file)?.contains("web_address"));
+        std::fs::write(&file, r#"{ "web_address": " https://lab.example.org/a/?scene=gem#x " }"#)?;
+        // Typed while a window was open.
+        save(folder.path(), &Settings::default())?;
+        let (settings, complaint) = load(folder.path());
+        assert_eq!((settings.page(), complaint), (Some("https://lab.example.org/a/"), None));
+        for none in ["", " ", "#scene=1."] {
+            let settings = Settings { web_address: Some(none.to_owned()), ..Settings::default() };
+            assert_eq!(settings.page(), None, "{none:?}");
         }
         Ok(())
     }

@@ -242,10 +242,21 @@ fn a_page_keeps_whole_files_and_downloads_results() {
 
 #[test]
 fn an_address_is_a_command_line() {
-    let of = |query: &str| address::arguments(query)[1..].join(" ");
+    let of = |query: &str| address::arguments(query, "")[1..].join(" ");
     assert_eq!(of(""), "");
     assert_eq!(of("?scene=glass_ball"), "glass_ball");
     assert_eq!(of("?lesson=06_gamma&step=2&fbclid=x"), "--lesson=06_gamma --step=2");
     assert_eq!(of("?scene=my+room%2Ejson%"), "my room.json%");
     assert_eq!(of("?scene=--capture"), "", "no option");
+    assert_eq!(of("?scene=week_2%2Froom.json"), "week_2/room.json", "of the site");
+    let of = |query: &str, fragment: &str| address::arguments(query, fragment)[1..].join(" ");
+    assert_eq!(of("", "#scene=1.eNq_-A"), "#scene=1.eNq_-A");
+    assert_eq!(of("?scene=gem&lesson=06_gamma", "#scene%3D1.e"), "gem --lesson=06_gamma", "no scene");
+    assert_eq!(of("?scene=gem&lesson=06_gamma", "#scene=1.e%4Eq"), "--lesson=06_gamma #scene=1.eNq");
+    assert_eq!(of("?scene=gem", "#about"), "gem");
+}
+
+#[test]
+fn a_desktop_has_no_page() {
+    assert_eq!((page_address(), loaded("room.json")), (None, None));
 }

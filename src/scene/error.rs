@@ -107,6 +107,14 @@ pub enum LoadError {
         /// The mistake in the picture.
         what: String,
     },
+    /// An address that holds or names no readable scene.
+    #[error("{name}: {what}")]
+    Address {
+        /// The link, or the name in the address.
+        name: String,
+        /// The mistake.
+        what: String,
+    },
     /// The content is readable, but not a valid scene. Contains the problems in the order of the file: [`MOST_LISTED`], and
     /// one that says how many more there are.
     #[error("{}", lines(.name, .problems))]
@@ -135,7 +143,9 @@ impl LoadError {
             Self::Missing { missing, .. } => return missing.iter().map(Missing::problem).collect(),
             Self::NotUtf8 { place, what, .. } => (Some(*place), format!("is not UTF-8 text: {what}")),
             Self::Syntax { format, place, what, .. } => (Some(*place), format!("is not {format}: {what}")),
-            Self::Picture { what, .. } => (None, format!("could not be read: {what}")),
+            Self::Picture { what, .. } | Self::Address { what, .. } => {
+                (None, format!("could not be read: {what}"))
+            }
             Self::UnknownExtension { unknown, .. } => (None, format!("could not be read: {unknown}")),
             Self::NotFound { .. } => (None, "could not be read: file not found".to_owned()),
             Self::Folder { .. } => (None, "could not be read: it is a folder".to_owned()),

@@ -30,6 +30,7 @@ mod kept;
 pub(crate) mod layout;
 mod light;
 pub mod limits;
+pub mod link;
 pub mod load;
 mod object;
 pub mod observer;

@@ -47,7 +47,7 @@ pub(super) fn open(
             let target = files::follow(path).unwrap_or_else(|_| path.clone());
             files::tidy(files::folder_of(&target)).iter().map(ToString::to_string).collect()
         }
-        Source::Default | Source::Example(_) | Source::Inside(_) | Source::Stdin => Vec::new(),
+        _ => Vec::new(),
     };
     let wanted = match &source {
         Source::Inside(inside) => inside.about.size,

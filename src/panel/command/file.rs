@@ -8,8 +8,8 @@ use crate::{
     panel::{
         export,
         state::{
-            Action, Effect, ExportCommand, MaterialCommand, Pick, Session, SheetOf, TakeCommand, Taken,
-            Turning, ViewChange,
+            Action, Effect, ExportCommand, LinkTo, MaterialCommand, Pick, Session, SheetOf, TakeCommand,
+            Taken, Turning, ViewChange,
         },
     },
     scene::variant::LETTERS,
@@ -29,6 +29,9 @@ pub(super) fn file(to: &mut List) {
         let none = !matches!(to.session.selection, Selection::Object(_));
         let material = material.says("Save the material of the object…").tip(tip).at_desk();
         to.add(material.unless(none, "No object is selected"));
+        let link = command("copy_link", "Copy link to this scene", Action::CopyLink(LinkTo::Scene));
+        let tip = "Put an address on the clipboard that holds this scene, and opens it in a browser with the laboratory";
+        to.add(link.tip(tip));
         let unsaved = to.session.path.is_none();
         let reload = command("reload", "Reload from disk", Action::Reload);
         to.add(reload.unless(unsaved, "The scene has no file yet"));

@@ -1,7 +1,7 @@
 //! The menu of help.
 
 use super::{Group, List, Menu, command};
-use crate::panel::state::{Action, Effect, LessonCommand, Pick, ViewChange};
+use crate::panel::state::{Action, Effect, LessonCommand, LinkTo, Pick, ViewChange};
 
 pub(super) fn help(to: &mut List) {
     to.menu(Menu::new("Help").group(Group::Window).width(super::show::WIDTH), |to| {
@@ -14,6 +14,9 @@ pub(super) fn help(to: &mut List) {
             let leave = command("leave_lesson", "Leave the lesson", Action::Lesson(LessonCommand::Leave));
             let none = to.session.lesson.is_none();
             to.add(leave.says("Leave the lesson").unless(none, "No lesson is open"));
+            let link = command("copy_step_link", "Copy link to this step", Action::CopyLink(LinkTo::Step));
+            let tip = "Put an address on the clipboard that opens this step in a browser with the laboratory";
+            to.add(link.says("Copy link to this step").tip(tip).unless(none, "No lesson is open"));
         });
         let finder = Action::View(ViewChange::Finder(!to.session.view.finder_open));
         to.add(command(super::FINDER, "Find a command…", finder).keys("Ctrl+F"));

@@ -18,7 +18,7 @@ const SIGN: f32 = 26.0;
 pub(in crate::panel) fn entries(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let screen = ui.ctx().content_rect();
     ui.set_width(WIDTH.min(screen.width() - 64.0));
-    let most = screen.height() - 140.0;
+    let most = screen.height() - 166.0;
     ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
         for (i, lesson) in LESSONS.iter().enumerate() {
             if entry(ui, i, lesson, session) {

@@ -7,7 +7,7 @@ use bevy_egui::egui::{Frame, Margin, Modifiers};
 use super::{
     focus,
     prelude::*,
-    state::{LessonSource, OpenLesson, problem_of},
+    state::{LessonSource, LinkTo, OpenLesson, problem_of},
 };
 
 pub mod check;
@@ -121,7 +121,7 @@ fn header(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
 /// The list of the steps.
 fn steps(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
     ui.set_max_width(360.0);
-    ScrollArea::vertical().max_height(ui.ctx().content_rect().height() - 120.0).show(ui, |ui| {
+    ScrollArea::vertical().max_height(ui.ctx().content_rect().height() - 160.0).show(ui, |ui| {
         for (i, step) in open.lesson.steps.iter().enumerate() {
             let done = if open.done.contains(&i) { "  ✓" } else { "" };
             let text = format!("{}. {}{done}", i + 1, step.title);
@@ -131,6 +131,13 @@ fn steps(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
             }
         }
     });
+    if matches!(open.source, LessonSource::Shipped(_)) {
+        ui.separator();
+        if ui.button("Copy link to this step").clicked() {
+            actions.push(Action::CopyLink(LinkTo::Step));
+            ui.close();
+        }
+    }
 }
 
 /// A mark for each step: the current one and those before are filled.

@@ -111,6 +111,8 @@ pub enum Action {
     Code(CodeCommand),
     /// A command for exports.
     Export(ExportCommand),
+    /// Copy a link.
+    CopyLink(LinkTo),
     /// A command for the views of a comparison.
     Compare(CompareCommand),
     /// A command for matching views.
@@ -175,6 +177,15 @@ pub enum ExportCommand {
         /// The file or folder.
         path: PathBuf,
     },
+}
+
+/// Where a link leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinkTo {
+    /// To the scene that is shown, which the link holds.
+    Scene,
+    /// To the step of the open lesson.
+    Step,
 }
 
 /// A command for custom models and shaders.
@@ -308,6 +319,7 @@ impl Session {
             Action::Material(command) => self.material(command, registry),
             Action::Code(command) => self.code(command, registry),
             Action::Export(command) => self.export(command),
+            Action::CopyLink(to) => self.copy_link(to, registry),
             Action::Say(severity, text) => self.say(severity, text),
             Action::Dismiss(index) => self.messages.dismiss(index),
             Action::DismissAll => self.messages.clear(),

@@ -205,17 +205,25 @@ impl Session {
         vec![Effect::SaveSettings]
     }
 
-    pub(super) fn note_saved(&mut self, path: &Path) {
-        let mut note = Note::new(Severity::Info, format!("Saved to {}.", path.shown()));
-        if self.facts.camera_is_free {
-            note.text.push_str(" The file keeps the observer’s view, not the one you turned to.");
-            match self.observer_problem() {
-                None => {
-                    note = note.offering("Set observer to this view", Action::Do(Effect::ObserverFromView))
-                }
-                Some(why) => note.text.push_str(&format!(" {why}")),
+    /// The message that the scene was kept in something, and that the camera is not, if it has left the observer.
+    pub(super) fn with_view(&self, mut note: Note, kept_in: &str) -> Note {
+        if !self.facts.camera_is_free {
+            return note;
+        }
+        let text = format!(" The {kept_in} keeps the observer’s view, not the one you turned to.");
+        note.text.push_str(&text);
+        match self.observer_problem() {
+            None => note.offering("Set observer to this view", Action::Do(Effect::ObserverFromView)),
+            Some(why) => {
+                note.text.push_str(&format!(" {why}"));
+                note
             }
         }
+    }
+
+    pub(super) fn note_saved(&mut self, path: &Path) {
+        let note = Note::new(Severity::Info, format!("Saved to {}.", path.shown()));
+        let mut note = self.with_view(note, "file");
         let folder = files::folder_of(path);
         if let Some(file) = self.document.files().find(|file| file.is_outside(folder)) {
             let option = Outside::OPTION;

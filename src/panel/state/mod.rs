@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::{Deref, DerefMut, Resource};
 
-pub use action::{Action, Answer, ExportCommand, FocusMove, ModelCommand};
+pub use action::{Action, Answer, ExportCommand, FocusMove, LinkTo, ModelCommand};
 pub use alike::Alike;
 pub use area::{Cell, PictureArea};
 pub use arrange::{Arrangement, Together};
@@ -85,6 +85,7 @@ pub mod follow;
 mod group;
 mod learning;
 mod lesson;
+mod link;
 mod lobe;
 mod matching;
 mod materials;

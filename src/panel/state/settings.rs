@@ -64,6 +64,9 @@ with_defaults! {
         pub sheet: SheetOptions = SheetOptions::default(),
         /// Files opened or saved, latest first.
         pub recent_files: Vec<PathBuf> = Vec::new(),
+        /// Address of a page with the laboratory, with which links begin. The window only reads it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub web_address: Option<String> = None,
         /// Keys of the user's own, by the ids of commands. The window only reads them.
         #[serde(skip_serializing_if = "GivenKeys::is_empty")]
         pub keys: GivenKeys = GivenKeys::default(),
@@ -100,6 +103,13 @@ impl Settings {
     #[must_use]
     pub fn folds(&self, id: &str) -> bool {
         self.folded_panels.iter().any(|folded| folded == id)
+    }
+
+    /// The address of a page with the laboratory, without what may follow in it.
+    #[must_use]
+    pub fn page(&self) -> Option<&str> {
+        let page = self.web_address.as_deref()?.trim();
+        page.split(['?', '#']).next().filter(|page| !page.is_empty())
     }
 
     /// Height of the bottom strip with this panel, in points.

@@ -1,17 +1,20 @@
 //! The command line that the address of a page means.
 
-/// The arguments that a query means. What has another name is left out.
-pub(super) fn arguments(query: &str) -> Vec<String> {
+/// The arguments that a query and a fragment mean. What has another name is left out. Of two scenes, the one that the address
+/// holds is opened.
+pub(super) fn arguments(query: &str, fragment: &str) -> Vec<String> {
     let mut arguments = vec!["lcm".to_owned()];
+    let held = fragment.starts_with("#scene=").then(|| decoded(fragment));
     for part in query.trim_start_matches('?').split('&') {
         let Some((name, value)) = part.split_once('=') else { continue };
         let value = decoded(value);
         match name {
             "lesson" | "step" => arguments.push(format!("--{name}={value}")),
-            "scene" if !value.starts_with('-') => arguments.push(value),
+            "scene" if held.is_none() && !value.starts_with('-') => arguments.push(value),
             _ => {}
         }
     }
+    arguments.extend(held);
     arguments
 }
 

@@ -86,9 +86,22 @@ pub fn results_folder() -> Option<PathBuf> {
     Some(PathBuf::from(fs::DOWNLOADS))
 }
 
-/// The command line that the address of the page means: `?scene=NAME` opens an example, `?lesson=NAME&step=2` a lesson.
+/// The command line that the address of the page means: `?scene=NAME` opens an example or a scene of the site, `#scene=1.…`
+/// the scene that it holds, `?lesson=NAME&step=2` a lesson.
 pub fn arguments() -> impl Iterator<Item = OsString> {
-    address::arguments(&page::query()).into_iter().map(OsString::from)
+    address::arguments(&page::query(), &page::fragment()).into_iter().map(OsString::from)
+}
+
+/// The address of the page, without what may follow in it.
+#[must_use]
+pub fn page_address() -> Option<String> {
+    Some(page::place())
+}
+
+/// What the page has loaded of its site because its address gives this name: the content, or why there is none.
+#[must_use]
+pub fn loaded(name: &str) -> Option<Result<Vec<u8>, String>> {
+    page::loaded_bytes(name).map(Ok).or_else(|| page::load_problem(name).map(Err))
 }
 
 /// Tells whoever watches the program a line.

@@ -4,6 +4,17 @@ export function query() {
     return location.search;
 }
 
+export function fragment() {
+    return location.hash;
+}
+
+export function place() {
+    return location.href.split(/[?#]/, 1)[0];
+}
+
+// With another link in the same tab, only what is behind # changes.
+addEventListener("hashchange", () => location.reload());
+
 function event(name, detail) {
     globalThis.dispatchEvent(new CustomEvent(name, { detail }));
 }
@@ -58,6 +69,55 @@ try {
     database = await openDatabase();
 } catch (why) {
     console.warn(`This browser keeps no files for the page: ${why.message ?? why}`);
+}
+
+// The scene of this site that the address names: loaded before the program, which cannot wait.
+const MOST_BYTES = 1 << 20;
+const MOST_SECONDS = 10;
+const named = new URLSearchParams(location.search).get("scene");
+let loaded = null;
+let problem = null;
+
+async function load(name) {
+    const address = new URL(name, document.baseURI);
+    if (address.origin !== location.origin) throw new Error("a page opens scenes of its own site alone");
+    const response = await fetch(address, { redirect: "error", signal: AbortSignal.timeout(1000 * MOST_SECONDS) });
+    if (!response.ok) throw new Error(`the site answers ${response.status} ${response.statusText}`.trim());
+    const reader = response.body.getReader();
+    const parts = [];
+    let length = 0;
+    for (;;) {
+        const { done, value } = await reader.read();
+        if (done) return new Uint8Array(await new Blob(parts).arrayBuffer());
+        length += value.length;
+        if (length > MOST_BYTES) {
+            reader.cancel();
+            throw new Error(`it is larger than ${MOST_BYTES >> 20} MiB, the most that a page loads`);
+        }
+        parts.push(value);
+    }
+}
+
+function reason(why) {
+    if (why.name === "TimeoutError") return `it did not arrive within ${MOST_SECONDS} seconds`;
+    // What browsers say of networks differs, and names no cause.
+    return why instanceof TypeError ? "it could not be loaded from the site" : why.message;
+}
+
+if (named?.endsWith(".json")) {
+    try {
+        loaded = await load(named);
+    } catch (why) {
+        problem = reason(why);
+    }
+}
+
+export function loadedBytes(name) {
+    return name === named ? loaded : null;
+}
+
+export function loadProblem(name) {
+    return name === named ? problem : null;
 }
 
 function store(change) {

@@ -8,8 +8,18 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(module = "/src/platform/browser/page.js")]
 extern "C" {
-    /// The part of the address from `?` on.
+    /// The part of the address from `?` to `#`.
     pub(super) fn query() -> String;
+    /// The part of the address from `#` on.
+    pub(super) fn fragment() -> String;
+    /// The address without either.
+    pub(super) fn place() -> String;
+    /// The content of the file of the site with this name in the address, if it was loaded.
+    #[wasm_bindgen(js_name = loadedBytes)]
+    pub(super) fn loaded_bytes(name: &str) -> Option<Vec<u8>>;
+    /// Why it was not.
+    #[wasm_bindgen(js_name = loadProblem)]
+    pub(super) fn load_problem(name: &str) -> Option<String>;
     /// Writes a line to the console.
     pub(super) fn tell(line: &str);
     /// Writes a line to the console, and tells the page that the program has ended by it.

@@ -79,6 +79,18 @@ pub fn arguments() -> impl Iterator<Item = OsString> {
     env::args_os()
 }
 
+/// There is no page.
+#[must_use]
+pub fn page_address() -> Option<String> {
+    None
+}
+
+/// There is no page that has loaded anything.
+#[must_use]
+pub fn loaded(_name: &str) -> Option<Result<Vec<u8>, String>> {
+    None
+}
+
 /// Prepares to report panics, which the standard library does.
 pub fn report_panics() {}
 

@@ -37,7 +37,7 @@ use lights_camera_models::{
     reflection::{merl, rgl, samples},
     registry::Registry,
     scene::{
-        Scene,
+        Scene, link,
         load::{self, Defaults},
     },
     shape::mesh_file,
@@ -555,6 +555,23 @@ fn readers() -> Vec<Reader> {
             pairs: &[("{\"a\":", "}"), ("[", "]"), ("/*", "*/"), ("f(", ")")],
             phrases: &["m.", "frame.", "let a = 1.0;\n", "\"a\": ", "// a\n", "0x1p-", "*/", "#import "],
             read: code,
+        },
+        Reader {
+            name: "link",
+            around: ["#scene=1.".into(), String::new()],
+            pairs: &[],
+            phrases: &["eNqrVspLzE1VslJQSlTSUVDKyUzPKCkGcqNjgbz8pKzUZAjXUEfBSEfBOLYWAGCIDcQ"],
+            read: |bytes| link::unpacked(&String::from_utf8_lossy(bytes)).map(drop),
+        },
+        Reader {
+            name: "scene in a link",
+            around: ["{\"name\": \"a\", \"lights\": [".into(), "]}".into()],
+            pairs: &[("[", "]"), ("{\"a\":", "}")],
+            phrases: &["\"a\",", "[],", "{\"type\": \"point\", \"position\": [1, 1, 1]}, "],
+            read: |bytes| {
+                let json = link::unpacked(&link::packed(&String::from_utf8_lossy(bytes)))?;
+                scene(json.as_bytes(), "link")
+            },
         },
         Reader {
             name: "recovery",

@@ -3,6 +3,7 @@
 mod errors;
 pub(crate) mod formats;
 mod in_pictures;
+mod links;
 mod measured;
 mod mesh_files;
 mod missing_size;
