@@ -140,7 +140,7 @@ fn arrows_beside(
     at: Vec3,
     middle: Pos2,
     arm: f32,
-    (extent, others): (Option<Extent>, &[(Pos2, f32)]),
+    (extent, others): (Option<HalfAxes>, &[(Pos2, f32)]),
     lens: &Lens,
 ) -> Vec<Placed> {
     let inside = lens.rect.shrink(LETTER_RADIUS);
@@ -225,7 +225,7 @@ mod tests {
 
     /// The handles that move a sphere at a position, in a picture of a size, with the picture, and the place and the
     /// extent of the sphere in it.
-    fn handles(position: Vec3, [width, height]: [f32; 2]) -> (Vec<Placed>, Rect, Pos2, Extent) {
+    fn handles(position: Vec3, [width, height]: [f32; 2]) -> (Vec<Placed>, Rect, Pos2, HalfAxes) {
         let object = Object { position, size: 2.1, ..Object::default() };
         let session = Session::new(Scene { objects: vec![object], ..Scene::default() });
         let registry = Registry::builtin();
@@ -234,7 +234,7 @@ mod tests {
         let target = Target::of(&session, &registry, None, Vec::new).expect("selected");
         let all = placed(&target, HandleMode::Move, &session, &lens);
         let middle = lens.project(position).expect("in view");
-        let extent = Extent::of(&target, middle, &lens).expect("in front of the camera");
+        let extent = HalfAxes::of(&target, middle, &lens).expect("in front of the camera");
         (all, rect, middle, extent)
     }
 
@@ -250,7 +250,7 @@ mod tests {
             let lens = Lens::of(&session, rect);
             let target = Target::of(&session, &registry, None, Vec::new).expect("selected");
             let middle = lens.project(target.at).expect("in view");
-            let extent = Extent::of(&target, middle, &lens);
+            let extent = HalfAxes::of(&target, middle, &lens);
             let all = placed(&target, HandleMode::Move, &session, &lens);
             let nearest = all.iter().map(|handle| gap(handle, middle, extent)).fold(f32::INFINITY, f32::min);
             assert!(!all.is_empty() && nearest < 24.0, "{size:?}: {nearest} points from the object");
