@@ -58,7 +58,7 @@ fn in_narrow(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.spacing_mut().item_spacing.x = 4.0;
     one_menu(ui, context);
     let from = ui.cursor().left();
-    let width = (ui.available_width() - SHADING - 4.0).clamp(LEAST, chooser::WIDTH);
+    let width = (ui.available_width() - SHADING - 12.0).clamp(LEAST, chooser::WIDTH);
     chooser::show(ui, width, context);
     pointed(ui, "reflection", from);
     let from = ui.cursor().left();

@@ -100,7 +100,7 @@ pub(super) fn text_field(
         .hint_text(RichText::new(hint).text_style(style))
         .desired_width(width - 14.0)
         .min_size(vec2(0.0, narrow::high(ui.ctx(), 0.0)))
-        .vertical_align(Align::Center)
+        .vertical_align(if kind == Text::Sentences { Align::Min } else { Align::Center })
         .frame(frame.inner_margin(egui::Margin::symmetric(6, 3)));
     let response = ui.add(edit);
     theme::names_field(&response, label, [value, &text, hint]);
