@@ -6,7 +6,7 @@ use bevy_egui::egui::{
     Margin, Modifiers, PopupCloseBehavior, RectAlign, TextEdit, Tooltip, text_edit::TextEditState,
 };
 
-use super::{author, keys, prelude::*};
+use super::{author, keys, narrow, prelude::*};
 use crate::{
     optics::distribution::GGX,
     parameter::Parameter,
@@ -299,7 +299,8 @@ const KEYS: f32 = 96.0;
 
 fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> Response {
     let palette = Palette::here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::click());
+    let size = vec2(ui.available_width(), narrow::high(ui.ctx(), 24.0));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let info = || WidgetInfo::selected(WidgetType::SelectableLabel, !entry.off, entry.current, entry.name);
     response.widget_info(info);
     if !ui.is_rect_visible(rect) {
@@ -333,9 +334,12 @@ fn list_row(ui: &mut Ui, entry: &Entry, marked: bool) -> Response {
             let sign = Rect::from_center_size(pos2(rect.left() + 13.0, y), vec2(11.0, 11.0));
             icon::paint(&painter, sign, Icon::Check, palette.accent);
         }
-        let key = theme::elided(ui, key, TextStyle::Body, palette.weak, KEYS);
-        painter.galley(pos2(right - key.size().x, y - key.size().y / 2.0), key, palette.weak);
-        right -= KEYS;
+        // A phone has no keys.
+        if !narrow::is(ui.ctx()) {
+            let key = theme::elided(ui, key, TextStyle::Body, palette.weak, KEYS);
+            painter.galley(pos2(right - key.size().x, y - key.size().y / 2.0), key, palette.weak);
+            right -= KEYS;
+        }
     }
     let ink = if entry.off { palette.weak } else { palette.text };
     let name = theme::elided(ui, entry.name, TextStyle::Body, ink, right - left);
@@ -432,20 +436,21 @@ const CHOOSER: &str = "reflection chooser";
 
 /// Shows the button and, if open, the list. They refer to the selected object's model override if there is one,
 /// otherwise to the model of the scene.
-pub fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+pub fn show(ui: &mut Ui, width: f32, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
     let palette = Palette::here(ui);
     let shown = session.model_shown();
     let current = registry.model(shown);
     let name = current.map_or(shown, |m| m.declaration.name);
+    let size = vec2(width, narrow::high(ui.ctx(), 24.0));
     let button = Button::new(theme::strong(ui, name))
         .right_text(RichText::new("▾").color(palette.weak))
-        .min_size(vec2(132.0, 24.0))
+        .min_size(size - vec2(28.0, 0.0))
         .truncate();
     // Marks the button even where the bar has no room to say that this is the model of one object.
     let of = session.model_of(registry);
     let button = if of.is_some() { button.stroke(Stroke::new(1.5, palette.accent)) } else { button };
-    let response = ui.add_sized(vec2(WIDTH, 24.0), button);
+    let response = ui.add_sized(size, button);
     theme::says(&response, WidgetType::ComboBox, format!("Reflection model: {name}"));
     context.on_click(&response, || Action::View(ViewChange::Chooser(!session.view.chooser_open)));
     if session.view.chooser_open {
@@ -479,7 +484,9 @@ pub(super) fn alone(ui: &mut Ui, context: &mut PanelContext<'_>) {
 /// Shows the list in its popup, at most `height` points high.
 fn opened(popup: Popup, height: f32, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
-    let (id, width) = (Id::new(CHOOSER), 460.0);
+    let ctx = popup.ctx().clone();
+    let around = ctx.global_style().spacing.menu_margin.sum().x;
+    let (id, width) = (Id::new(CHOOSER), narrow::wide(&ctx, 460.0, around));
     let (mut open, mut chosen) = (true, None);
     let asked = context.actions.len();
     let popup = popup.id(id).open_bool(&mut open).width(width);

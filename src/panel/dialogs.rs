@@ -10,6 +10,7 @@ use bevy_egui::egui::{Event, LayerId, Margin, Modifiers, Order, containers::pane
 use egui_file_dialog::{DialogMode, DialogState, FileDialog, FileDialogLabels, FileDialogStorage};
 
 use super::{
+    narrow,
     prelude::*,
     preview::{self, Preview, Source},
     state::{Effect, ExportCommand, LessonSource, Pick},
@@ -275,7 +276,7 @@ impl Dialogs {
             }
         });
         self.arrange(ctx);
-        if self.asked == Some(Pick::Open) {
+        if self.asked == Some(Pick::Open) && !narrow::is(ctx) {
             self.dialog.update_with_right_panel_ui(ctx, &mut |ui, dialog| {
                 let file = dialog.selected_entry().filter(|entry| entry.is_file());
                 let file = file.map(|entry| Source::File(entry.to_path_buf()));
@@ -305,6 +306,7 @@ impl Dialogs {
         let size = if narrow { ALL } else { SHARE } * screen;
         let id = self.dialog.get_window_id();
         let config = self.dialog.config_mut();
+        config.show_left_panel = !narrow::is(ctx);
         (config.default_size, config.min_size, config.max_size) = (size, size, Some(size));
         // Leaves enough width for the buttons below the list.
         config.right_panel_width = Some(if narrow { 0.28 } else { 0.34 } * size.x);

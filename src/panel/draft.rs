@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::{TextEdit, Window};
 
-use super::prelude::*;
+use super::{narrow, prelude::*};
 
 /// Width of such a window, in points.
 const WIDTH: f32 = 450.0;
@@ -10,18 +10,26 @@ const WIDTH: f32 = 450.0;
 const BAR: f32 = 10.0;
 /// Height of title, margins and buttons of such a window, in points.
 const AROUND: f32 = 132.0;
+/// Height of title and margins alone, in points.
+const TITLE: f32 = 72.0;
 
 /// Shows such a window around a point. Returns false if the user closes it.
 pub(super) fn window(ui: &Ui, id: &str, title: String, centre: Pos2, content: impl FnOnce(&mut Ui)) -> bool {
     // It may have been pushed aside the last time, by the user or by a lack of room.
     let opens = is_new(ui, &format!("{id} place"));
+    let width = narrow::wide(ui.ctx(), WIDTH, ui.spacing().window_margin.sum().x);
     let size = |window: Window<'static>| {
-        let window = window.default_width(WIDTH).pivot(Align2::CENTER_CENTER).default_pos(centre);
+        let window = window.default_width(width).pivot(Align2::CENTER_CENTER).default_pos(centre);
         if opens { window.current_pos(centre) } else { window }
     };
     theme::window(ui, id, title, true, size, |ui| {
-        ui.set_width(WIDTH);
-        content(ui);
+        ui.set_width(width);
+        if !narrow::is(ui.ctx()) {
+            return content(ui);
+        }
+        let most = ui.ctx().content_rect().height() - TITLE;
+        let scroll = ScrollArea::both().auto_shrink([false, true]).min_scrolled_height(most);
+        scroll.max_height(most).show(ui, content);
     })
 }
 

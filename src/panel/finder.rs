@@ -11,6 +11,7 @@ use super::{
     explain::has_sides,
     keys,
     lesson::point,
+    narrow,
     prelude::*,
     rank::{leave_out_chance, rank},
 };
@@ -100,7 +101,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
     let all = everything(ctx, context.session(), context.registry());
     let screen = ctx.content_rect();
-    let width = WIDTH.min(screen.width() - 2.0 * MARGIN);
+    let margin = if narrow::is(ctx) { 0.5 * MARGIN } else { MARGIN };
+    let width = WIDTH.min(screen.width() - 2.0 * margin);
     let at = pos2(screen.center().x, screen.top() + ABOVE * screen.height());
     let (mut open, mut chosen) = (true, None);
     Popup::new(id(), ctx.clone(), at, LayerId::background())

@@ -9,7 +9,7 @@ use bevy_egui::egui::{self, Context, Frame, Id, Margin, Rect, Ui, vec2};
 use super::{
     Dialogs, Over, PanelContext, Panels, Place, author, code, cover, explain,
     focus::{self, Region},
-    keys, lesson, linked, menu, modal, presentation, sides,
+    keys, lesson, linked, menu, modal, narrow, presentation, sheet, sides,
     state::{Action, Effect, PictureArea, Session},
     theme::{self, Palette},
     welcome,
@@ -53,7 +53,6 @@ pub fn show(
         lesson_alone(ui, panels, &mut context);
     } else {
         around(ui, panels, &mut context);
-        panels.show(ui, Place::Strip, &mut context);
     }
     panels.show(ui, Place::Picture, &mut context);
     // Nothing behind a window shows a tooltip over it.
@@ -99,6 +98,9 @@ fn absorb(
     if session.is_stale() {
         session.look(registry);
     }
+    if session.view.narrow != narrow::is(ctx) {
+        session.view.narrow = narrow::is(ctx);
+    }
     if !session.panels.iter().copied().eq(panels.infos()) {
         let first = session.panels.is_empty();
         session.panels = panels.infos().collect();
@@ -141,9 +143,12 @@ fn lesson_alone(ui: &mut Ui, panels: &mut Panels, context: &mut PanelContext<'_>
     let session = context.session();
     if session.lesson.is_some() && session.view.left_open {
         let frame = theme::panel_frame(&Palette::of(&session.settings), vec2(0.0, 4.0));
-        let edge = egui::Panel::left("lesson presented").frame(frame).resizable(false);
-        let edge = edge.exact_size(lesson::SHARE * ui.available_rect_before_wrap().width());
-        sides::side(ui, edge, Place::Left, panels, context);
+        let whole = ui.available_rect_before_wrap();
+        let edge = match session.view.narrow {
+            true => egui::Panel::bottom("lesson below").exact_size(lesson::BELOW * whole.height()),
+            false => egui::Panel::left("lesson presented").exact_size(lesson::SHARE * whole.width()),
+        };
+        sides::side(ui, edge.frame(frame).resizable(false), Place::Left, panels, context);
     }
 }
 
@@ -159,6 +164,9 @@ fn around(ui: &mut Ui, panels: &mut Panels, context: &mut PanelContext<'_>) {
             let shown = bar.show(ui, |ui| panel.show(ui, context));
             focus::region(&ctx, Region::Panel(place), shown.response.rect);
         }
+    }
+    if session.view.narrow {
+        return sheet::below(ui, panels, whole, context);
     }
     // Panel widths are stored per zoom level. A zoom takes effect a frame after it is chosen.
     let zoom = zoom_percent(&ctx);
@@ -189,6 +197,7 @@ fn around(ui: &mut Ui, panels: &mut Panels, context: &mut PanelContext<'_>) {
         }
     }
     context.actions.extend(widths.dragged(&ctx, session, sizes));
+    panels.show(ui, Place::Strip, context);
 }
 
 /// Applies the actions of a frame. Returns the effects, among them the dialog that others want; texts are copied.

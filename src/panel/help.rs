@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::Window;
 
-use super::{keys, prelude::*};
+use super::{keys, narrow, prelude::*};
 use crate::program;
 
 /// The least width of the window in which the list has two columns, points.
@@ -36,7 +36,8 @@ pub(super) fn keys_window(ui: &mut Ui, context: &mut PanelContext<'_>) {
 /// Version and licences.
 pub(super) fn about_window(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
-    let size = |window: Window<'static>| window.default_width(480.0);
+    let width = narrow::wide(ui.ctx(), 480.0, ui.spacing().window_margin.sum().x);
+    let size = |window: Window<'static>| window.default_width(width);
     let (open, close) = (session.view.about_open, ViewChange::About(false));
     window(ui, ABOUT, open, close, size, context, |ui| about(ui, session, registry));
 }
@@ -104,6 +105,11 @@ fn column(ui: &mut Ui, groups: &[&str], rows: &[Row]) {
     for group in groups {
         ui.label(theme::strong(ui, *group));
         for (_, key, label) in rows.iter().filter(|row| row.0 == *group) {
+            if narrow::is(ui.ctx()) {
+                ui.add(Label::new(RichText::new(key).color(colour)).wrap());
+                ui.add(Label::new(label).wrap());
+                continue;
+            }
             ui.horizontal_top(|ui| {
                 let (place, response) = ui.allocate_exact_size(vec2(keys, line), Sense::hover());
                 theme::says(&response, WidgetType::Label, key);

@@ -7,6 +7,7 @@ use bevy_egui::egui::{
 };
 
 use super::{
+    narrow,
     state::Severity,
     theme::{self, Palette},
 };
@@ -98,7 +99,8 @@ pub(super) const SIZE: f32 = 22.0;
 /// An icon button. `says` is the tooltip and the accessible name.
 pub fn button(ui: &mut Ui, icon: Icon, says: &str) -> Response {
     let palette = Palette::here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(SIZE, SIZE), Sense::click());
+    let size = vec2(SIZE, narrow::high(ui.ctx(), SIZE));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, ui.is_enabled(), says));
     if ui.is_rect_visible(rect) {
         let hot = response.hovered() || response.has_focus();

@@ -49,25 +49,28 @@ pub(super) fn moves_focus(ctx: &Context, action: &Action) -> bool {
     true
 }
 
-/// The bar of menus: opens the one that is asked for; Left and Right go to the neighbours.
+/// The bar of menus: opens the one that is asked for; Left and Right go to the neighbours. One that is alone holds all
+/// others.
 pub(super) fn bar(ctx: &Context, menus: &[(&str, Response)]) {
     let asked = kept::with(ctx, |known: &mut Known| known.asked.take());
     // A question or a choice that must be dealt with first has the keys.
     if ctx.memory(egui::Memory::top_modal_layer).is_some() {
         return;
     }
+    let in_one = menus.len() == 1;
     let ids: Vec<Id> = menus.iter().map(|(_, button)| Popup::default_response_id(button)).collect();
     let open = ids.iter().position(|id| Popup::is_id_open(ctx, *id));
     let count = ids.len();
     let sideways = ctx.input_mut(|input| {
-        let at = open?;
+        let at = open.filter(|_| !in_one)?;
         let right = input.consume_key(Modifiers::NONE, Key::ArrowRight).then_some((at + 1) % count);
         right.or_else(|| {
             input.consume_key(Modifiers::NONE, Key::ArrowLeft).then_some((at + count - 1) % count)
         })
     });
     let asked = asked.filter(|(_, last)| ctx.cumulative_pass_nr() <= *last);
-    let asked = asked.and_then(|(name, _)| menus.iter().position(|(menu, _)| *menu == name));
+    let place = |name: &str| menus.iter().position(|(menu, _)| *menu == name).or(in_one.then_some(0));
+    let asked = asked.and_then(|(name, _)| place(name));
     let Some(wanted) = asked.or(sideways) else { return };
     ctx.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
     if open == Some(wanted) {

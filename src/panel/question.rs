@@ -5,6 +5,7 @@ use std::path;
 use bevy_egui::egui::Modal;
 
 use super::{
+    narrow,
     prelude::*,
     state::{Answer, Offer, Question},
 };
@@ -30,10 +31,15 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
                 });
             }
             ui.add_space(16.0);
+            if narrow::is(ui.ctx()) {
+                let size = vec2(ui.available_width(), narrow::THUMB);
+                out = answered(ui, &answers, size);
+                return;
+            }
             // One line high: all of the rest would be the height of the question before.
             let line = vec2(ui.available_width(), BUTTON.y);
             let layout = Layout::right_to_left(Align::Center);
-            ui.allocate_ui_with_layout(line, layout, |ui| out = answered(ui, &answers));
+            ui.allocate_ui_with_layout(line, layout, |ui| out = answered(ui, &answers, BUTTON));
         });
     });
     let escape = ui.input(|i| i.key_pressed(Key::Escape)).then_some(Answer::Cancel);
@@ -46,13 +52,13 @@ const AROUND: f32 = 56.0;
 /// Smallest size of a button, in points.
 const BUTTON: Vec2 = vec2(80.0, 28.0);
 
-/// The buttons for the answers, of which the first stands out. Returns the chosen one.
-fn answered(ui: &mut Ui, answers: &[(&str, Answer)]) -> Option<Answer> {
+/// The buttons for the answers, at least of this size, of which the first stands out. Returns the chosen one.
+fn answered(ui: &mut Ui, answers: &[(&str, Answer)], size: Vec2) -> Option<Answer> {
     let mut out = None;
     for (i, (label, answer)) in answers.iter().enumerate() {
         let button = match i {
-            0 => theme::action_button(ui, label, true, BUTTON),
-            _ => Button::new(*label).min_size(BUTTON),
+            0 => theme::action_button(ui, label, true, size),
+            _ => Button::new(*label).min_size(size),
         };
         let response = ui.add(button);
         // The keyboard focus starts here, not in the window below.

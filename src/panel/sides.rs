@@ -9,6 +9,7 @@ use super::{
     focus::{self, Region},
     glyphs, keys,
     lesson::point,
+    narrow,
     prelude::*,
     shares::shared,
     state::{
@@ -52,12 +53,13 @@ pub(super) fn side(
     shown.response.rect.width()
 }
 
-fn within(ui: &mut Ui, place: Place, panels: &mut Panels, context: &mut PanelContext<'_>) {
+/// Shows the panels at a side in all of `ui`.
+pub(super) fn within(ui: &mut Ui, place: Place, panels: &mut Panels, context: &mut PanelContext<'_>) {
     let session = context.session();
     let mut lessons = Vec::new();
     let (guests, own): (Vec<_>, Vec<_>) = panels.at(place, session).partition(|(info, _)| info.guest);
     let wanted = |ui: &Ui, info: &PanelInfo| match session.settings.folds(info.id) {
-        true => TITLE,
+        true => narrow::high(ui.ctx(), TITLE),
         false => ui.data(|data| data.get_temp(Id::new(("section", info.id)))).unwrap_or(LEAST),
     };
     let all: Vec<_> = guests.iter().map(|(info, _)| wanted(ui, info)).collect();
@@ -77,6 +79,12 @@ fn within(ui: &mut Ui, place: Place, panels: &mut Panels, context: &mut PanelCon
     for (info, panel) in own {
         let lesson = session.lesson.as_ref().filter(|_| place == Place::Left);
         match (lesson, info.id) {
+            // A narrow window shows either.
+            (Some(open), id) if session.view.narrow && !session.view.presenting => {
+                if open.tree_open != (id == LESSON) {
+                    panel.show(ui, context);
+                }
+            }
             (Some(_), LESSON) => lessons.push(panel),
             (Some(open), _) if !session.view.presenting => tree_below(ui, open, panel, context),
             (Some(_), _) | (None, LESSON) => {}
@@ -149,10 +157,11 @@ fn section(ui: &mut Ui, info: PanelInfo, panel: &mut Listed, context: &mut Panel
 fn title(ui: &mut Ui, info: PanelInfo, folded: bool, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        ui.set_min_height(TITLE);
+        let height = narrow::high(ui.ctx(), TITLE);
+        ui.set_min_height(height);
         ui.add_space(if info.place == Place::Left { 8.0 } else { 0.0 });
         let width = ui.available_width() - icon::SIZE - 8.0;
-        let (rect, _) = ui.allocate_exact_size(vec2(width, TITLE), Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
         let id = Id::new(("title of a section", info.id));
         let response = icon::fold(ui, rect, id, info.title, !folded);
         let text = glyphs::legible(ui, info.title, &format!("the panel “{}”", info.id));
@@ -180,10 +189,10 @@ const CODE_STRIP: f32 = 240.0;
 const MATERIAL_STRIP: f32 = 212.0;
 
 /// Height of the tabs, with the borders of the strip, in points.
-const TABS: f32 = 40.0;
+pub(super) const TABS: f32 = 40.0;
 /// Fraction of the height of a window that the strip takes at most, and the one that the picture keeps.
 const STRIP: f32 = 0.6;
-const PICTURE: f32 = 0.4;
+pub(super) const PICTURE: f32 = 0.4;
 /// Minimum height of the strip in any window, in points.
 const LOWEST: f32 = 48.0;
 
@@ -197,18 +206,7 @@ pub(super) fn bottom(
 ) {
     let session = context.session();
     let most = most_of_strip(ui, whole, context);
-    // High enough for a complete error with its source line.
-    let share = |(least, part): (f32, f32)| least.max(part * whole.height());
-    let (kind, least, start) = match session.view.bottom_tab.as_str() {
-        SHADER_TAB => (1, SHADER_STRIP, 0.0),
-        EXPLAIN_TAB => (2, share(EXPLAIN_STRIP), 0.0),
-        // A plot is large if there is room.
-        PLOTS_TAB => (3, PLOT_STRIP, 0.36 * whole.height()),
-        CODE_TAB => (4, CODE_STRIP, 0.45 * whole.height()),
-        MATERIALS_TAB => (5, MATERIAL_STRIP, 0.34 * whole.height()),
-        MESSAGES_TAB => (0, 72.0, 0.0),
-        _ => (6, 72.0, 0.0),
-    };
+    let (kind, least, start) = heights(&session.view.bottom_tab, whole);
     let strip = egui::Panel::bottom(Id::new(("bottom", zoom_percent(ui.ctx()), kind)))
         .frame(theme::panel_frame(&Palette::of(&session.settings), vec2(12.0, 4.0)))
         .resizable(true)
@@ -233,6 +231,23 @@ pub(super) fn bottom(
     focus::region(ui.ctx(), Region::Panel(Place::Bottom), response.response.rect);
     if response.response.rect.height() > least + 1.0 {
         *height = response.response.rect.height();
+    }
+}
+
+/// The kind of a panel in the strip, of which each has a height of its own, its minimum height with the tabs, and the
+/// height that it begins with where there is room.
+pub(super) fn heights(tab: &str, whole: Rect) -> (u8, f32, f32) {
+    // High enough for a complete error with its source line.
+    let share = |(least, part): (f32, f32)| least.max(part * whole.height());
+    match tab {
+        SHADER_TAB => (1, SHADER_STRIP, 0.0),
+        EXPLAIN_TAB => (2, share(EXPLAIN_STRIP), 0.0),
+        // A plot is large if there is room.
+        PLOTS_TAB => (3, PLOT_STRIP, 0.36 * whole.height()),
+        CODE_TAB => (4, CODE_STRIP, 0.45 * whole.height()),
+        MATERIALS_TAB => (5, MATERIAL_STRIP, 0.34 * whole.height()),
+        MESSAGES_TAB => (0, 72.0, 0.0),
+        _ => (6, 72.0, 0.0),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The status line at the bottom: messages, shader errors, the selection.
 
 use super::{
-    export, fits, keys, matching, messages,
+    export, fits, keys, matching, messages, narrow,
     prelude::*,
     state::{Converging, MESSAGES_TAB, SHADER_TAB},
     taking,
@@ -11,35 +11,18 @@ use crate::{library::status::kind_shown_instead, text::per_cent};
 /// The status line.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let session = context.session();
+    if narrow::is(ui.ctx()) {
+        ui.horizontal_wrapped(|ui| {
+            messages(ui, context);
+            news(ui, context);
+            latest(ui, 0.0, context);
+        });
+        return;
+    }
     ui.horizontal(|ui| {
         ui.set_min_height(20.0);
-        let count = session.messages.len();
-        let text = match count {
-            // A shader error beside it is news, too.
-            0 if shows_errors(session) => "Messages".to_owned(),
-            0 => "No messages".to_owned(),
-            _ => plural(count, "message"),
-        };
-        let text = theme::small(ui, text);
-        match session.messages.worst() {
-            Some(worst) => _ = icon::sign(ui, [14.0, 16.0], 5.5, worst),
-            None => {
-                let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
-                let icon = if session.view.bottom_open { Icon::Down } else { Icon::Up };
-                icon::paint(ui.painter(), rect.shrink(3.0), icon, Palette::here(ui).weak);
-            }
-        }
-        let says = if session.view.bottom_open { "Fold the strip away" } else { "Show messages" };
-        let says = keys::hint(ui.ctx(), says, "panel.messages");
-        let button = ui.add(Button::new(text).frame_when_inactive(false).small());
-        theme::says(&button, WidgetType::Button, format!("Messages: {count}"));
-        context.on_click(&button.on_hover_text(says), || Action::View(session.strip_change()));
-        shader_errors(ui, context);
-        export::progress(ui, context);
-        matching::progress(ui, context);
-        fits::progress(ui, context);
-        taking::progress(ui, context);
-        samples(ui, &session.facts.converged);
+        messages(ui, context);
+        news(ui, context);
         let name = if session.has_group() {
             session.name_of_group()
         } else {
@@ -54,6 +37,48 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
             ui.add(Label::new(theme::small(ui, selected)).truncate());
         });
     });
+}
+
+/// A button of the line: small, but in a narrow window as high as a thumb, and cut at the edge.
+fn small(ui: &Ui, text: RichText) -> Button<'static> {
+    let button = Button::new(text).frame_when_inactive(false);
+    if narrow::is(ui.ctx()) { button.truncate() } else { button.small() }
+}
+
+/// The number of messages, as a button that lists them.
+fn messages(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let session = context.session();
+    let count = session.messages.len();
+    let text = match count {
+        // A shader error beside it is news, too.
+        0 if shows_errors(session) => "Messages".to_owned(),
+        0 => "No messages".to_owned(),
+        _ => plural(count, "message"),
+    };
+    let text = theme::small(ui, text);
+    match session.messages.worst() {
+        Some(worst) => _ = icon::sign(ui, [14.0, 16.0], 5.5, worst),
+        None => {
+            let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
+            let icon = if session.view.shows_strip() { Icon::Down } else { Icon::Up };
+            icon::paint(ui.painter(), rect.shrink(3.0), icon, Palette::here(ui).weak);
+        }
+    }
+    let says = if session.view.shows_strip() { "Fold the strip away" } else { "Show messages" };
+    let says = keys::hint(ui.ctx(), says, "panel.messages");
+    let button = ui.add(small(ui, text));
+    theme::says(&button, WidgetType::Button, format!("Messages: {count}"));
+    context.on_click(&button.on_hover_text(says), || Action::View(session.strip_change()));
+}
+
+/// Shader errors, and what is running.
+fn news(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    shader_errors(ui, context);
+    export::progress(ui, context);
+    matching::progress(ui, context);
+    fits::progress(ui, context);
+    taking::progress(ui, context);
+    samples(ui, &context.session().facts.converged);
 }
 
 /// Convergence of pictures with light with extent: the least converged one in words, with the largest noise of those that
@@ -102,7 +127,7 @@ const NEWS: f32 = 0.75;
 fn latest(ui: &mut Ui, beside: f32, context: &mut PanelContext<'_>) {
     let session = context.session();
     let Some(message) = session.messages.last() else { return };
-    let listed = session.view.bottom_open && session.view.bottom_tab == MESSAGES_TAB;
+    let listed = session.view.shows_strip() && session.view.bottom_tab == MESSAGES_TAB;
     if listed || !session.has_news() {
         return;
     }
@@ -144,7 +169,7 @@ fn shader_errors(ui: &mut Ui, context: &mut PanelContext<'_>) {
     icon::sign(ui, [14.0, 16.0], 5.5, Severity::Error);
     let text = format!("{}: {effect}", plural(count, "shader error"));
     let text = RichText::new(text).small().color(Palette::here(ui).error);
-    let button = ui.add(Button::new(text).frame_when_inactive(false).small());
+    let button = ui.add(small(ui, text));
     let tip = keys::hint(ui.ctx(), "Show where the errors are", "panel.shader");
     let button = button.on_hover_text(tip);
     context.on_click(&button, || Action::View(ViewChange::BottomTab(SHADER_TAB.to_owned())));

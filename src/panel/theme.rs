@@ -12,7 +12,10 @@ use bevy_egui::egui::{
     UiBuilder, Vec2, WidgetInfo, WidgetType, Window, style::HandleShape, vec2,
 };
 
-use super::state::{Settings, Severity, ThemeChoice};
+use super::{
+    narrow,
+    state::{Settings, Severity, ThemeChoice},
+};
 pub use crate::lettering::{maths, maths_italic, semibold};
 use crate::{lettering, reflection::Term};
 
@@ -200,7 +203,7 @@ pub(super) fn window(
 /// Shows a tooltip of at most this width, in points.
 pub(super) fn tip(widget: Response, width: f32, add: impl FnOnce(&mut Ui)) -> Response {
     widget.on_hover_ui(|ui| {
-        ui.set_max_width(width);
+        ui.set_max_width(narrow::wide(ui.ctx(), width, 0.0));
         add(ui);
     })
 }
@@ -358,8 +361,9 @@ pub fn apply(ctx: &Context, settings: &Settings) -> bool {
     // Takes effect in the next pass; setting the same factor again does nothing.
     ctx.set_zoom_factor(f32::from(settings.scale) / 100.0);
     let dark = settings.theme == ThemeChoice::Dark;
-    let before: Option<bool> = ctx.data(|d| d.get_temp(id));
-    if before == Some(dark) {
+    let now = (dark, narrow::is(ctx));
+    let before: Option<(bool, bool)> = ctx.data(|d| d.get_temp(id));
+    if before == Some(now) {
         return true;
     }
     if before.is_none() {
@@ -367,10 +371,14 @@ pub fn apply(ctx: &Context, settings: &Settings) -> bool {
         // The window handles these keys itself.
         ctx.options_mut(|o| o.zoom_with_keyboard = false);
     }
-    ctx.data_mut(|d| d.insert_temp(id, dark));
+    ctx.data_mut(|d| d.insert_temp(id, now));
     let theme = if dark { egui::Theme::Dark } else { egui::Theme::Light };
     ctx.set_theme(theme);
-    ctx.set_style_of(theme, style(&Palette::of(settings)));
+    let mut style = style(&Palette::of(settings));
+    if now.1 {
+        for_thumbs(&mut style.spacing);
+    }
+    ctx.set_style_of(theme, style);
     if before.is_none() {
         ctx.request_repaint();
     }
@@ -439,6 +447,14 @@ fn spacing(s: &mut egui::style::Spacing) {
     s.scroll.floating_width = 5.0;
     // Faded edges would distort the colours there.
     s.scroll.fade.strength = 0.0;
+}
+
+/// The spacing of a narrow window.
+fn for_thumbs(s: &mut egui::style::Spacing) {
+    s.interact_size.y = narrow::THUMB;
+    s.tooltip_width = 25.0 * UNIT;
+    s.menu_width = 25.0 * UNIT;
+    s.window_margin = Margin::same(UNIT as i8);
 }
 
 /// The states of a widget.

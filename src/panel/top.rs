@@ -6,7 +6,7 @@ use super::{
     explain::has_sides,
     keys,
     lesson::{list, point},
-    maths, menu, model_override,
+    maths, menu, model_override, narrow,
     prelude::*,
     segmented::{segment_width, segmented},
     state::Facts,
@@ -17,6 +17,10 @@ use crate::text::facts;
 /// See the module.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
+    if narrow::is(ui.ctx()) {
+        ui.horizontal(|ui| in_narrow(ui, context));
+        return;
+    }
     ui.horizontal(|ui| {
         ui.set_min_height(28.0);
         ui.spacing_mut().item_spacing.x = 4.0;
@@ -34,7 +38,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
             caption(ui, CAPTIONS[0]);
         }
         let from = ui.cursor().left();
-        chooser::show(ui, context);
+        chooser::show(ui, chooser::WIDTH, context);
         pointed(ui, "reflection", from);
         ui.add_space(8.0);
         if captioned {
@@ -46,6 +50,25 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         model_override::whose(ui, session, registry);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| renderer(ui, &session.facts));
     });
+}
+
+/// The bar of a narrow window: all menus in one, the choices, and the scene's name if there is room.
+fn in_narrow(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
+    ui.spacing_mut().item_spacing.x = 4.0;
+    one_menu(ui, context);
+    let from = ui.cursor().left();
+    let width = (ui.available_width() - SHADING - 12.0).clamp(LEAST, chooser::WIDTH);
+    chooser::show(ui, width, context);
+    pointed(ui, "reflection", from);
+    let from = ui.cursor().left();
+    let names: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.name).collect();
+    shading(ui, &names, false, context);
+    pointed(ui, "shading", from);
+    model_override::whose(ui, session, registry);
+    if ui.available_width() >= NAMED {
+        document(ui, context);
+    }
 }
 
 /// A choice of this name is in the bar, from this place to the cursor.
@@ -62,6 +85,15 @@ fn divider(ui: &mut Ui) {
 fn caption(ui: &mut Ui, text: &str) {
     ui.label(theme::small(ui, text));
 }
+
+/// Width of the list of shading models, in points.
+const SHADING: f32 = 88.0;
+/// Minimum width of the button for the reflection model, in points.
+const LEAST: f32 = 64.0;
+/// Width of a narrow bar from which on the button for the menus has a word beside its sign, in points.
+const WORD: f32 = 320.0;
+/// Room in a narrow bar from which on it has the scene's name, in points.
+const NAMED: f32 = 120.0;
 
 /// The captions of the choices.
 const CAPTIONS: [&str; 2] = ["Reflection", "Shading"];
@@ -138,13 +170,40 @@ fn repeats(title: &str, file: &str) -> bool {
     words(&file).iter().all(|word| word.is_empty() || known.contains(word))
 }
 
-fn menus(ui: &mut Ui, context: &mut PanelContext<'_>) {
-    let (session, registry) = (context.session(), context.registry());
-    let beside = |ui: &mut Ui, menu: &Menu, right: f32, actions: &mut Vec<Action>| match menu.name {
+/// What menus have beside their entries; see [`show::Special`].
+fn beside<'s>(
+    session: &'s Session,
+    registry: &'s Registry,
+) -> impl Fn(&mut Ui, &Menu, f32, &mut Vec<Action>) + 's {
+    move |ui, menu, right, actions| match menu.name {
         command::EXAMPLES => welcome::menu(ui, right, registry, actions),
         command::LESSONS => list::entries(ui, session, actions),
         _ => {}
-    };
+    }
+}
+
+/// The menus as one, of which each is an entry.
+fn one_menu(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
+    let words = if ui.available_width() >= WORD { "☰ Menu" } else { "☰" };
+    let button = ui.menu_button(words, |ui| {
+        let all = command::all(session, registry, has_sides(ui.ctx(), session));
+        for (_, name) in command::BAR {
+            let Some(menu) = all.find(name) else { continue };
+            let special = beside(session, registry);
+            menu::submenu(ui, name, |ui| show::content(ui, menu, &special, &mut context.actions));
+        }
+    });
+    theme::says(&button.response, WidgetType::Button, "Menu");
+    for (_, name) in command::BAR {
+        point::menu(ui, name, button.response.rect);
+    }
+    menu::bar(ui.ctx(), &[("Menu", button.response)]);
+}
+
+fn menus(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
+    let beside = beside(session, registry);
     ui.scope(|ui| {
         egui::containers::menu::menu_style(ui.style_mut());
         ui.spacing_mut().item_spacing.x = 0.0;
@@ -181,7 +240,7 @@ fn shading(ui: &mut Ui, names: &[&str], apart: bool, context: &mut PanelContext<
     let picked = if apart {
         segmented(ui, "Shading", names, chosen, tip)
     } else {
-        let combo = egui::ComboBox::from_id_salt("shading").width(88.0);
+        let combo = egui::ComboBox::from_id_salt("shading").width(SHADING);
         menu::list(ui, combo, "Shading", names, chosen, tip).1
     };
     if let Some(i) = picked {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bevy_egui::egui::TextEdit;
 
-use super::{focus, glyphs, knob, lesson::point, prelude::*, state::Effect};
+use super::{focus, glyphs, knob, lesson::point, narrow, prelude::*, state::Effect};
 use crate::{
     optics::colour::Encoding,
     parameter::{BASE_COLOUR, Value},
@@ -13,6 +13,11 @@ use crate::{
 
 /// Height of a row, in points.
 const HEIGHT: f32 = 26.0;
+
+/// Height of a row in this window.
+fn height(ui: &Ui) -> f32 {
+    narrow::high(ui.ctx(), HEIGHT)
+}
 
 #[derive(Clone, Copy)]
 enum Row {
@@ -48,7 +53,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         Selection::Object(i) => session.document.row(i).map_or(0..0, |row| row.range()),
         _ => 0..0,
     };
-    let output = area.show_rows(ui, HEIGHT, total, |ui, range| {
+    let output = area.show_rows(ui, height(ui), total, |ui, range| {
         for i in range {
             match row(i) {
                 Row::Part(part) => PartRow::of(part, &chosen, context).show(ui, context),
@@ -84,9 +89,10 @@ fn offset_of_selection(ui: &Ui, memory: Id, session: &Session) -> Option<f32> {
         Selection::Light(i) => 3 + i,
         Selection::Object(i) => 4 + session.document.lights.len() + i,
     };
-    let (top, view) = (index as f32 * HEIGHT, ui.available_height());
+    let height = height(ui);
+    let (top, view) = (index as f32 * height, ui.available_height());
     let offset: f32 = ui.data(|d| d.get_temp(memory.with("offset"))).unwrap_or(0.0);
-    let out_of_sight = top < offset || top + HEIGHT > offset + view;
+    let out_of_sight = top < offset || top + height > offset + view;
     out_of_sight.then(|| (top - 0.4 * view).max(0.0))
 }
 
@@ -143,13 +149,15 @@ fn add_item(ui: &mut Ui, [glyph, name, summary]: [&str; 3], action: Action, cont
 
 fn heading(ui: &mut Ui, name: &str, count: usize, menu: impl FnOnce(&mut Ui)) {
     let colour = Palette::here(ui).weak;
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height(ui)), Sense::hover());
     let small = TextStyle::Small.resolve(ui.style());
     let (font, painter) = (FontId::new(small.size, theme::semibold()), ui.painter());
     let at = pos2(rect.left() + 8.0, rect.bottom() - 5.0);
     let text = painter.text(at, Align2::LEFT_BOTTOM, name, font, colour);
     painter.text(text.right_bottom() + vec2(6.0, 0.0), Align2::LEFT_BOTTOM, count, small, colour);
-    let place = Rect::from_min_size(pos2(rect.right() - 26.0, rect.top() + 2.0), vec2(22.0, 22.0));
+    let size = vec2(icon::SIZE, narrow::high(ui.ctx(), icon::SIZE));
+    let top = rect.center().y - 0.5 * size.y;
+    let place = Rect::from_min_size(pos2(rect.right() - 26.0, top), size);
     let mut child = ui.new_child(UiBuilder::new().id_salt(name).max_rect(place));
     let what = if name == "Lights" { "Add a light" } else { "Add an object" };
     let response = icon::button(&mut child, Icon::Plus, what);
@@ -203,7 +211,7 @@ impl<'a> PartRow<'a> {
         let Self { part, ref name, nested, session, .. } = *self;
         let palette = Palette::here(ui);
         let selected = session.is_selected(part);
-        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height(ui)), Sense::hover());
         let response = ui.interact(rect, row_id(part), Sense::click());
         theme::says_chosen(&response, WidgetType::SelectableLabel, selected, name);
         let hovered = ui.rect_contains_pointer(rect);
@@ -267,9 +275,10 @@ impl<'a> PartRow<'a> {
         rgb: [u8; 3],
         context: &mut PanelContext<'_>,
     ) {
+        let high = narrow::high(ui.ctx(), icon::SIZE);
         let place = |column: f32| {
             let centre = pos2(row.right() - (column - 0.5) * width, row.center().y);
-            Rect::from_center_size(centre, vec2(width.min(22.0), 22.0))
+            Rect::from_center_size(centre, vec2(width.min(icon::SIZE), high))
         };
         if columns > 0.5 {
             self.toggle(ui, place(columns), ui.rect_contains_pointer(row), context);

@@ -8,7 +8,7 @@ use super::{
     focus::{self, Region},
     keys,
     lesson::list,
-    maths,
+    maths, narrow,
     prelude::*,
     preview::{self, Source},
     state::LessonSource,
@@ -42,20 +42,50 @@ const SHORT: usize = 2;
 
 /// The strip below the picture, with three sections.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    if !context.session().view.examples_open {
+        return;
+    }
+    if narrow::is(ui.ctx()) {
+        return below_each_other(ui, context);
+    }
     // The picture has priority; the menus offer the same.
-    if context.session().view.examples_open && ui.available_height() >= LEAST {
+    if ui.available_height() >= LEAST {
         strip(ui, context);
     }
+}
+
+/// The sections below each other, in a narrow window.
+fn below_each_other(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    ScrollArea::vertical().id_salt("doors").auto_shrink(false).show(ui, |ui| {
+        // The scroll bar floats over this margin.
+        ui.set_max_width(ui.available_width() - 8.0);
+        lesson_door(ui, context);
+        let model = ui.button("New reflection model…").on_hover_text(MODEL_TIP);
+        context.on_click(&model, || Action::Model(ModelCommand::New));
+        heading(ui, "Examples", |ui| close(ui, context));
+        let (titles, below) = titles(ui);
+        ui.horizontal_wrapped(|ui| {
+            for (i, title) in titles.iter().enumerate() {
+                example(ui, i, title, below, context);
+            }
+        });
+    });
+}
+
+/// The titles of the examples below their pictures, and the height that they take.
+fn titles(ui: &Ui) -> (Vec<Arc<Galley>>, f32) {
+    let (font, ink) = (TextStyle::Small.resolve(ui.style()), Palette::here(ui).text);
+    let title = |name: &str| ui.painter().layout(name.to_owned(), font.clone(), ink, CARD.x);
+    let titles: Vec<_> = EXAMPLES.iter().map(|example| title(&example.name)).collect();
+    let below = 4.0 + titles.iter().map(|galley| galley.size().y).fold(0.0, f32::max) + BAR;
+    (titles, below)
 }
 
 fn strip(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let palette = Palette::here(ui);
     let panel = egui::Panel::bottom("examples").frame(theme::panel_frame(&palette, vec2(12.0, 4.0)));
     let shown = panel.show(ui, |ui| {
-        let font = TextStyle::Small.resolve(ui.style());
-        let title = |name: &str| ui.painter().layout(name.to_owned(), font.clone(), palette.text, CARD.x);
-        let titles: Vec<_> = EXAMPLES.iter().map(|example| title(&example.name)).collect();
-        let below = 4.0 + titles.iter().map(|galley| galley.size().y).fold(0.0, f32::max) + BAR;
+        let (titles, below) = titles(ui);
         let size = vec2(ui.available_width(), HEADING + 4.0 + CARD.y + below);
         let whole = Rect::from_min_size(ui.available_rect_before_wrap().min, size);
         let wide = whole.width() >= WIDE;
@@ -116,24 +146,29 @@ fn close(ui: &mut Ui, context: &mut PanelContext<'_>) {
 
 /// The examples, side by side.
 fn cards(ui: &mut Ui, titles: &[Arc<Galley>], below: f32, context: &mut PanelContext<'_>) {
-    let palette = Palette::here(ui);
     // Mouse wheels scroll vertically only.
     ui.style_mut().always_scroll_the_only_direction = true;
     ScrollArea::horizontal().auto_shrink([false, true]).show(ui, |ui| {
         ui.horizontal_top(|ui| {
-            for ((i, example), galley) in EXAMPLES.iter().enumerate().zip(titles) {
-                let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, below), Sense::click());
-                let picture = Rect::from_min_size(rect.min, CARD);
-                face(ui, i, picture, &response, context.registry());
-                ui.painter().galley(picture.left_bottom() + vec2(0.0, 4.0), galley.clone(), palette.text);
-                frame(ui, picture, &response);
-                context.on_click(&response, || Action::OpenExample(i));
-                theme::tip(response, 320.0, |ui| {
-                    ui.label(theme::strong(ui, &example.name));
-                    ui.label(maths::prose(ui, &example.description, TextStyle::Body));
-                });
+            for (i, title) in titles.iter().enumerate() {
+                example(ui, i, title, below, context);
             }
         });
+    });
+}
+
+/// An example as a button, with its title below its picture.
+fn example(ui: &mut Ui, i: usize, title: &Arc<Galley>, below: f32, context: &mut PanelContext<'_>) {
+    let (palette, example) = (Palette::here(ui), &EXAMPLES[i]);
+    let (rect, response) = ui.allocate_exact_size(CARD + vec2(0.0, below), Sense::click());
+    let picture = Rect::from_min_size(rect.min, CARD);
+    face(ui, i, picture, &response, context.registry());
+    ui.painter().galley(picture.left_bottom() + vec2(0.0, 4.0), title.clone(), palette.text);
+    frame(ui, picture, &response);
+    context.on_click(&response, || Action::OpenExample(i));
+    theme::tip(response, 320.0, |ui| {
+        ui.label(theme::strong(ui, &example.name));
+        ui.label(maths::prose(ui, &example.description, TextStyle::Body));
     });
 }
 
@@ -230,7 +265,11 @@ pub fn on_escape(ctx: &Context, session: &Session, area: &PictureArea) -> Option
 /// The menu of the examples, beside a menu whose right edge is `left`: in up to three columns if one would be too long.
 pub fn menu(ui: &mut Ui, left: f32, registry: &Registry, actions: &mut Vec<Action>) {
     let [most, least] = MENU;
+    // Over the menu before it, if there is no room beside it.
+    let narrow = narrow::is(ui.ctx());
+    let left = if narrow { 0.0 } else { left };
     let room = ui.ctx().content_rect().right() - left - 40.0;
+    let least = if narrow { least.min(room) } else { least };
     // The menu moves up if necessary.
     let height = ui.ctx().content_rect().height() - 40.0;
     let fits = |columns: &usize| EXAMPLES.len().div_ceil(*columns) as f32 * (ROW.y + 8.0) <= height;

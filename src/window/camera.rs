@@ -11,7 +11,8 @@ use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraS
 use super::{
     WindowView,
     pick::CTRL,
-    pointer::{OverPicture, PointerPlugin, follow_cursor},
+    pointer::OverPicture,
+    touch::{TouchPlugin, follow_fingers},
 };
 use crate::{
     document::{Edit, Selection},
@@ -51,11 +52,11 @@ pub struct CameraPlugin;
 
 impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
-        PointerPlugin::add_to(app);
+        TouchPlugin::add_to(app);
         if !app.is_plugin_added::<PanOrbitCameraPlugin>() {
             app.add_plugins(PanOrbitCameraPlugin);
         }
-        app.add_systems(PreUpdate, (gate.after(follow_cursor), keep_at_observer).chain()).add_systems(
+        app.add_systems(PreUpdate, (gate.after(follow_fingers), keep_at_observer).chain()).add_systems(
             PostUpdate,
             // In time for the marks over the picture of the same frame.
             feed_viewpoint.after(PanOrbitCameraSystemSet).before(EguiPostUpdateSet::EndPass),
@@ -85,6 +86,7 @@ fn gate(
     over: Res<OverPicture>,
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
+    touches: Res<Touches>,
     mut wheel: MessageReader<MouseWheel>,
     mut motion: MessageReader<MouseMotion>,
     mut dragging: Local<bool>,
@@ -95,10 +97,14 @@ fn gate(
     // With Ctrl the left button draws a frame around what shall be selected.
     let frames = keys.any_pressed(CTRL) && buttons.just_pressed(MouseButton::Left);
     *dragging = buttons.any_pressed(pressed) && (*dragging || begins && !frames);
+    let pushed = over.fingers && touches.iter().any(|touch| touch.delta() != Vec2::ZERO);
     let moved = motion.read().count() > 0;
     let wheeled = wheel.read().count() > 0 && over.now;
     // A drag that started in the picture continues outside; one that started outside is ignored.
-    let enabled = *dragging || (over.now && !buttons.any_pressed(pressed));
+    let enabled = match over.touched {
+        true => over.fingers,
+        false => *dragging || (over.now && !buttons.any_pressed(pressed)),
+    };
     let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
     for (mut orbit, mut picture) in &mut cameras {
         if orbit.enabled != enabled {
@@ -113,7 +119,7 @@ fn gate(
             orbit.button_orbit = turn;
             orbit.button_pan = pan;
         }
-        if picture.follows_observer && ((*dragging && moved) || wheeled) {
+        if picture.follows_observer && ((*dragging && moved) || wheeled || pushed) {
             picture.follows_observer = false;
         }
     }

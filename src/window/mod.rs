@@ -52,6 +52,7 @@ mod shaders;
 mod sheets;
 mod shell;
 mod solids;
+mod touch;
 mod views;
 pub mod watching;
 

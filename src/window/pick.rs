@@ -7,7 +7,8 @@ use super::{
     WindowView,
     order::Loading,
     place::{PicturePlace, area_of},
-    pointer::{OverPicture, PointerPlugin},
+    pointer::OverPicture,
+    touch::TouchPlugin,
 };
 use crate::{
     document::Selection,
@@ -27,7 +28,7 @@ pub struct PickingPlugin;
 
 impl Plugin for PickingPlugin {
     fn build(&self, app: &mut App) {
-        PointerPlugin::add_to(app);
+        TouchPlugin::add_to(app);
         app.add_systems(LabFrame, pick.in_set(Loading::Pick));
     }
 }
@@ -36,6 +37,8 @@ impl Plugin for PickingPlugin {
 const LIGHT_REACH: f32 = 12.0;
 /// Maximum movement of the pointer between press and release of a click, in points.
 const CLICK_SLACK: f32 = 4.0;
+/// The same of a finger, which rolls.
+const TAP_SLACK: f32 = 12.0;
 
 /// Selects the light whose marker was clicked, otherwise the object or lamp whose surface was clicked.
 fn pick(
@@ -50,7 +53,8 @@ fn pick(
     mut meshes: Local<MeshStore>,
     mut pressed_at: Local<Option<Vec2>>,
 ) {
-    let pointer = window.cursor_position();
+    let pointer = over.finger.or_else(|| window.cursor_position());
+    let slack = if over.finger.is_some() { TAP_SLACK } else { CLICK_SLACK };
     let area = area_of(area.as_deref(), &window);
     if buttons.just_pressed(MouseButton::Left) {
         *pressed_at = over.pressed.filter(|_| !area.popup_open);
@@ -60,7 +64,7 @@ fn pick(
     }
     let (Some(start), Some(end)) = (pressed_at.take(), pointer) else { return };
     let Ok((camera, place)) = cameras.single() else { return };
-    if start.distance(end) > CLICK_SLACK * area.zoom {
+    if start.distance(end) > slack * area.zoom {
         return;
     }
     let point = pos2(end.x / area.zoom, end.y / area.zoom);
@@ -183,7 +187,7 @@ mod tests {
         let mut world = World::new();
         world.insert_resource(session);
         world.insert_resource(area);
-        world.insert_resource(OverPicture { now: true, pressed: Some(at) });
+        world.insert_resource(OverPicture { now: true, pressed: Some(at), ..OverPicture::default() });
         world.insert_resource(CurrentScene(scene));
         world.insert_resource(Registry::builtin());
         world.init_resource::<ButtonInput<MouseButton>>();

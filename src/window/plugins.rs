@@ -28,7 +28,7 @@ use crate::{
 /// Size of a new window, in points.
 const SIZE: UVec2 = UVec2::new(1280, 720);
 /// Size below which the window cannot be made, in points: panels and questions would have no room.
-const LEAST: Vec2 = Vec2::new(640.0, 360.0);
+const LEAST: Vec2 = Vec2::new(360.0, 360.0);
 
 /// The whole window, as `lcm view` opens it:
 ///

@@ -12,7 +12,10 @@ use bevy::{
     prelude::*,
     window::{RequestRedraw, WindowEvent},
 };
-use bevy_egui::{EguiContext, PrimaryEguiContext, egui::pos2};
+use bevy_egui::{
+    EguiContext, PrimaryEguiContext,
+    egui::{Context, pos2},
+};
 
 use crate::panel::{is_over_picture, state::PictureArea};
 
@@ -41,6 +44,22 @@ pub(super) struct OverPicture {
     pub(super) now: bool,
     /// Position in the window of the latest button press, if it was over the picture.
     pub(super) pressed: Option<Vec2>,
+    /// True if a finger is on the screen.
+    pub(super) touched: bool,
+    /// True if fingers are on the screen that came down on the picture.
+    pub(super) fingers: bool,
+    /// Position in the window of the only one of them, also in the frame in which it goes.
+    pub(super) finger: Option<Vec2>,
+}
+
+/// True if a position in the window is over the picture.
+pub(super) fn is_over(context: Option<&Context>, area: Option<&PictureArea>, place: Option<Vec2>) -> bool {
+    let (Some(context), Some(area), Some(place)) = (context, area, place) else {
+        // Without panels, the picture fills the window.
+        return area.is_none() && place.is_some();
+    };
+    let place = place / area.zoom;
+    is_over_picture(context, area.frame, pos2(place.x, place.y))
 }
 
 /// The state of the pointer.
@@ -81,14 +100,7 @@ pub(super) fn follow_cursor(
     mut requests: MessageWriter<RequestRedraw>,
 ) {
     let context = contexts.iter_mut().next().map(|mut context| context.get_mut().clone());
-    let is_over = |place: Option<Vec2>| {
-        let (Some(context), Some(area), Some(place)) = (&context, &area, place) else {
-            // Without panels, the picture fills the window.
-            return area.is_none() && place.is_some();
-        };
-        let place = place / area.zoom;
-        is_over_picture(context, area.frame, pos2(place.x, place.y))
-    };
+    let is_over = |place: Option<Vec2>| is_over(context.as_ref(), area.as_deref(), place);
     let (mut device, mut cursor, mut moved) = (Vec2::ZERO, Vec2::ZERO, false);
     for event in events.read() {
         match event {

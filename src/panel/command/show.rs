@@ -5,7 +5,7 @@ use bevy_egui::egui::{Align, Button, Checkbox, Layout, RadioButton, Response, Ri
 use super::{Command, Item, Mark, Menu, all};
 use crate::{
     panel::{
-        glyphs, menu,
+        glyphs, menu, narrow,
         state::{Action, Session, ViewChange},
         theme::Palette,
     },
@@ -34,7 +34,8 @@ pub(in crate::panel) fn entries(
 /// The content of a menu.
 pub(in crate::panel) fn content(ui: &mut Ui, menu: &Menu, special: Special, actions: &mut Vec<Action>) {
     if menu.width > 0.0 {
-        ui.set_width(menu.width);
+        let around = ui.spacing().menu_margin.sum().x;
+        ui.set_width(narrow::wide(ui.ctx(), menu.width, around));
     }
     if !menu.scrolls {
         return items(ui, menu, special, actions);

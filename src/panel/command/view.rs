@@ -205,7 +205,7 @@ fn of_panel(panel: &PanelInfo, shown: bool, change: ViewChange) -> Command {
 
 /// A panel at the bottom.
 fn tab(session: &super::Session, panel: &PanelInfo) -> Command {
-    let shown = session.view.bottom_open && session.view.bottom_tab == panel.id;
+    let shown = session.view.shows_strip() && session.view.bottom_tab == panel.id;
     let change = if shown { ViewChange::Bottom(false) } else { ViewChange::BottomTab(panel.id.to_owned()) };
     let tab = of_panel(panel, shown, change);
     match panel.id {

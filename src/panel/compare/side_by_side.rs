@@ -35,9 +35,14 @@ fn place(frame: &Frame, columns: usize) -> Vec2 {
     (frame.picture.size() + Vec2::splat(GAP)) / counts - Vec2::splat(GAP)
 }
 
-/// The number of columns: two, or in a presentation all views in one line if their pictures are larger there.
+/// The number of columns: two, or in a presentation all views in one line if their pictures are larger there; in a narrow
+/// window one for two views that would be taller than wide beside each other.
 fn columns(frame: &Frame) -> usize {
     let all = frame.views.len().max(2);
+    let beside = place(frame, 2) - vec2(0.0, frame.high + frame.band);
+    if frame.session.view.narrow && all == 2 && beside.y > beside.x {
+        return 1;
+    }
     let least = |columns: usize| (place(frame, columns) - vec2(0.0, frame.high)).min_elem();
     if frame.session.view.presenting && least(all) > least(2) { all } else { 2 }
 }

@@ -7,6 +7,7 @@ use crate::{
         keys,
         knob::{self, Amount, Caption},
         lesson::point,
+        narrow,
         prelude::*,
         state::Effect,
     },
@@ -98,6 +99,8 @@ pub(super) fn text_field(
         .font(style.clone())
         .hint_text(RichText::new(hint).text_style(style))
         .desired_width(width - 14.0)
+        .min_size(vec2(0.0, narrow::high(ui.ctx(), 0.0)))
+        .vertical_align(if kind == Text::Sentences { Align::Min } else { Align::Center })
         .frame(frame.inner_margin(egui::Margin::symmetric(6, 3)));
     let response = ui.add(edit);
     theme::names_field(&response, label, [value, &text, hint]);

@@ -10,7 +10,10 @@ use super::{
     vector::axis_letter,
 };
 use crate::{
-    panel::theme::{self, Palette},
+    panel::{
+        narrow,
+        theme::{self, Palette},
+    },
     parameter::{Value, kind::colour::Colour},
     scene::limits::Limits,
     text::capitalised,
@@ -103,7 +106,7 @@ fn channels(
 /// The colour swatch: a click opens the picker, a double-click sets the default.
 fn swatch(ui: &mut Ui, id: Id, name: &str, width: f32, rgb: &mut [u8; 3], default: Option<[u8; 3]>) {
     let palette = Palette::here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(width, 22.0), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(width, narrow::high(ui.ctx(), 22.0)), Sense::click());
     let says = format!("{name}: choose a colour");
     response.widget_info(|| WidgetInfo::labeled(WidgetType::ColorButton, ui.is_enabled(), &says));
     let [r, g, b] = *rgb;

@@ -10,7 +10,10 @@ use bevy_egui::egui::{
 
 use super::slider::{nudge, round_to};
 use crate::{
-    panel::theme::{self, Palette},
+    panel::{
+        narrow,
+        theme::{self, Palette},
+    },
     scene::limits::{Limits, number},
 };
 
@@ -202,7 +205,7 @@ pub(super) struct Entry<'a> {
 /// The framed text field; gaining the focus selects all text.
 fn text_edit(ui: &mut Ui, entry: Entry, text: &mut String, wrong: bool) -> Response {
     let Entry { id, name, shown, hint, width } = entry;
-    let palette = Palette::here(ui);
+    let (palette, size) = (Palette::here(ui), vec2(width, narrow::high(ui.ctx(), 22.0)));
     let line = if wrong {
         palette.error
     } else if ui.memory(|m| m.has_focus(id)) {
@@ -220,12 +223,12 @@ fn text_edit(ui: &mut Ui, entry: Entry, text: &mut String, wrong: bool) -> Respo
         .id(id)
         .hint_text(RichText::new(hint).color(palette.weak))
         .desired_width(width - PADDING)
-        .min_size(vec2(width, 22.0))
+        .min_size(size)
         .vertical_align(Align::Center)
         .horizontal_align(Align::Max)
         .text_color(if wrong { palette.error } else { palette.text })
         .frame(frame);
-    let response = ui.add_sized(vec2(width, 22.0), edit);
+    let response = ui.add_sized(size, edit);
     theme::names_field(&response, name, [shown, &*text, hint]);
     if response.gained_focus() {
         // The text may have been rounded until now.

@@ -7,7 +7,7 @@ use bevy_egui::egui::{
 use crate::{
     panel::{
         lesson::point,
-        linked, maths,
+        linked, maths, narrow,
         theme::{self, Palette},
     },
     scene::{
@@ -88,7 +88,7 @@ pub(super) fn button(
     head(ui, caption, Words::Leave(CHOICE), |ui| {
         let width = choice_width(ui);
         let button = Button::new(text).right_text(RichText::new(sign).color(weak)).truncate();
-        let button = ui.add_sized(vec2(width, 24.0), button);
+        let button = ui.add_sized(vec2(width, narrow::high(ui.ctx(), 24.0)), button);
         button.widget_info(|| WidgetInfo::labeled(role, true, format!("{}: {text}", caption.label)));
         button
     })

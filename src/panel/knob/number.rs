@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     panel::{
-        menu,
+        menu, narrow,
         theme::{self, Palette},
     },
     parameter::{Value, kind::number::Number},
@@ -41,7 +41,8 @@ pub fn unit_choice(ui: &mut Ui, chosen: usize, options: &[[&str; 2]]) -> Option<
     let wide = |[sign, _]: &[&str; 2]| theme::small_width(ui, sign).ceil();
     // The text does not touch the edge of the panel.
     let width = options.iter().map(wide).fold(16.0, f32::max) + 2.0;
-    let (rect, response) = ui.allocate_exact_size(vec2(width, 22.0), Sense::click());
+    let size = vec2(width, narrow::high(ui.ctx(), 22.0));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response
         .widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, ui.is_enabled(), format!("unit: {word}")));
     let hot = response.hovered() || response.has_focus();

@@ -5,7 +5,7 @@ use bevy_egui::egui::{
 };
 
 use crate::{
-    panel::{focus, theme::Palette},
+    panel::{focus, narrow, theme::Palette},
     scene::limits::Limits,
 };
 
@@ -67,18 +67,22 @@ fn from_slider(limits: &Limits, t: f64) -> f64 {
     if limits.is_above_zero() && value < step { step.min(limits.max) } else { value }
 }
 
+/// Height of a slider, and of its rail, in points.
+const HEIGHT: f32 = 16.0;
+const RAIL: f32 = 3.0;
 /// Half the height of the handle, in points.
 const RADIUS: f32 = 6.0;
 
 /// A slider. A double-click sets the default; arrow keys step; Home and End go to the ends.
 pub(super) fn slider(ui: &mut Ui, name: &str, amount: Amount, width: f32) -> (Response, Option<f64>) {
-    let (rect, response) = ui.allocate_exact_size(vec2(width, 16.0), Sense::click_and_drag());
+    let size = vec2(width, narrow::high(ui.ctx(), HEIGHT));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let Amount { value, limits, .. } = amount;
     response.widget_info(|| match value.is_nan() {
         true => WidgetInfo::labeled(WidgetType::Slider, ui.is_enabled(), name),
         false => WidgetInfo::slider(ui.is_enabled(), value, name),
     });
-    let rail = rect.shrink2(vec2(RADIUS, 6.5));
+    let rail = rect.shrink2(vec2(RADIUS, 0.5 * (rect.height() - RAIL)));
     let out = asked(ui, &response, rail, amount);
     if ui.is_rect_visible(rect) {
         paint(ui, &response, rail, out.unwrap_or(value), amount);

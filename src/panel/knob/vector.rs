@@ -11,7 +11,10 @@ use super::{
     slider::round_to,
 };
 use crate::{
-    panel::theme::{self, Palette},
+    panel::{
+        narrow,
+        theme::{self, Palette},
+    },
     scene::limits::Limits,
 };
 
@@ -25,7 +28,8 @@ pub(super) fn axis_letter(
     set: impl FnOnce(f64),
 ) {
     let palette = Palette::here(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(14.0, 22.0), Sense::DRAG);
+    let size = vec2(14.0, narrow::high(ui.ctx(), 22.0));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::DRAG);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::DragValue, ui.is_enabled(), name));
     let colour = if response.hovered() || response.dragged() { palette.accent } else { palette.weak };
     let font = TextStyle::Small.resolve(ui.style());

@@ -1,6 +1,6 @@
 //! The buttons at the lower end of a lesson, which stay in place while long text scrolls: previous and next.
 
-use crate::panel::{focus, keys, prelude::*, state::OpenLesson};
+use crate::panel::{focus, keys, narrow, prelude::*, state::OpenLesson};
 
 /// Height of a button, in points.
 const HEIGHT: f32 = 30.0;
@@ -21,7 +21,10 @@ pub(super) fn footer(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) 
     };
     // The same widgets in all steps, so that Enter repeats.
     let buttons = |ui: &mut Ui| {
-        let size = vec2(0.5 * (ui.available_width() - ui.spacing().item_spacing.x), HEIGHT * scale);
+        let size = vec2(
+            0.5 * (ui.available_width() - ui.spacing().item_spacing.x),
+            narrow::high(ui.ctx(), HEIGHT * scale),
+        );
         let before = ui.add_enabled(open.step > 0, Button::new("Previous").min_size(size));
         let back = keys::hint(ui.ctx(), "The step before, as it began", "previous_step");
         if before.on_hover_text(back).clicked() {

@@ -5,7 +5,7 @@ use std::path::Path;
 use bevy_egui::egui::{Frame, Margin, Modifiers};
 
 use super::{
-    focus,
+    focus, narrow,
     prelude::*,
     state::{LessonSource, LinkTo, OpenLesson, problem_of},
 };
@@ -21,6 +21,8 @@ mod text;
 const PRESENTED: f32 = 0.0235;
 /// Fraction of the screen that the lesson takes in a presentation.
 pub(super) const SHARE: f32 = 0.31;
+/// Fraction of a narrow screen that it takes there, below the picture.
+pub(super) const BELOW: f32 = 0.45;
 
 /// The *Lesson* panel.
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -40,7 +42,11 @@ fn lesson(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
     let margin = Margin { left: side, right: side, top: 4, bottom: 6 };
     let edge = |panel: egui::Panel| panel.frame(Frame::new().inner_margin(margin)).resizable(false);
     let (head, foot) = (egui::Panel::top("head of the lesson"), egui::Panel::bottom("foot of the lesson"));
-    edge(head).show(ui, |ui| header(ui, session, open, actions));
+    // Where the text has little room, all of it but the buttons scrolls.
+    let scrolls = narrow::is(ui.ctx());
+    if !scrolls {
+        edge(head).show(ui, |ui| header(ui, session, open, actions));
+    }
     edge(foot).show(ui, |ui| footer::footer(ui, open, actions));
     let whole = ui.available_rect_before_wrap();
     let turned = pages(ui.ctx(), whole);
@@ -54,6 +60,9 @@ fn lesson(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
             ui.spacing_mut().item_spacing.y = 7.0 * scale;
             if turned != 0.0 {
                 ui.scroll_with_delta(vec2(0.0, turned * 0.8 * whole.height()));
+            }
+            if scrolls {
+                header(ui, session, open, actions);
             }
             problems(ui, open);
             body(ui, open, actions);
@@ -120,12 +129,14 @@ fn header(ui: &mut Ui, session: &Session, open: &OpenLesson, actions: &mut Vec<A
 
 /// The list of the steps.
 fn steps(ui: &mut Ui, open: &OpenLesson, actions: &mut Vec<Action>) {
-    ui.set_max_width(360.0);
+    ui.set_max_width(narrow::wide(ui.ctx(), 360.0, ui.spacing().menu_margin.sum().x));
+    let wraps = narrow::is(ui.ctx());
     ScrollArea::vertical().max_height(ui.ctx().content_rect().height() - 160.0).show(ui, |ui| {
         for (i, step) in open.lesson.steps.iter().enumerate() {
             let done = if open.done.contains(&i) { "  ✓" } else { "" };
             let text = format!("{}. {}{done}", i + 1, step.title);
-            if ui.selectable_label(i == open.step, text).clicked() {
+            let button = Button::selectable(i == open.step, text);
+            if ui.add(if wraps { button.wrap() } else { button }).clicked() {
                 actions.push(Action::Lesson(LessonCommand::GoTo(i)));
                 ui.close();
             }

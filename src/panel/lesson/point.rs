@@ -168,6 +168,22 @@ pub(in crate::panel) fn part(ui: &Ui, session: &Session, part: Selection, rect: 
     shown(ui, rect, |control| matches!(control, Control::Part(name) if name.find(document) == Some(part)));
 }
 
+/// Reports the button that brings the panels at a place into sight, which stands for the controls in them.
+pub(in crate::panel) fn behind(ui: &Ui, place: Place, rect: Rect) {
+    let is = |control: &Control| match control {
+        Control::Part(_) => place == Place::Left,
+        Control::Knob(_) => place == Place::Right,
+        Control::Tab(_) | Control::Line(_) => place == Place::Bottom,
+        Control::Menu(_) | Control::Button(_) => false,
+    };
+    let found = (rect, ui.clip_rect(), ui.layer_id());
+    kept::with(ui.ctx(), |pointed: &mut Pointed| {
+        if pointed.controls.iter().any(is) {
+            pointed.found.push(found);
+        }
+    });
+}
+
 /// Reports a line of *Explain* about a point.
 pub(in crate::panel) fn line(ui: &Ui, text: &str, point: Vec3, rect: Rect) {
     let gives = |value: &str| text.contains(&format!("{value} = "));

@@ -10,6 +10,7 @@ use super::{
     draft::is_new,
     kept::Answers,
     marks::Lens,
+    narrow,
     prelude::*,
     rank::{leave_out_chance, rank},
     state::MaterialCommand,
@@ -149,23 +150,30 @@ impl MaterialPanel {
 
     /// The search, and the buttons.
     fn head(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        if narrow::is(ui.ctx()) {
+            ui.horizontal_wrapped(|ui| self.search_and_buttons(ui, context));
+            return;
+        }
         ui.horizontal(|ui| {
-            let before = self.search.clone();
-            let hint = "Search: gold, velvet, openpbr…";
-            let edit = TextEdit::singleline(&mut self.search).hint_text(hint).desired_width(SEARCH);
-            let edit = ui.add(edit);
-            theme::names_field(&edit, "Search materials", [&before, &self.search, hint]);
-            let save = ui.button("Save material…");
-            let help =
-                "Saves the material of the selected object as a small file in your folder of materials.";
-            context.on_click(&save.on_hover_text(help), || Action::Material(MaterialCommand::Ask));
-            let again = ui.button("Read again");
-            if again.on_hover_text("Reads your folder of materials again.").clicked() {
-                self.opened += 1;
-            }
+            self.search_and_buttons(ui, context);
             let text = theme::small(ui, "click: for what is selected · drag: onto an object");
             ui.add(Label::new(text).truncate());
         });
+    }
+
+    fn search_and_buttons(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+        let before = self.search.clone();
+        let hint = "Search: gold, velvet, openpbr…";
+        let edit = TextEdit::singleline(&mut self.search).hint_text(hint).desired_width(SEARCH);
+        let edit = ui.add(edit);
+        theme::names_field(&edit, "Search materials", [&before, &self.search, hint]);
+        let save = ui.button("Save material…");
+        let help = "Saves the material of the selected object as a small file in your folder of materials.";
+        context.on_click(&save.on_hover_text(help), || Action::Material(MaterialCommand::Ask));
+        let again = ui.button("Read again");
+        if again.on_hover_text("Reads your folder of materials again.").clicked() {
+            self.opened += 1;
+        }
     }
 
     /// A material: its picture, its name and its model, and while its shader is being compiled, a word about that.

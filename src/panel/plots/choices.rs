@@ -4,58 +4,65 @@ use bevy_egui::egui::ComboBox;
 
 use crate::{
     curves::{Channel, Form, Kind},
-    panel::{knob, menu, prelude::*, state::MOST_LIGHT},
+    panel::{knob, menu, narrow, prelude::*, state::MOST_LIGHT},
     scene::limits::Limits,
 };
 
 /// Shows them.
 pub(super) fn row(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    if narrow::is(ui.ctx()) {
+        ui.horizontal_wrapped(|ui| choices(ui, context));
+    } else {
+        ui.horizontal(|ui| choices(ui, context));
+    }
+}
+
+fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let plots = &context.session().plots;
     let mut ask = |command: PlotCommand| context.act(Action::Plot(command));
-    ui.horizontal(|ui| {
-        let kinds = Kind::ALL.map(|kind| {
-            let [name, about] = kind.declaration().choice;
-            (kind, name, about)
-        });
-        if let Some(kind) = list(ui, "Quantity", 176.0, plots.kind, &kinds) {
-            ask(PlotCommand::Kind(kind));
-        }
-        ui.add_space(8.0);
-        let light = plots.kind.declaration().has_light;
-        let limits = Limits::between(0.0, MOST_LIGHT);
-        let help = "The angle between light and normal, 0° to 89°. The handle in the plot changes it, too.";
-        let name = "Angle of the light θ_i in degrees";
-        if let Some(angle) = angle(ui, ["θ_i", name, help], plots.theta_i, &limits, light) {
-            ask(PlotCommand::Light(angle));
-        }
-        let limits = Limits::between(-360.0, 360.0).slider(0.0, 360.0);
-        let help = "The azimuth of the plane from the tangent. It matters to anisotropic models: brushed metal, hair.";
-        let name = "Azimuth φ in degrees";
-        let turns = plots.kind.declaration().has_azimuth;
-        if let Some(angle) = angle(ui, ["φ", name, help], plots.phi_i, &limits, turns) {
-            ask(PlotCommand::Azimuth(angle));
-        }
-        ui.add_space(8.0);
-        let mut log = plots.log;
-        let help = "Equal steps are equal factors: small values are seen beside large ones.";
-        if ui.checkbox(&mut log, "logarithmic").on_hover_text(help).changed() {
-            ask(PlotCommand::Log(log));
-        }
-        ui.add_space(8.0);
-        if !plots.kind.declaration().is_scalar {
-            let plain = match plots.kind.declaration().form {
-                Form::Slices => (None, "in colour", "Red, green and blue at once."),
-                Form::Plot | Form::Polar => (None, "luminance", "The brightness, after ITU-R BT.709."),
-            };
-            let one = |(channel, name)| (Some(channel), name, "One channel of the linear colour.");
-            let own = [Channel::Red, Channel::Green, Channel::Blue].map(|c| one((c, c.name())));
-            let mut all = vec![plain];
-            all.extend(own);
-            if let Some(channel) = list(ui, "Channel", 84.0, plots.channel, &all) {
-                ask(PlotCommand::Channel(channel));
-            }
-        }
+    let kinds = Kind::ALL.map(|kind| {
+        let [name, about] = kind.declaration().choice;
+        (kind, name, about)
     });
+    if let Some(kind) = list(ui, "Quantity", 176.0, plots.kind, &kinds) {
+        ask(PlotCommand::Kind(kind));
+    }
+    ui.add_space(8.0);
+    let light = plots.kind.declaration().has_light;
+    let limits = Limits::between(0.0, MOST_LIGHT);
+    let help = "The angle between light and normal, 0° to 89°. The handle in the plot changes it, too.";
+    let name = "Angle of the light θ_i in degrees";
+    if let Some(angle) = angle(ui, ["θ_i", name, help], plots.theta_i, &limits, light) {
+        ask(PlotCommand::Light(angle));
+    }
+    let limits = Limits::between(-360.0, 360.0).slider(0.0, 360.0);
+    let help =
+        "The azimuth of the plane from the tangent. It matters to anisotropic models: brushed metal, hair.";
+    let name = "Azimuth φ in degrees";
+    let turns = plots.kind.declaration().has_azimuth;
+    if let Some(angle) = angle(ui, ["φ", name, help], plots.phi_i, &limits, turns) {
+        ask(PlotCommand::Azimuth(angle));
+    }
+    ui.add_space(8.0);
+    let mut log = plots.log;
+    let help = "Equal steps are equal factors: small values are seen beside large ones.";
+    if ui.checkbox(&mut log, "logarithmic").on_hover_text(help).changed() {
+        ask(PlotCommand::Log(log));
+    }
+    ui.add_space(8.0);
+    if !plots.kind.declaration().is_scalar {
+        let plain = match plots.kind.declaration().form {
+            Form::Slices => (None, "in colour", "Red, green and blue at once."),
+            Form::Plot | Form::Polar => (None, "luminance", "The brightness, after ITU-R BT.709."),
+        };
+        let one = |(channel, name)| (Some(channel), name, "One channel of the linear colour.");
+        let own = [Channel::Red, Channel::Green, Channel::Blue].map(|c| one((c, c.name())));
+        let mut all = vec![plain];
+        all.extend(own);
+        if let Some(channel) = list(ui, "Channel", 84.0, plots.channel, &all) {
+            ask(PlotCommand::Channel(channel));
+        }
+    }
 }
 
 /// A field for an angle, behind its symbol.

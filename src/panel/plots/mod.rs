@@ -4,7 +4,7 @@
 //! The figure is that of [`curves`](crate::curves), drawn by another pen: what the window shows is what
 //! its files show.
 
-use super::{linked, prelude::*, state::Slot};
+use super::{linked, narrow, prelude::*, state::Slot};
 use crate::curves::{
     Channel, Kind, Setup, Sheet, Style,
     draw::{Figure, Series},
@@ -70,9 +70,7 @@ impl PlotPanel {
         let lit = self.pointed.or(live.then_some(Slot::Live));
         choices::row(ui, context);
         let whole = ui.available_rect_before_wrap();
-        let width = (0.3 * whole.width()).clamp(230.0, 360.0);
-        let (plot, list) = whole.split_left_right_at_x(whole.right() - width);
-        ui.painter().vline(list.left(), whole.y_range(), Stroke::new(1.0, Palette::here(ui).line));
+        let (plot, list) = divided(ui, whole);
         let mut pointed = None;
         theme::column(ui, plot.with_max_x(plot.right() - 8.0), |ui| {
             pointed = self.surface(ui, &request, lit, context);
@@ -154,6 +152,20 @@ impl PlotPanel {
         let longest = all.max_by_key(|text| text.chars().count()).unwrap_or_default();
         self.figure = Some(Built { of, sheet, figure, notes, slots, longest });
     }
+}
+
+/// The places of the curves and of their list.
+fn divided(ui: &Ui, whole: Rect) -> (Rect, Rect) {
+    let line = Stroke::new(1.0, Palette::here(ui).line);
+    if narrow::is(ui.ctx()) {
+        let (plot, list) = whole.split_top_bottom_at_fraction(0.62);
+        ui.painter().hline(whole.x_range(), list.top(), line);
+        return (plot, list.with_min_y(list.top() + 6.0));
+    }
+    let width = (0.3 * whole.width()).clamp(230.0, 360.0);
+    let (plot, list) = whole.split_left_right_at_x(whole.right() - width);
+    ui.painter().vline(list.left(), whole.y_range(), line);
+    (plot, list)
 }
 
 impl Built {

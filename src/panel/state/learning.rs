@@ -8,7 +8,7 @@ use std::{
 
 use super::{
     Action, Aside, CameraChange, EXPLAIN_TAB, Effect, LessonCommand, LessonSource, Note, OpenLesson,
-    PLOTS_TAB, Pin, Plots, Progress, Session, Severity, View,
+    PLOTS_TAB, Pin, Place, Plots, Progress, Session, Severity, View,
     aside::DocumentView,
     follow::follow_registry,
     open_lesson::{Entered, problem_of},
@@ -179,6 +179,8 @@ impl Session {
         };
         let Some(open) = &mut self.lesson else { return };
         open.entered.insert(open.step, entered);
+        // The text comes first, whatever the step opens.
+        self.view.front = Place::Left;
         self.record(OpenLesson::note_step);
     }
 
@@ -253,6 +255,7 @@ impl Session {
         self.show_scene((*entered.scene).clone(), registry);
         entered.shown.put(&mut self.view);
         self.plots = entered.plots;
+        self.view.front = Place::Left;
         self.select(entered.selection);
         self.record(OpenLesson::note_step);
     }

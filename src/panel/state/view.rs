@@ -85,6 +85,11 @@ with_defaults! {
         pub left_open: bool = true,
         /// True if the properties at the right are shown.
         pub right_open: bool = true,
+        /// True if the window is too narrow for panels beside the picture.
+        pub narrow: bool = false,
+        /// The place of the panel that was asked for last: a narrow window shows it alone, below the picture;
+        /// [`Place::Picture`] if it shows none.
+        pub front: Place = Place::Strip,
         /// The pinned pixel, which stays explained wherever the pointer is.
         pub pinned: Option<Pin> = None,
         /// Unique number of the pin.
@@ -153,6 +158,8 @@ pub enum ViewChange {
     Left(bool),
     /// See [`View::right_open`].
     Right(bool),
+    /// Open the panels at a place, and bring them to the front of a narrow window; see [`View::front`].
+    Front(Place),
     /// Store the panel sizes after dragging: scene list, properties, bottom strip.
     Sizes {
         /// See [`Settings::left_width`].
@@ -190,8 +197,49 @@ impl View {
 
     /// Unfolds the strip at the bottom with the given panel.
     pub fn unfold(&mut self, tab: &str) {
-        self.bottom_open = true;
+        self.open(Place::Bottom, true);
         tab.clone_into(&mut self.bottom_tab);
+    }
+
+    /// True if the panels at a place that can be closed are open.
+    #[must_use]
+    pub fn is_open(&self, place: Place) -> bool {
+        match place {
+            Place::Left => self.left_open,
+            Place::Right => self.right_open,
+            Place::Bottom => self.bottom_open,
+            Place::Strip => self.examples_open,
+            _ => false,
+        }
+    }
+
+    /// Opens or closes the panels at a place. What is opened comes to the front.
+    pub(super) fn open(&mut self, place: Place, open: bool) {
+        match place {
+            Place::Left => self.left_open = open,
+            Place::Right => self.right_open = open,
+            Place::Bottom => self.bottom_open = open,
+            Place::Strip => self.examples_open = open,
+            _ => {}
+        }
+        if open {
+            self.front = place;
+        }
+    }
+
+    /// The place whose panel a narrow window shows below the picture: that of the one asked for last if it is open, or
+    /// else the first that is.
+    #[must_use]
+    pub fn in_front(&self) -> Option<Place> {
+        let all = [self.front, Place::Left, Place::Right, Place::Bottom, Place::Strip];
+        let picture_alone = self.front == Place::Picture;
+        all.into_iter().find(|place| !picture_alone && self.is_open(*place))
+    }
+
+    /// True if the strip at the bottom is in sight.
+    #[must_use]
+    pub fn shows_strip(&self) -> bool {
+        self.bottom_open && !(self.narrow && self.in_front() != Some(Place::Bottom))
     }
 
     fn change(&mut self, change: ViewChange, kept: &mut Settings) {
@@ -204,7 +252,7 @@ impl View {
             ViewChange::Smaller => {
                 kept.scale = SCALES.into_iter().rfind(|s| *s < kept.scale).unwrap_or(kept.scale);
             }
-            ViewChange::Examples(on) => self.examples_open = on,
+            ViewChange::Examples(on) => self.open(Place::Strip, on),
             ViewChange::Presenting(on) if on != self.presenting => {
                 let before = std::mem::replace(&mut self.fullscreen_before, self.fullscreen);
                 self.fullscreen = on || before;
@@ -228,10 +276,8 @@ impl View {
                     *shown = channel;
                 }
             }
-            ViewChange::Bottom(open) => self.bottom_open = open,
-            ViewChange::BottomTab(id) => {
-                self.unfold(&id);
-            }
+            ViewChange::Bottom(open) => self.open(Place::Bottom, open),
+            ViewChange::BottomTab(id) => self.unfold(&id),
             ViewChange::Panel(id, shown) => set(&mut kept.hidden_panels, id, !shown),
             ViewChange::Fold(id, folded) => set(&mut kept.folded_panels, id, folded),
             ViewChange::Pin(pin) => {
@@ -241,8 +287,9 @@ impl View {
                 }
             }
             ViewChange::Lobe(lobe) => self.lobe = lobe,
-            ViewChange::Left(open) => self.left_open = open,
-            ViewChange::Right(open) => self.right_open = open,
+            ViewChange::Left(open) => self.open(Place::Left, open),
+            ViewChange::Right(open) => self.open(Place::Right, open),
+            ViewChange::Front(place) => self.open(place, true),
             ViewChange::Sizes { left, right, bottom } => {
                 (kept.left_width, kept.right_width) = (left, right);
                 *kept.strip_height_mut(&self.bottom_tab) = bottom;
@@ -259,7 +306,7 @@ impl Session {
     /// The change that folds the strip at the bottom, or unfolds it with the messages.
     #[must_use]
     pub fn strip_change(&self) -> ViewChange {
-        if self.view.bottom_open {
+        if self.view.shows_strip() {
             ViewChange::Bottom(false)
         } else {
             ViewChange::BottomTab(MESSAGES_TAB.to_owned())
@@ -279,8 +326,7 @@ impl Session {
         let place = |id: &str| self.panels.iter().find(|p| p.guest && p.id == id).map(|p| p.place);
         match &change {
             ViewChange::Panel(id, true) => match place(id) {
-                Some(Place::Left) => self.view.left_open = true,
-                Some(Place::Right) => self.view.right_open = true,
+                Some(place @ (Place::Left | Place::Right)) => self.view.open(place, true),
                 _ => {}
             },
             ViewChange::BottomTab(id) => self.settings.guest_tab = place(id).map(|_| id.clone()),

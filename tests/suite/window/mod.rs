@@ -14,6 +14,7 @@ mod law_check;
 pub(crate) mod layout;
 mod marks;
 mod materials;
+mod narrow;
 pub(crate) mod panels;
 mod plots;
 mod pointer;
