@@ -236,7 +236,7 @@ fn stayed(recovery: Res<Recovery>, session: Res<Session>) {
 fn renderer_failed(failed: On<RendererFailed>, recovery: Res<Recovery>) {
     recovery.farewell.keeper.hurry();
     let why = if failed.device_lost { "The graphics card was lost" } else { "The renderer has failed" };
-    platform::stopped(&format!("{why}, and the picture stops. Load the page again to go on."));
+    platform::stopped(&format!("{why}: load the page again to go on."));
 }
 
 /// Offers the next copy as soon as no question is open.

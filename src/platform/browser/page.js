@@ -97,11 +97,10 @@ export function process() {
     return NUMBER;
 }
 
-/** Takes a lock. Returns what gives it back, or null. */
+/** Takes a lock. Returns what gives it back. */
 function take(name, options = {}) {
     return new Promise((taken, failed) => {
-        const keep = (lock) => lock && new Promise((free) => taken(free));
-        navigator.locks.request(name, options, keep).then(() => taken(null), failed);
+        navigator.locks.request(name, options, () => new Promise((free) => taken(free))).catch(failed);
     });
 }
 
@@ -121,7 +120,8 @@ try {
 
 export function hold(path) {
     if (elsewhere.has(path)) return false;
-    held.set(path, take(HELD + path, { ifAvailable: true }).catch(() => null));
+    // It may be on its way back from an earlier use.
+    held.set(path, take(HELD + path).catch(() => null));
     channel.postMessage({ held: path });
     return true;
 }
