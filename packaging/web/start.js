@@ -3,6 +3,7 @@
 const before = document.getElementById("before");
 const bar = document.getElementById("bar");
 const said = document.getElementById("said");
+const again = document.getElementById("again");
 
 function say(text) {
     said.textContent = text;
@@ -15,6 +16,17 @@ function refuse(text) {
     say(text);
 }
 
+/** Says over the picture why there is no further one. */
+function stop(text) {
+    const first = again.hidden;
+    before.classList.add("over");
+    refuse(text);
+    again.hidden = false;
+    // Keys that were meant for the laboratory do not press it.
+    if (first) said.focus();
+}
+
+again.addEventListener("click", () => location.reload());
 addEventListener("lab-shown", () => {
     before.hidden = true;
     document.getElementById("lab").focus();
@@ -23,8 +35,9 @@ addEventListener("lab-told", (event) => {
     if (!before.hidden) say(event.detail);
 });
 addEventListener("lab-failed", (event) => {
-    refuse(`The laboratory has stopped: ${event.detail}. Reload the page to start it again.`);
+    stop(`The laboratory has stopped: ${event.detail}.`);
 });
+addEventListener("lab-stopped", (event) => stop(event.detail));
 
 const megabytes = (bytes) => (bytes / 1e6).toFixed(1);
 

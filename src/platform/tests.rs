@@ -2,7 +2,7 @@ use std::{
     io::{self, Read as _, Seek as _, SeekFrom, Write as _},
     path::Path,
     sync::{
-        Arc,
+        Arc, Mutex,
         atomic::{AtomicU32, Ordering},
         mpsc,
     },
@@ -22,16 +22,37 @@ mod address;
 #[path = "browser/fs.rs"]
 mod fs;
 #[allow(dead_code, reason = "the window uses the rest")]
+#[path = "browser/tabs.rs"]
+mod tabs;
+#[allow(dead_code, reason = "the window uses the rest")]
 #[path = "browser/temporary.rs"]
 mod temporary;
 
 /// In place of the page: notes what it is asked for.
 mod page {
-    use std::sync::Mutex;
+    use std::{cell::Cell, sync::Mutex};
 
     use crate::caught::lock;
 
     pub(super) static ASKED: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+    thread_local! {
+        /// How many bytes the browser has room for.
+        pub(super) static ROOM: Cell<f64> = const { Cell::new(f64::INFINITY) };
+    }
+
+    pub(super) fn room() -> f64 {
+        ROOM.get()
+    }
+
+    pub(super) fn hold(path: &str) -> bool {
+        ask("hold", path, &[]);
+        !path.contains("elsewhere")
+    }
+
+    pub(super) fn release(path: &str) {
+        ask("release", path, &[]);
+    }
 
     fn ask(what: &str, name: &str, bytes: &[u8]) {
         lock(&ASKED).push(format!("{what} {name} {}", String::from_utf8_lossy(bytes)));
@@ -54,6 +75,8 @@ mod page {
     }
 }
 
+/// Held by tests of kept files, whose changes the whole process shares.
+static ALONE: Mutex<()> = Mutex::new(());
 /// Long enough for a busy machine.
 const LONG: Duration = Duration::from_secs(60);
 
@@ -219,6 +242,7 @@ fn asked(of: &str) -> Vec<String> {
 
 #[test]
 fn a_page_keeps_whole_files_and_downloads_results() {
+    let _alone = lock(&ALONE);
     assert_eq!(fs::read_to_string("rooms/kept.json").expect("kept by the page"), "kept");
     let (tell, told) = mpsc::channel();
     fs::tell_of_changes(move || _ = tell.send(()));
@@ -238,6 +262,81 @@ fn a_page_keeps_whole_files_and_downloads_results() {
         "keep /Files/lamp.obj mesh",
     ];
     assert_eq!(asked("lamp"), expected);
+}
+
+#[test]
+fn what_another_tab_writes_arrives_and_neither_overwrites_the_other() {
+    let _alone = lock(&ALONE);
+    let (name, room) = ("/Files/tabs/room.json", Path::new("/Files/tabs/room.json"));
+    let id = || fs::metadata(room).expect("there").id();
+    assert_eq!(tabs::happened("written", name, b"first".to_vec()), None);
+    let first = id();
+    assert_eq!(tabs::happened("written", name, b"second".to_vec()), None);
+    assert_ne!(id(), first, "it shows that it is another file");
+    assert_eq!(fs::read_to_string(room).expect("there"), "second");
+    assert!(fs::own_changes().contains(&room.to_owned()));
+    // Both write before they hear of each other.
+    fs::write(room, "mine").expect("written");
+    match tabs::happened("clash", name, b"theirs".to_vec()) {
+        Some(Notice::Warning(text)) => assert!(text.contains("room_2.json"), "{text}"),
+        other => panic!("{other:?}"),
+    }
+    let beside = fs::read_to_string("/Files/tabs/room_2.json").expect("there");
+    assert_eq!((fs::read_to_string(room).expect("there"), beside), ("theirs".to_owned(), "mine".to_owned()));
+    assert_eq!(tabs::happened("clash", name, b"theirs".to_vec()), None, "this is known");
+    assert_eq!(asked("tabs/room"), ["keep /Files/tabs/room.json mine", "keep /Files/tabs/room_2.json mine"]);
+    // Of the program's own records, there is one of each.
+    fs::write("/Data/tabs.json", "mine").expect("written");
+    assert_eq!(tabs::happened("clash", "/Data/tabs.json", b"theirs".to_vec()), None);
+    assert!(!fs::is_there("/Data/tabs_2.json"));
+    assert_eq!(tabs::happened("removed", name, Vec::new()), None);
+    assert!(!fs::is_there(room));
+}
+
+#[test]
+fn what_the_browser_has_no_room_for_is_not_written() {
+    let _alone = lock(&ALONE);
+    page::ROOM.set(3.0);
+    let full = |result: io::Result<()>| result.expect_err("no room").kind() == io::ErrorKind::StorageFull;
+    assert!(full(fs::write("/Files/full.json", "long")));
+    let draft = temporary::Builder::new().prefix(".lcm-").tempfile_in("/Files");
+    assert!(full(draft.expect("made").write_all(b"long")));
+    assert_eq!(asked("full.json"), Vec::<String>::new());
+    fs::write("/Downloads/full.png", "long").expect("the browser does not keep it");
+    page::ROOM.set(f64::INFINITY);
+    fs::write("/Files/full.json", "long").expect("written");
+    assert_eq!(asked("full.json"), ["keep /Files/full.json long"]);
+    // The browser notices later.
+    let unkept = |path: &str| tabs::happened("unkept", path, Vec::new());
+    let why = fs::NO_ROOM.to_owned();
+    assert_eq!(unkept("/Files/full.json"), Some(Notice::Unkept("/Files/full.json".into(), why)));
+    match unkept("/Data/recovery/1-2/scene.json") {
+        Some(Notice::Warning(text)) => assert!(text.contains("no recovery copy"), "{text}"),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_file_that_another_tab_has_locked_is_taken() {
+    let _alone = lock(&ALONE);
+    fs::create_dir_all("/Data/held").expect("made");
+    let open = |path: &str| fs::OpenOptions::new().create(true).open(path).expect("made");
+    let taken = open("/Data/held/elsewhere").try_lock();
+    assert!(matches!(taken, Err(fs::TryLockError::WouldBlock)), "{taken:?}");
+    let own = open("/Data/held/.lock");
+    own.try_lock().expect("free");
+    fs::rename("/Data/held/.lock", "/Data/held/lock").expect("moved");
+    drop(own);
+    let expected = [
+        "hold /Data/held/elsewhere ",
+        "hold /Data/held/.lock ",
+        "forget /Data/held/.lock ",
+        "keep /Data/held/lock ",
+        "release /Data/held/.lock ",
+        "hold /Data/held/lock ",
+        "release /Data/held/lock ",
+    ];
+    assert_eq!(asked("/held/"), expected);
 }
 
 #[test]

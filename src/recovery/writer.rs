@@ -157,6 +157,15 @@ impl Keeper {
         }
     }
 
+    /// Lets the copy be written without delay, also if it seems up to date. Nobody waits for it.
+    pub fn hurry(&self) {
+        let mut state = self.0.lock();
+        if state.wanted.is_some() {
+            state.urgent = true;
+            self.0.changed(state);
+        }
+    }
+
     /// Continues the copy left by another window, which is the document now.
     pub fn adopt(&self, journal: Journal, document: &Document, about: About, registry: &Arc<Registry>) {
         let mut state = self.0.lock();
@@ -410,6 +419,25 @@ mod tests {
             kept(&keeper);
         }
         assert!(begin.elapsed() < DELAY * 45, "{:?}", begin.elapsed());
+    }
+
+    #[test]
+    fn a_copy_in_a_hurry_is_written_at_once_and_nobody_waits() {
+        let (store, folder) = store();
+        let keeper = Keeper::start(Some(store), || {});
+        keeper.hurry();
+        assert_eq!(copies(&folder), 0, "there is nothing to copy");
+        let begin = Instant::now();
+        for i in 0..20 {
+            keep(&keeper, &i.to_string());
+            keeper.hurry();
+            until("written", || {
+                let state = keeper.0.lock();
+                state.settled == state.change
+            });
+        }
+        assert_eq!(copies(&folder), 1);
+        assert!(begin.elapsed() < DELAY * 15, "{:?}", begin.elapsed());
     }
 
     #[test]

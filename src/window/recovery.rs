@@ -33,7 +33,7 @@ use crate::{
         texts::{self, KeptText, OF_SCENE, TextKeeper, Texts},
     },
     registry::Registry,
-    render::schedule::LabFrame,
+    render::{live::RendererFailed, schedule::LabFrame},
     signals::Interrupt,
 };
 
@@ -63,12 +63,15 @@ impl Plugin for RecoveryPlugin {
     fn build(&self, app: &mut App) {
         let store = Store::of_user();
         let farewell = Farewell::prepare(store.clone(), app.world());
+        let keeper = farewell.keeper.clone();
+        platform::attend(waker(app.world()), move || keeper.hurry());
         let mut copies = Recovery::new(farewell);
         if self.search {
             copies.search(store.as_ref(), self.file.as_deref(), self.ask);
         }
         app.insert_resource(copies)
             .add_systems(PreUpdate, interrupted)
+            .add_observer(renderer_failed)
             .add_systems(LabFrame, (stayed, offer).chain().in_set(Loading::Recovery))
             .add_systems(Last, (keep, keep_texts));
         let store = Store::of_texts();
@@ -227,6 +230,13 @@ fn stayed(recovery: Res<Recovery>, session: Res<Session>) {
     if !recovery.farewell.closing.load(Ordering::SeqCst) && !session.questions.is_quitting() {
         recovery.farewell.interrupt.stay();
     }
+}
+
+/// Hurries with the copy of unsaved changes once there are no more pictures, and says so where the program goes on.
+fn renderer_failed(failed: On<RendererFailed>, recovery: Res<Recovery>) {
+    recovery.farewell.keeper.hurry();
+    let why = if failed.device_lost { "The graphics card was lost" } else { "The renderer has failed" };
+    platform::stopped(&format!("{why}: load the page again to go on."));
 }
 
 /// Offers the next copy as soon as no question is open.

@@ -76,7 +76,7 @@ pub(super) fn redraw(
     let area = area.is_some_and(|area| area.is_changed());
     let changed = session.is_changed() || area || scene.is_changed() || terms.is_changed();
     // Problems are reported after a delay, and shaders outside the picture are tested one per frame.
-    let busy = live.is_busy() && !bench.is_waiting() && !live.is_reading();
+    let busy = live.is_busy() && !bench.is_waiting() && !live.is_reading() || bench.is_drawing_first();
     if letters || moved || changed || busy {
         settling.draw(SETTLING_FRAMES);
     }

@@ -9,8 +9,9 @@ use bevy_egui::{EguiPostUpdateSet, EguiPreUpdateSet};
 
 use super::{Acting, frames, input, redraw, watching::waker};
 use crate::{
-    panel::state::{Action, Session},
-    platform, program,
+    panel::state::{Action, Session, Severity},
+    platform::{self, Notice},
+    program,
 };
 
 /// The window on the desktop. It sleeps while nothing changes.
@@ -31,6 +32,7 @@ impl Plugin for ShellPlugin {
                 PreUpdate,
                 (
                     (close_requested, file_dropped).chain(),
+                    notices,
                     (input::mend_input, input::report_leaving)
                         .chain()
                         .after(EguiPreUpdateSet::ProcessInput)
@@ -86,6 +88,17 @@ fn file_dropped(mut drops: MessageReader<FileDragAndDrop>, mut acting: Acting) {
     let dropped: Vec<_> = drops.read().filter_map(file).chain(platform::brought()).collect();
     if !dropped.is_empty() {
         acting.apply(Action::Drop(dropped));
+    }
+}
+
+/// Shows what has happened around the window.
+fn notices(mut session: ResMut<Session>) {
+    for notice in platform::notices() {
+        match notice {
+            Notice::Info(text) => session.say(Severity::Info, text),
+            Notice::Warning(text) => session.say(Severity::Warning, text),
+            Notice::Unkept(path, why) => session.not_kept(&path, &why),
+        }
     }
 }
 

@@ -125,6 +125,14 @@ impl Session {
         document.name.clone().or_else(file).unwrap_or_else(|| "Untitled scene".to_owned())
     }
 
+    /// Records that no file contains the user's own document.
+    pub(super) fn lose_own_file(&mut self) {
+        match &mut self.lesson {
+            Some(lesson) => lesson.aside.desk.disk.lost = true,
+            None => self.desk.disk.lost = true,
+        }
+    }
+
     /// True if the user's own document differs from its file.
     #[must_use]
     pub fn is_dirty(&self) -> bool {

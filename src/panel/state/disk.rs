@@ -105,6 +105,15 @@ impl Session {
             Some(Badge { severity, text, shorter: Vec::new(), help: printable(help).into_owned() });
     }
 
+    /// Reports that a file which was written could not be kept after all.
+    pub fn not_kept(&mut self, path: &Path, why: &str) {
+        self.messages.retain(|m| m.severity != Severity::Info || !m.text.starts_with("Saved to "));
+        if self.own_path() == Some(path) {
+            self.lose_own_file();
+        }
+        self.say(Severity::Error, format!("{} was not saved: {why}.", path.shown()));
+    }
+
     /// Shows a message about the file, which newer ones replace.
     pub(in crate::panel) fn say_of_disk(&mut self, severity: Severity, text: String) {
         let note = Note::new(severity, text);
@@ -115,5 +124,31 @@ impl Session {
     /// True if the user has accepted the defaults of all these parts.
     pub(in crate::panel) fn may_default(&self, parts: &[MissingPart]) -> bool {
         self.disk.use_defaults || parts.iter().all(|p| self.disk.defaulted.contains(&p.name))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{registry::Registry, scene::Scene};
+
+    #[test]
+    fn a_file_that_could_not_be_kept_is_not_saved() {
+        let (registry, path) = (Registry::builtin(), Path::new("/Files/room.json"));
+        let mut session = Session::new(Scene::default());
+        let _ = session.saved(path.to_owned(), &registry);
+        let said = |session: &Session| session.messages.iter().any(|m| m.text.starts_with("Saved to "));
+        assert!(said(&session) && !session.is_dirty());
+        session.not_kept(Path::new("/Files/other.json"), "no room");
+        assert!(!session.is_dirty(), "another file");
+        session.not_kept(path, "no room");
+        assert!(!said(&session) && session.is_dirty());
+        let last = session.messages.last().expect("said");
+        assert_eq!(
+            (last.severity, last.text.as_str()),
+            (Severity::Error, "/Files/room.json was not saved: no room.")
+        );
+        let _ = session.saved(path.to_owned(), &registry);
+        assert!(said(&session) && !session.is_dirty(), "there is room again");
     }
 }

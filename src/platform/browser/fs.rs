@@ -1,4 +1,5 @@
-//! Files in memory, as `std::fs` has them on a desktop. The page keeps those that outlive it.
+//! Files in memory, as `std::fs` has them on a desktop. The page keeps those that outlive it, and shares them with other
+//! tabs of the site.
 
 use std::{
     collections::BTreeMap,
@@ -21,6 +22,8 @@ pub(super) const DATA: &str = "/Data";
 pub(super) const FILES: &str = "/Files";
 /// The folder whose files are handed to the browser as downloads.
 pub(super) const DOWNLOADS: &str = "/Downloads";
+/// Why a file is not written.
+pub(super) const NO_ROOM: &str = "the browser has no room for more files of this page";
 
 /// What lies at a path.
 #[derive(Clone, Debug)]
@@ -34,15 +37,15 @@ struct Content {
     id: u64,
     bytes: Vec<u8>,
     changed: SystemTime,
-    /// True while a program's lock is held.
-    locked: bool,
+    /// The path while it is locked.
+    locked: Option<PathBuf>,
 }
 
 impl Content {
     fn new(bytes: Vec<u8>) -> Arc<Mutex<Self>> {
         static LAST: AtomicU64 = AtomicU64::new(0);
         let id = LAST.fetch_add(1, Ordering::Relaxed) + 1;
-        Arc::new(Mutex::new(Self { id, bytes, changed: now(), locked: false }))
+        Arc::new(Mutex::new(Self { id, bytes, changed: now(), locked: None }))
     }
 }
 
@@ -110,10 +113,32 @@ pub(super) fn note_change(path: &Path) {
     }
 }
 
+/// True for a file that ends with the page.
+fn is_fleeting(path: &Path) -> bool {
+    path.starts_with("/tmp") || path.starts_with(DOWNLOADS)
+}
+
+/// True for a file that is not complete yet.
+fn is_draft(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".lcm-"))
+}
+
+/// Locks a file for this tab. False if another one has it.
+fn hold(path: &Path) -> bool {
+    is_fleeting(path) || is_draft(path) || page::hold(&path.to_string_lossy())
+}
+
+/// Lets other tabs lock a file.
+fn release(path: &Path) {
+    if !is_fleeting(path) && !is_draft(path) {
+        page::release(&path.to_string_lossy());
+    }
+}
+
 /// Tells the page about a file that is complete, or gone.
 fn settle(path: &Path, node: Option<&Node>) {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    if name.starts_with(".lcm-") || path.starts_with("/tmp") {
+    if is_draft(path) || path.starts_with("/tmp") {
         return;
     }
     note_change(path);
@@ -322,10 +347,14 @@ impl File {
     /// Returns an error if it is locked already.
     pub fn try_lock(&self) -> Result<(), TryLockError> {
         let Some(content) = &self.content else { return Ok(()) };
+        if self.locked.load(Ordering::Relaxed) {
+            return Ok(());
+        }
         let mut content = lock(content);
-        if std::mem::replace(&mut content.locked, true) && !self.locked.load(Ordering::Relaxed) {
+        if content.locked.is_some() || !hold(&self.path) {
             return Err(TryLockError::WouldBlock);
         }
+        content.locked = Some(self.path.clone());
         self.locked.store(true, Ordering::Relaxed);
         Ok(())
     }
@@ -365,7 +394,8 @@ impl Drop for File {
             settle(&self.path, Some(&Node::File(content.clone())));
         }
         if self.locked.load(Ordering::Relaxed) {
-            lock(content).locked = false;
+            let path = lock(content).locked.take();
+            path.iter().for_each(|path| release(path));
         }
     }
 }
@@ -386,6 +416,9 @@ impl Read for File {
 
 impl Write for File {
     fn write(&mut self, from: &[u8]) -> io::Result<usize> {
+        if !is_fleeting(&self.path) && page::room() < from.len() as f64 {
+            return Err(io::Error::new(io::ErrorKind::StorageFull, NO_ROOM));
+        }
         let end = {
             let mut content = self.content()?;
             let begin = if self.appends { content.bytes.len() } else { self.position as usize };
@@ -710,9 +743,14 @@ pub fn rename(from: impl AsRef<Path>, to: impl AsRef<Path>) -> io::Result<()> {
     for (at, node) in moved {
         let below = at.strip_prefix(&from).unwrap_or(Path::new(""));
         let place = if below.as_os_str().is_empty() { to.clone() } else { to.join(below) };
-        if matches!(node, Node::File(_)) {
+        if let Node::File(content) = &node {
             settle(&at, None);
             settle(&place, Some(&node));
+            if let Some(locked) = &mut lock(content).locked {
+                release(locked);
+                hold(&place);
+                locked.clone_from(&place);
+            }
         }
         tree.insert(place, node);
     }
@@ -797,11 +835,31 @@ pub fn is_symlink(_path: impl AsRef<Path>) -> bool {
     false
 }
 
+/// Puts a file in its place, with the folders around it.
+fn put(path: &Path, bytes: Vec<u8>) -> Node {
+    let mut tree = tree();
+    for folder in path.ancestors().skip(1) {
+        tree.entry(folder.to_owned()).or_insert_with(|| Node::Folder(now()));
+    }
+    let node = Node::File(Content::new(bytes));
+    tree.insert(path.to_owned(), node.clone());
+    node
+}
+
 /// Puts a file of the user's in the folder for these. Returns its path.
 pub(super) fn bring(name: &str, bytes: Vec<u8>) -> PathBuf {
     let name = Path::new(name).file_name().unwrap_or(std::ffi::OsStr::new("file"));
     let path = Path::new(FILES).join(name);
-    // The folder is always there.
-    let _ = write(&path, bytes);
+    let node = put(&path, bytes);
+    settle(&path, Some(&node));
     path
+}
+
+/// Takes over what another tab has written to a file, or that it has removed it: `None`.
+pub(super) fn hear(path: &Path, bytes: Option<Vec<u8>>) {
+    match bytes {
+        Some(bytes) => _ = put(path, bytes),
+        None => _ = tree().remove(path),
+    }
+    note_change(path);
 }

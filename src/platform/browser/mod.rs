@@ -10,6 +10,7 @@ use std::{
 mod address;
 pub mod fs;
 mod page;
+mod tabs;
 pub mod temporary;
 #[cfg(feature = "window")]
 mod window;
@@ -20,7 +21,7 @@ pub use page::report_panics;
 pub use window::*;
 pub use work::{Worker, beside, later, on_stack, once, receive};
 
-/// True if other programs change files, too.
+/// True if other programs than this one change files, too.
 pub const SHARES_FILES: bool = false;
 /// True if the program can start others, itself included.
 pub const HAS_PROGRAMS: bool = false;
@@ -46,10 +47,10 @@ pub fn now() -> SystemTime {
     SystemTime::UNIX_EPOCH + since.unwrap_or(Duration::ZERO)
 }
 
-/// The number of this process.
+/// The number of this tab.
 #[must_use]
 pub fn process() -> u32 {
-    0
+    page::process()
 }
 
 /// The folder for temporary files.
@@ -64,12 +65,12 @@ pub fn data_folder(_name: &str) -> Option<PathBuf> {
     Some(PathBuf::from(fs::DATA))
 }
 
-/// Calls a function after the program has changed files, which nobody else does.
+/// Calls a function after this tab or another one has changed files.
 pub fn tell_of_changes(wake: impl Fn() + Send + Sync + 'static) {
     fs::tell_of_changes(wake);
 }
 
-/// The files that the program has changed since the last call.
+/// The files that this tab or another one has changed since the last call.
 #[must_use]
 pub fn own_changes() -> Vec<PathBuf> {
     fs::own_changes()

@@ -38,15 +38,127 @@ export function shown() {
     event("lab-shown");
 }
 
-export function failed(line) {
-    console.error(line);
-    event("lab-failed", line);
+// What happens around the program, until it attends.
+let attending = null;
+const happenings = [];
+
+function happened(what, subject = "", bytes = new Uint8Array()) {
+    if (attending) attending(what, subject, bytes);
+    else happenings.push([what, subject, bytes]);
 }
 
-// The files that outlive the page: a copy here, and the database of the browser.
+export function attend(call) {
+    attending = call;
+    happenings.splice(0).forEach((happening) => call(...happening));
+}
+
+addEventListener("visibilitychange", () => {
+    if (document.visibilityState === "hidden") happened("leaving");
+});
+
+// The ends of the program: a panic, a lost graphics card.
+let broken = false;
+let over = false;
+
+export function failed(line) {
+    console.error(line);
+    broken = true;
+    if (!over) event("lab-failed", line);
+}
+
+const requestDevice = globalThis.GPUAdapter?.prototype.requestDevice;
+if (requestDevice) {
+    GPUAdapter.prototype.requestDevice = async function (...wishes) {
+        const device = await requestDevice.apply(this, wishes);
+        device.lost.then(() => {
+            broken = true;
+            // The program, which may sleep, learns of it in its next frame.
+            happened("lost");
+        });
+        return device;
+    };
+}
+
+export async function stopped(line) {
+    if (over) return;
+    over = true;
+    event("lab-stopped", line);
+    if (!unsaved) return;
+    const before = copies;
+    // The program writes the copy of unsaved work in the next moments.
+    for (let i = 0; i < 50 && copies === before; ++i) {
+        await new Promise((done) => setTimeout(done, 100));
+    }
+    const kept = copies > before;
+    unsaved = !kept;
+    event("lab-stopped", line + (kept
+        ? " The unsaved work is kept: the page offers it once it is loaded again."
+        : " The browser had no room for a copy of the unsaved work."));
+}
+
+// Other tabs of the site. Each holds a lock with its number, and one for each file that is its own.
+const TAB = crypto.randomUUID();
+const NUMBER = crypto.getRandomValues(new Uint32Array(1))[0];
+const HELD = "file:";
+const held = new Map();
+const elsewhere = new Set();
+const channel = new BroadcastChannel("lights-camera-models");
+
+export function process() {
+    return NUMBER;
+}
+
+/** Takes a lock. Returns what gives it back. */
+function take(name, options = {}) {
+    return new Promise((taken, failed) => {
+        navigator.locks.request(name, options, () => new Promise((free) => taken(free))).catch(failed);
+    });
+}
+
+// One tab starts after the other, so that each sees what the others have.
+let begun = () => {};
+let tabs = [];
+try {
+    begun = (await take("start", { signal: AbortSignal.timeout(10_000) }).catch(() => null)) ?? begun;
+    const locks = (await navigator.locks.query()).held.map((lock) => lock.name);
+    tabs = locks.filter((name) => name.startsWith("tab:")).map((name) => name.slice("tab:".length));
+    locks.filter((name) => name.startsWith(HELD)).forEach((name) => elsewhere.add(name.slice(HELD.length)));
+    await take(`tab:${NUMBER}`);
+    if (tabs.length > 0) happened("tabs");
+} catch (why) {
+    console.warn(`This browser does not tell tabs apart: ${why.message ?? why}`);
+}
+
+export function hold(path) {
+    if (elsewhere.has(path)) return false;
+    // It may be on its way back from an earlier use.
+    held.set(path, take(HELD + path).catch(() => null));
+    channel.postMessage({ held: path });
+    return true;
+}
+
+export function release(path) {
+    held.get(path)?.then((free) => free?.());
+    held.delete(path);
+    channel.postMessage({ released: path });
+}
+
+// The files that outlive the page: a copy here until the program has read them, and the database of the browser. Each has a mark
+// that says who wrote it.
 const STORE = "files";
+const RECOVERY = "/Data/recovery";
 const kept = new Map();
+/** The marks of the other tabs' files that this page knows. */
+const marks = new Map();
+/** How many changes of a file are on their way. */
+const pending = new Map();
+let writes = 0;
+/** How many copies of unsaved work were kept. */
+let copies = 0;
 let database = null;
+let left = Infinity;
+/** Until when the browser is taken to have no room. */
+let fullUntil = 0;
 
 function settled(request) {
     return new Promise((done, failed) => {
@@ -61,14 +173,26 @@ async function openDatabase() {
     const opened = await settled(request);
     const store = opened.transaction(STORE).objectStore(STORE);
     const [paths, files] = await Promise.all([settled(store.getAllKeys()), settled(store.getAll())]);
-    paths.forEach((path, i) => kept.set(path, files[i]));
+    paths.forEach((path, i) => {
+        // Earlier versions kept bytes alone.
+        kept.set(path, files[i].bytes ?? files[i]);
+        marks.set(path, files[i].mark ?? "");
+    });
     return opened;
+}
+
+/** Asks how much room there is. */
+async function measure() {
+    const { quota, usage } = await navigator.storage?.estimate?.() ?? {};
+    if (quota !== undefined) left = Math.max(quota - usage, 0);
 }
 
 try {
     database = await openDatabase();
+    await measure();
 } catch (why) {
     console.warn(`This browser keeps no files for the page: ${why.message ?? why}`);
+    if (!database) happened("memory", why.message ?? `${why}`);
 }
 
 // The scene of this site that the address names: loaded before the program, which cannot wait.
@@ -120,14 +244,70 @@ export function loadProblem(name) {
     return name === named ? problem : null;
 }
 
-function store(change) {
-    if (!database) return;
-    const transaction = database.transaction(STORE, "readwrite");
-    transaction.onabort = () => tell(`The browser has no room to keep a file: ${transaction.error?.message}`);
-    change(transaction.objectStore(STORE));
+export function room() {
+    return performance.now() < fullUntil ? 0 : left;
 }
 
+/** Keeps a file, or no longer: bytes are null. What another tab has written to it unheard stays. */
+function store(path, bytes) {
+    if (!database) return;
+    let transaction;
+    try {
+        transaction = database.transaction(STORE, "readwrite");
+    } catch (why) {
+        // The browser has closed the database, perhaps because its user deleted the data of the site.
+        console.warn(`The browser does not keep ${path}: ${why.message}`);
+        setTimeout(() => happened("unkept", path), 0);
+        return;
+    }
+    const known = marks.get(path) ?? "";
+    const mark = `${TAB} ${++writes}`;
+    let theirs = null;
+    pending.set(path, (pending.get(path) ?? 0) + 1);
+    const ended = () => pending.set(path, pending.get(path) - 1);
+    left = Math.max(left - (bytes?.length ?? 0), 0);
+    const files = transaction.objectStore(STORE);
+    files.get(path).onsuccess = ({ target: { result: there } }) => {
+        const mine = (there?.mark ?? "").startsWith(TAB);
+        if (there && !mine && (there.mark ?? "") !== known) theirs = there;
+        else if (bytes) files.put({ bytes, mark }, path);
+        else files.delete(path);
+    };
+    transaction.oncomplete = () => {
+        ended();
+        fullUntil = 0;
+        measure();
+        if (theirs) {
+            marks.set(path, theirs.mark);
+            happened("clash", path, theirs.bytes ?? theirs);
+            return;
+        }
+        if (bytes && path.startsWith(RECOVERY)) ++copies;
+        channel.postMessage({ path, mark, bytes });
+    };
+    transaction.onabort = () => {
+        ended();
+        console.warn(`The browser does not keep ${path}: ${transaction.error?.message}`);
+        fullUntil = performance.now() + 10_000;
+        measure();
+        happened("unkept", path);
+    };
+}
+
+channel.onmessage = ({ data: { path, mark, bytes, held, released } }) => {
+    if (held !== undefined) elsewhere.add(held);
+    else if (released !== undefined) elsewhere.delete(released);
+    // What is on its way from here finds out by itself.
+    else if (!pending.get(path)) {
+        if (bytes) marks.set(path, mark);
+        else marks.delete(path);
+        happened(bytes ? "written" : "removed", path, bytes ?? undefined);
+    }
+};
+
 export function keptPaths() {
+    // Once the program has locked what is its own, the next tab may start.
+    setTimeout(begun, 0);
     return [...kept.keys()];
 }
 
@@ -138,13 +318,59 @@ export function keptBytes(path) {
 }
 
 export function keep(path, bytes) {
-    const copy = bytes.slice();
-    store((files) => files.put(copy, path));
+    store(path, bytes.slice());
 }
 
 export function forget(path) {
-    store((files) => files.delete(path));
+    store(path, null);
 }
+
+// Shaders that a page draws with for the first time. A page that ends meanwhile leaves them noted, and later ones do without.
+const TRYING = "lab-trying:";
+const FATAL = "lab-fatal";
+const MOST_FATAL = 64;
+
+function readTrials() {
+    const fatal = JSON.parse(localStorage.getItem(FATAL) ?? "[]");
+    const noted = Object.keys(localStorage).filter((key) => key.startsWith(TRYING));
+    const ended = noted.filter((key) => !tabs.includes(key.slice(TRYING.length)));
+    const found = ended.flatMap((key) => localStorage.getItem(key).split("\n"));
+    new Set(found.map((name) => name.replace(/^\S+ /, ""))).forEach((file) => happened("fatal", file));
+    const all = [...new Set([...fatal, ...found])].slice(-MOST_FATAL);
+    if (found.length > 0) localStorage.setItem(FATAL, JSON.stringify(all));
+    ended.forEach((key) => localStorage.removeItem(key));
+    return all;
+}
+
+let trials = [];
+try {
+    trials = readTrials();
+} catch (why) {
+    console.warn(`This browser keeps no notes for the page: ${why.message ?? why}`);
+}
+
+export function fatalTrials() {
+    return trials;
+}
+
+/** Longer than a picture takes, in milliseconds. */
+const LONG = 5_000;
+let notedAt = 0;
+
+export function noteTrials(names) {
+    notedAt = performance.now();
+    try {
+        if (names) localStorage.setItem(TRYING + NUMBER, names);
+        else localStorage.removeItem(TRYING + NUMBER);
+    } catch (why) {
+        console.warn(`A trial is not noted: ${why.message ?? why}`);
+    }
+}
+
+addEventListener("pagehide", () => {
+    // Who leaves in peace accuses nobody; who has waited for a picture in vain does.
+    if (!broken && performance.now() - notedAt < LONG) noteTrials("");
+});
 
 export function download(name, bytes) {
     const link = document.createElement("a");
@@ -179,6 +405,6 @@ export async function copyPicture(rgba, width, height) {
     try {
         await navigator.clipboard.write([new ClipboardItem({ "image/png": picture })]);
     } catch (why) {
-        console.warn(`The picture was not copied: ${why.message}`);
+        happened("uncopied", why.message ?? `${why}`);
     }
 }

@@ -30,6 +30,24 @@ extern "C" {
     /// The content of one of them.
     #[wasm_bindgen(js_name = keptBytes)]
     fn kept_bytes(path: &str) -> Vec<u8>;
+    /// The number of this tab.
+    pub(super) fn process() -> u32;
+    /// How many bytes more the page can keep.
+    pub(super) fn room() -> f64;
+    /// Locks a file for this tab. False if another tab has it.
+    pub(super) fn hold(path: &str) -> bool;
+    /// Unlocks a file.
+    pub(super) fn release(path: &str);
+    /// Hears of what happens: its sort, what it is about, and the content of a file.
+    pub(super) fn attend(happened: &Closure<dyn FnMut(String, String, Vec<u8>)>);
+    /// Says that there are no more pictures, and offers to load the page again.
+    pub(super) fn stopped(line: &str);
+    /// Notes what may end the page, a line each.
+    #[wasm_bindgen(js_name = noteTrials)]
+    pub(super) fn note_trials(names: &str);
+    /// What was noted by pages that have ended so.
+    #[wasm_bindgen(js_name = fatalTrials)]
+    pub(super) fn fatal_trials() -> Vec<String>;
     /// Keeps a file.
     pub(super) fn keep(path: &str, bytes: &[u8]);
     /// Keeps a file no longer.

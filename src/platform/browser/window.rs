@@ -13,7 +13,7 @@ use egui_file_dialog::{Disks, FileDialog, FileSystem, Metadata, UserDirectories}
 
 use wasm_bindgen::closure::Closure;
 
-use super::{fs, page};
+use super::{super::notice::Notice, fs, page, tabs};
 use crate::caught::lock;
 
 /// The graphics API of browsers.
@@ -73,7 +73,47 @@ pub fn brought() -> Vec<PathBuf> {
     std::mem::take(&mut *lock(&BROUGHT))
 }
 
-/// Copies a picture of RGBA pixels to the clipboard. Why it was not is in the console.
+/// What has happened around the program, until it is taken.
+static NOTICES: Mutex<Vec<Notice>> = Mutex::new(Vec::new());
+
+/// Calls a function whenever something has happened around the program, and another one when its user may be about to
+/// leave.
+pub fn attend(wake: impl Fn() + 'static, leaving: impl Fn() + 'static) {
+    let happened = Closure::new(move |what: String, subject: String, bytes: Vec<u8>| {
+        if what == "leaving" {
+            leaving();
+        }
+        lock(&NOTICES).extend(tabs::happened(&what, &subject, bytes));
+        wake();
+    });
+    page::attend(&happened);
+    // As long as the page.
+    happened.forget();
+}
+
+/// What has happened around the program since the last call.
+#[must_use]
+pub fn notices() -> Vec<Notice> {
+    std::mem::take(&mut *lock(&NOTICES))
+}
+
+/// Says why there are no more pictures, in their place.
+pub fn stopped(why: &str) {
+    page::stopped(why);
+}
+
+/// Notes shaders that may end the page, a line each.
+pub fn note_trials(names: &str) {
+    page::note_trials(names);
+}
+
+/// The shaders that have ended earlier pages.
+#[must_use]
+pub fn fatal_trials() -> Vec<String> {
+    page::fatal_trials()
+}
+
+/// Copies a picture of RGBA pixels to the clipboard. Why it was not is among the [`notices`].
 ///
 /// # Errors
 /// Returns none.

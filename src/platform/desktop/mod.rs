@@ -23,7 +23,7 @@ pub use signals::{end_by_interrupt, listen};
 pub use window::*;
 pub use work::{Worker, beside, later, on_stack, once, receive};
 
-/// True if other programs change files, too.
+/// True if other programs than this one change files, too.
 pub const SHARES_FILES: bool = true;
 /// True if the program can start others, itself included.
 pub const HAS_PROGRAMS: bool = true;

@@ -17,6 +17,7 @@ use bevy::{
 
 use egui_file_dialog::FileDialog;
 
+use super::super::notice::Notice;
 use crate::caught::lock;
 
 /// The graphics APIs to use: `WGPU_BACKEND` if set; otherwise Vulkan on Linux (requesting OpenGL as well
@@ -63,6 +64,27 @@ pub fn listen_for_files(_wake: impl Fn() + 'static) {}
 /// The windowing library hears of files that are dropped on the window.
 #[must_use]
 pub fn brought() -> Vec<PathBuf> {
+    Vec::new()
+}
+
+/// Other programs are heard of through their files.
+pub fn attend(_wake: impl Fn() + 'static, _leaving: impl Fn() + 'static) {}
+
+/// Other programs are heard of through their files.
+#[must_use]
+pub fn notices() -> Vec<Notice> {
+    Vec::new()
+}
+
+/// The end of the process says why.
+pub fn stopped(_why: &str) {}
+
+/// Another process tries shaders, and may end by it.
+pub fn note_trials(_names: &str) {}
+
+/// Another process tries shaders, and may end by it.
+#[must_use]
+pub fn fatal_trials() -> Vec<String> {
     Vec::new()
 }
 

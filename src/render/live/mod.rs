@@ -48,6 +48,7 @@ use crate::{
 
 pub use needed::NeededShaders;
 pub use ready::SPARE;
+pub use trying::RendererFailed;
 
 /// Exchanges shaders while they are in use.
 pub(super) fn plugin(app: &mut App) {

@@ -23,6 +23,7 @@ use crate::{
     library::problem::Problem,
     optics::colour::Encoding,
     parameter::Values,
+    platform,
     reflection::Passage,
     registry::{LightSet, check::wgsl},
     shader::{
@@ -204,12 +205,28 @@ fn sample(of: (&ModelEntry, Passage), shading: &ShadingEntry) -> Vec<u8> {
     row(of, shading, &Values::default(), Encoding::Srgb, false, true)
 }
 
+/// The renderer has failed, and draws no more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Event)]
+pub struct RendererFailed {
+    /// True if the graphics card is lost: another program or the driver has taken it away.
+    pub device_lost: bool,
+}
+
+/// Ends the program in Bevy's way, where it can end; elsewhere it stays, without pictures.
+fn give_up(error: &RenderError, main: &mut World, render: &mut World) -> RenderErrorPolicy {
+    main.trigger(RendererFailed { device_lost: error.ty == ErrorType::DeviceLost });
+    if platform::OUTLIVES_WINDOW {
+        RenderErrorHandler::default().0(error, main, render)
+    } else {
+        RenderErrorPolicy::StopRendering
+    }
+}
+
 /// Restores the previous shaders if the renderer failed nevertheless. If nothing was exchanged, the cause is
-/// another, and the program ends in Bevy's way.
+/// another, and the renderer gives up.
 pub(super) fn take_back(error: &RenderError, main: &mut World, render: &mut World) -> RenderErrorPolicy {
-    let usual = RenderErrorHandler::default().0;
     if !matches!(error.ty, ErrorType::Validation | ErrorType::Internal) {
-        return usual(error, main, render);
+        return give_up(error, main, render);
     }
     let what = error.description.lines().map(str::trim).collect::<Vec<_>>().join(" ");
     let mut taken_back = false;
@@ -231,12 +248,27 @@ pub(super) fn take_back(error: &RenderError, main: &mut World, render: &mut Worl
         }
         live.stale_status |= taken_back;
     });
-    if taken_back { RenderErrorPolicy::Ignore } else { usual(error, main, render) }
+    if taken_back { RenderErrorPolicy::Ignore } else { give_up(error, main, render) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_lost_device_is_announced_before_the_program_ends() {
+        #[derive(Default, Resource)]
+        struct Heard(Vec<RendererFailed>);
+        let (mut main, mut render) = (World::new(), World::new());
+        main.init_resource::<Heard>();
+        main.init_resource::<Messages<AppExit>>();
+        main.add_observer(|failed: On<RendererFailed>, mut heard: ResMut<Heard>| heard.0.push(*failed));
+        let error = RenderError { ty: ErrorType::DeviceLost, description: String::new(), source: None };
+        let policy = take_back(&error, &mut main, &mut render);
+        assert!(matches!(policy, RenderErrorPolicy::StopRendering));
+        assert_eq!(main.resource::<Heard>().0, [RendererFailed { device_lost: true }]);
+        assert_eq!(main.resource::<Messages<AppExit>>().len(), 1);
+    }
 
     #[test]
     fn shaders_are_tried_with_the_defaults_of_model_and_shading_model() {

@@ -6,7 +6,8 @@
 //! scope of the graphics driver. Shaders that pass both steps are valid.
 //!
 //! A driver may also crash, or never finish. The window therefore does all this, and also draws something, in
-//! a separate process ([`process`]), and continues meanwhile.
+//! a separate process ([`process`]), and continues meanwhile. Where there are no processes, `risk` remembers what has ended
+//! the program.
 
 use std::sync::{Arc, Mutex};
 
@@ -15,6 +16,7 @@ use bevy::{
     render::{
         Render, RenderApp, RenderSystems,
         render_resource::{CachedPipelineState, PipelineCache, PipelineDescriptor},
+        renderer::RenderQueue,
     },
     shader::ShaderCache,
 };
@@ -22,12 +24,14 @@ use naga::Module;
 
 use crate::{
     caught::{catch_silently, lock},
+    platform,
     shader::{compose::Composed, limits},
 };
 
 mod attempt;
 mod explain;
 pub mod process;
+mod risk;
 mod tools;
 mod verdict;
 
@@ -38,6 +42,7 @@ pub use verdict::Verdict;
 use attempt::attempt;
 use explain::without_place;
 use process::TrialProcess;
+use risk::Risks;
 use tools::Example;
 
 /// The example, filled by the renderer as soon as one exists.
@@ -53,9 +58,22 @@ impl SharedExample {
 /// Enables trials of shaders: makes [`Bench`] a resource.
 pub(super) fn plugin(app: &mut App) {
     let example = SharedExample::default();
-    app.insert_resource(Bench { example: example.clone(), cache: None, process: None });
+    let risks = Risks::new(platform::fatal_trials());
+    app.insert_resource(Bench { example: example.clone(), cache: None, process: None, risks: risks.clone() });
     let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
-    render.insert_resource(example).add_systems(Render, find_example.in_set(RenderSystems::Cleanup));
+    render
+        .insert_resource(example)
+        .insert_resource(risks)
+        .add_systems(Render, (find_example, count_frames).in_set(RenderSystems::Cleanup));
+}
+
+/// Counts the frames since shaders were tried, until the driver has drawn with them.
+fn count_frames(risks: Res<Risks>, queue: Res<RenderQueue>) {
+    let names = risks.frame();
+    if !names.is_empty() {
+        let risks = risks.clone();
+        queue.on_submitted_work_done(move || risks.drawn(&names));
+    }
 }
 
 /// Keeps the first of our pipelines that works.
@@ -83,6 +101,8 @@ pub struct Bench {
     cache: Option<ShaderCache<Module, ()>>,
     /// The process that runs the trials instead, if any.
     process: Option<TrialProcess>,
+    /// What may end the program where there are no processes.
+    risks: Risks,
 }
 
 impl Bench {
@@ -104,6 +124,12 @@ impl Bench {
         self.process.as_ref().is_some_and(TrialProcess::is_busy)
     }
 
+    /// True if the next frames draw for the first time with something that may end the program.
+    #[must_use]
+    pub fn is_drawing_first(&self) -> bool {
+        self.risks.wants_frames()
+    }
+
     /// True if the renderer can draw with a composed source, on meshes with or without data of their
     /// polygons. `row` is an object's row in the parameter table.
     pub fn try_out(
@@ -122,7 +148,17 @@ impl Bench {
         if let Some(process) = &self.process {
             return process.ask(composed, faces, row);
         }
-        self.try_here(composed, faces, tools)
+        if platform::HAS_PROGRAMS {
+            return self.try_here(composed, faces, tools);
+        }
+        if let Some(problem) = self.risks.refused(composed, faces) {
+            return Verdict::Bad(problem);
+        }
+        let verdict = self.try_here(composed, faces, tools);
+        if verdict == Verdict::Good {
+            self.risks.begin(composed, faces);
+        }
+        verdict
     }
 
     /// Like [`try_out`](Self::try_out), in this process.
