@@ -86,10 +86,6 @@ fn plate(
     let galley = ui.painter().layout(text.to_owned(), FontId::proportional(size), palette.text, room);
     let extent = galley.size() + vec2(left, 0.0) + vec2(24.0, 12.0);
     let place = place(extent);
-    // There is no room beside other texts.
-    if !place.is_positive() {
-        return;
-    }
     ui.painter().rect_filled(place, theme::UNIT, palette.panel);
     if let Some(severity) = severity {
         let line = galley.rows.first().map_or(size, |row| row.height());

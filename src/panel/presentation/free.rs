@@ -171,35 +171,28 @@ const PLACES: [Align2; 8] = [
     Align2::LEFT_CENTER,
 ];
 
-/// The place of a message of this size where it covers none of these texts, and no object of the pictures if that is
-/// possible. Each picture comes with its objects.
-fn place_of_message(
-    size: Vec2,
-    whole: Rect,
-    pictures: &[(Rect, Vec<(Pos2, f32)>)],
-    texts: &[Rect],
-) -> Option<Rect> {
+/// The place of a message of this size where it covers no object of the pictures, each of which comes with its own, and none of
+/// these texts if that is possible.
+fn place_of_message(size: Vec2, whole: Rect, pictures: &[(Rect, Vec<(Pos2, f32)>)], texts: &[Rect]) -> Rect {
     let all = pictures.iter().fold(Rect::NOTHING, |all, (picture, _)| all.union(*picture));
     let discs: Vec<_> = pictures.iter().flat_map(|(_, discs)| discs.iter().copied()).collect();
     let alone = pictures.iter().find_map(|(picture, discs)| free(discs, *picture, size, texts, &PLACES));
     // It may be wider than each of several pictures.
-    let found = alone.or_else(|| free(&discs, all, size, texts, &PLACES));
-    let found = found.or_else(|| free(&[], whole, size, texts, &PLACES[..1]));
-    found.or_else(|| free(&[], all, size, texts, &PLACES)).map(|(_, place)| place)
+    let found = alone.or_else(|| free(&discs, all, size, texts, &PLACES)).map(|(_, place)| place);
+    found.unwrap_or_else(|| Align2::RIGHT_BOTTOM.align_size_within_rect(size, whole.shrink(EDGE)))
 }
 
-/// Shows the message of the moment over pictures, clear of these texts and of objects. Without room beside the texts, it is
-/// not shown.
+/// Shows the message of the moment over pictures, clear of these texts and of objects, or else over the texts at the lower end
+/// of the screen.
 pub(in crate::panel) fn message(ui: &Ui, whole: Rect, pictures: &[Rect], texts: &[Rect], session: &Session) {
     let place = |size: Vec2| {
         // It stays where it is while the camera turns.
         let (key, id) =
             (format!("{size:?} {whole:?} {pictures:?} {texts:?}"), Id::new("place of the notice"));
-        let found = kept::of_key(ui.ctx(), id, key, || {
+        kept::of_key(ui.ctx(), id, key, || {
             let seen: Vec<_> = pictures.iter().rev().map(|r| (*r, discs(session, *r))).collect();
             place_of_message(size, whole, &seen, texts)
-        });
-        found.unwrap_or(Rect::NOTHING)
+        })
     };
     notice::show(ui, (whole, CAPTION * whole.height()), since(ui), &session.messages, place);
 }
@@ -209,7 +202,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_message_covers_no_text_and_no_object_if_that_is_possible() {
+    fn a_message_covers_no_object_and_no_text_if_that_is_possible() {
         let rect = |x: [f32; 2], y: [f32; 2]| Rect::from_x_y_ranges(x[0]..=x[1], y[0]..=y[1]);
         let (whole, size) = (rect([0.0, 400.0], [0.0, 300.0]), vec2(150.0, 30.0));
         let footer = rect([0.0, 400.0], [240.0, 300.0]);
@@ -217,13 +210,11 @@ mod tests {
         let place = |pictures: &[_], texts: &[Rect]| place_of_message(size, whole, pictures, texts);
         // Wider than each of four pictures.
         let four = [0.0, 100.0, 200.0, 300.0].map(|x| picture(x, &[(pos2(x + 50.0, 200.0), 20.0)]));
-        let found = place(&four, &[footer]).expect("there is room");
+        let found = place(&four, &[footer]);
         assert!(!found.intersects(footer) && found.bottom() < 180.0, "{found:?}");
-        // Objects everywhere: those are covered, and no text.
+        // Objects everywhere: texts are covered.
         let full = [0.0, 100.0, 200.0, 300.0].map(|x| picture(x, &[(pos2(x + 50.0, 120.0), 130.0)]));
-        let found = place(&full, &[footer]).expect("there is room");
-        assert!(!found.intersects(footer) && whole.contains_rect(found), "{found:?}");
-        let header = rect([0.0, 400.0], [0.0, 220.0]);
-        assert_eq!(place(&full, &[footer, header]), None, "texts everywhere");
+        let found = place(&full, &[footer]);
+        assert!(footer.contains_rect(found), "{found:?}");
     }
 }

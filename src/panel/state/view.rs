@@ -325,10 +325,11 @@ impl Session {
         let before = self.settings.clone();
         let place = |id: &str| self.panels.iter().find(|p| p.guest && p.id == id).map(|p| p.place);
         match &change {
-            ViewChange::Panel(id, true) => match place(id) {
-                Some(place @ (Place::Left | Place::Right)) => self.view.open(place, true),
-                _ => {}
-            },
+            ViewChange::Panel(id, true) => {
+                if let Some(place @ (Place::Left | Place::Right)) = place(id) {
+                    self.view.open(place, true);
+                }
+            }
             ViewChange::BottomTab(id) => self.settings.guest_tab = place(id).map(|_| id.clone()),
             ViewChange::Bottom(false) => self.settings.guest_tab = None,
             _ => {}
