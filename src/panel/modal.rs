@@ -1,7 +1,7 @@
 //! Dialogs and questions have the keys and the pointer to themselves: what is pressed before one is in sight waits for
 //! it, and no menu stays open over it.
 
-use bevy_egui::egui::{Event, LayerId, Order};
+use bevy_egui::egui::{Event, LayerId, Order, SurrenderFocusOn};
 
 use super::prelude::*;
 
@@ -32,6 +32,10 @@ pub(super) fn begin(ctx: &Context, dialog: Option<&'static str>) {
     if opens || opened {
         Popup::close_all(ctx);
     }
+    // By default, a click on anything else takes the focus from a field.
+    let is_blocked = dialog.is_some() && is_beside(ctx);
+    let takes_focus = if is_blocked { SurrenderFocusOn::Never } else { SurrenderFocusOn::Clicks };
+    ctx.options_mut(|options| options.input_options.surrender_focus_on = takes_focus);
     if opens {
         let typed = ctx.input_mut(|input| {
             let (typed, other) = std::mem::take(&mut input.events).into_iter().partition(is_typed);
@@ -47,6 +51,17 @@ pub(super) fn begin(ctx: &Context, dialog: Option<&'static str>) {
     }
     let waited = kept::with(ctx, |known: &mut Known| std::mem::take(&mut known.waits));
     ctx.input_mut(|input| drop(input.events.splice(0..0, waited)));
+}
+
+/// True if the pointer is on what the dialog blocks, beside it.
+fn is_beside(ctx: &Context) -> bool {
+    let Some(at) = ctx.pointer_interact_pos() else { return false };
+    ctx.memory(|memory| {
+        let Some(dialog) = memory.top_modal_layer() else { return false };
+        // What is below the dialog counts as the dialog.
+        let is_within = memory.area_rect(dialog.id).is_some_and(|rect| rect.contains(at));
+        memory.layer_id_at(at) == Some(dialog) && !is_within
+    })
 }
 
 /// Lets keys wait for the dialog that may be open in the next pass.

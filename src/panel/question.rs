@@ -16,6 +16,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let session = context.session();
     let Some(question) = &session.questions.open else { return };
     let (title, text, details, answers) = words(session, question);
+    let asked = Id::new((title, &text, &details));
+    let is_new = kept::set(ui.ctx(), Asked(Some(asked))).0 != Some(asked);
     let mut out = None;
     Modal::new(Id::new("question")).show(ui.ctx(), |ui: &mut Ui| {
         ui.set_width(WIDTH.min(ui.ctx().content_rect().width() - AROUND));
@@ -33,13 +35,13 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
             ui.add_space(16.0);
             if narrow::is(ui.ctx()) {
                 let size = vec2(ui.available_width(), narrow::THUMB);
-                out = answered(ui, &answers, size);
+                out = answered(ui, &answers, is_new, size);
                 return;
             }
             // One line high: all of the rest would be the height of the question before.
             let line = vec2(ui.available_width(), BUTTON.y);
             let layout = Layout::right_to_left(Align::Center);
-            ui.allocate_ui_with_layout(line, layout, |ui| out = answered(ui, &answers, BUTTON));
+            ui.allocate_ui_with_layout(line, layout, |ui| out = answered(ui, &answers, is_new, BUTTON));
         });
     });
     let escape = ui.input(|i| i.key_pressed(Key::Escape)).then_some(Answer::Cancel);
@@ -52,8 +54,12 @@ const AROUND: f32 = 56.0;
 /// Smallest size of a button, in points.
 const BUTTON: Vec2 = vec2(80.0, 28.0);
 
+/// The question of the pass before, which may be another one in the same place.
+#[derive(Clone, Copy, Default)]
+struct Asked(Option<Id>);
+
 /// The buttons for the answers, at least of this size, of which the first stands out. Returns the chosen one.
-fn answered(ui: &mut Ui, answers: &[(&str, Answer)], size: Vec2) -> Option<Answer> {
+fn answered(ui: &mut Ui, answers: &[(&str, Answer)], is_new: bool, size: Vec2) -> Option<Answer> {
     let mut out = None;
     for (i, (label, answer)) in answers.iter().enumerate() {
         let button = match i {
@@ -61,8 +67,8 @@ fn answered(ui: &mut Ui, answers: &[(&str, Answer)], size: Vec2) -> Option<Answe
             _ => Button::new(*label).min_size(size),
         };
         let response = ui.add(button);
-        // The keyboard focus starts here, not in the window below.
-        if i == 0 && ui.memory(|m| m.focused()).is_none() {
+        // The keyboard focus starts here, neither in the window below nor where it was in the question before.
+        if i == 0 && (is_new || ui.memory(|m| m.focused()).is_none()) {
             response.request_focus();
         }
         out = response.clicked().then_some(*answer).or(out);

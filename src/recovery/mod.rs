@@ -30,6 +30,9 @@ pub struct About {
     /// Absolute path of the document's file, if it has one.
     #[serde(with = "path_text")]
     pub path: Option<PathBuf>,
+    /// Absolute path of the folder of custom models, if there was one.
+    #[serde(with = "path_text")]
+    pub models: Option<PathBuf>,
     /// State of that file when it was last read or written.
     pub stamp: Option<Stamp>,
     /// Process that wrote the copy.
@@ -118,8 +121,8 @@ mod tests {
             paths.push(Some(std::ffi::OsString::from_vec(b"/scenes/\xff.json".to_vec()).into()));
         }
         for path in paths {
-            let about =
-                About { title: "Room".to_owned(), path, stamp: Some(Stamp::of(b"text")), process: 12 };
+            let (models, stamp) = (path.clone(), Some(Stamp::of(b"text")));
+            let about = About { title: "Room".to_owned(), path, models, stamp, process: 12 };
             let text = serde_json::to_string(&about).expect("no path is in the way");
             assert_eq!(serde_json::from_str::<About>(&text).expect("read"), about);
         }

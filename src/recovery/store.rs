@@ -22,6 +22,7 @@ use crate::{
         Scene,
         load::{self, Defaults, MAX_FILE_BYTES},
     },
+    text::{listed, shortened},
 };
 
 /// Maximum number of copies; the oldest are dropped.
@@ -230,7 +231,8 @@ impl Abandoned {
     /// Reads the scene of the copy.
     ///
     /// # Errors
-    /// Returns every problem, one sentence each, with the name of the file.
+    /// Returns every problem with the name of the file, but only the unknown models if there are some: what they lack is
+    /// the cause of the others.
     pub fn scene(&self, registry: &Registry) -> Result<Scene, Vec<String>> {
         let file = self.journal.file();
         let name = file.shown().to_string();
@@ -240,7 +242,35 @@ impl Abandoned {
         // All files named in it were open in the window.
         load::in_folder(&bytes, (&name, folder), registry, Defaults::Use.allowing(Outside::ALL))
             .map(|loaded| loaded.scene)
-            .map_err(|e| e.to_string().lines().map(str::to_owned).collect())
+            .map_err(|e| match self.unknown_models(&bytes, registry) {
+                Some(unknown) => vec![format!("{name}: {unknown}")],
+                None => e.to_string().lines().map(str::to_owned).collect(),
+            })
+    }
+
+    /// The models of the copy that are not known, and where custom models are read; `None` if all are known.
+    fn unknown_models(&self, bytes: &[u8], registry: &Registry) -> Option<String> {
+        let is_unknown = |id: &String| registry.model(id).is_none() && registry.broken_model(id).is_none();
+        let named = load::models_named(bytes, SCENE, registry).into_iter().filter(is_unknown);
+        let names: Vec<_> = named.map(|id| format!("“{}”", shortened(&id))).collect();
+        let (which, are) = match names.len() {
+            0 => return None,
+            1 => ("the model", "is"),
+            _ => ("the models", "are"),
+        };
+        let now = registry.custom_folder();
+        let absolute = now.and_then(|folder| fs::absolute(folder).ok());
+        let hint = match (self.about.models.as_deref(), now) {
+            (Some(then), _) if absolute.as_deref() != Some(then) => format!(
+                "The window of this copy read custom models from {}; start with --models and that folder.",
+                then.shown()
+            ),
+            (_, Some(now)) => {
+                format!("Custom models are read from {}, or from FOLDER with --models FOLDER.", now.shown())
+            }
+            (_, None) => "Custom models are read from FOLDER with --models FOLDER.".to_owned(),
+        };
+        Some(format!("{which} {} {are} not known. {hint}", listed(&names, "and")))
     }
 }
 
@@ -325,6 +355,39 @@ mod tests {
             assert_eq!(fs::read_to_string(copy.journal.file()).expect("there"), broken);
             copy.journal.remove();
         }
+    }
+
+    #[test]
+    fn a_copy_with_models_of_another_folder_says_where_they_were() {
+        let (store, _folder) = store();
+        let mut registry = Registry::builtin();
+        let text = to_json(&Scene::default(), None, &registry).replace("lambert", "my_model");
+        let mut said = |models: Option<&str>, here: Option<&str>| {
+            let mut journal = store.begin().expect("made");
+            let about = About { models: models.map(PathBuf::from), ..about("room") };
+            journal.write(&about, &text).expect("written");
+            drop(journal);
+            if let Some(here) = here {
+                registry.set_custom_folder(Path::new(here));
+            }
+            let copy = store.abandoned().pop().expect("offered");
+            assert_eq!(copy.about, about);
+            let file = format!("{}: ", copy.journal.file().shown());
+            let problems = copy.scene(&registry).expect_err("unknown");
+            copy.journal.remove();
+            assert_eq!(problems.len(), 1, "{problems:?}");
+            problems[0].strip_prefix(&file).expect("the file").to_owned()
+        };
+        let unknown = "the model “my_model” is not known. ";
+        let there =
+            "The window of this copy read custom models from /mods2; start with --models and that folder.";
+        let anywhere = "Custom models are read from FOLDER with --models FOLDER.";
+        let here = "Custom models are read from /mods2, or from FOLDER with --models FOLDER.";
+        assert_eq!(said(None, None), format!("{unknown}{anywhere}"));
+        assert_eq!(said(Some("/mods2"), None), format!("{unknown}{there}"));
+        assert_eq!(said(Some("/mods2"), Some("/models")), format!("{unknown}{there}"));
+        assert_eq!(said(Some("/mods2"), Some("/mods2")), format!("{unknown}{here}"));
+        assert_eq!(said(None, None), format!("{unknown}{here}"));
     }
 
     #[test]

@@ -146,7 +146,8 @@ fn update(store: &Store, journals: &mut BTreeMap<PathBuf, (Journal, Arc<str>)>, 
         let is_file = path != Path::new(OF_SCENE);
         let absolute = is_file.then(|| fs::absolute(path).ok()).flatten();
         let absolute = absolute.unwrap_or_else(|| path.clone());
-        let about = About { title, path: Some(absolute), stamp: None, process: platform::process() };
+        let process = platform::process();
+        let about = About { title, path: Some(absolute), process, ..About::default() };
         let known = journals.remove(path).map(|(journal, _)| journal);
         // Without a place for copies, the text is in the editor all the same.
         let Some(mut journal) = known.or_else(|| store.begin().ok()) else { continue };

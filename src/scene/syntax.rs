@@ -2,7 +2,7 @@
 
 use serde::{Deserialize as _, de::IgnoredAny};
 
-use crate::text::{code_point, is_invisible, shortened};
+use crate::text::{is_hard_to_see, named_character, shortened};
 
 /// Maximum nesting of JSON. Scenes need four levels.
 pub const MAX_DEPTH: usize = 64;
@@ -147,9 +147,13 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
 /// The text at a place, for a message.
 fn shown(found: Option<char>, word: &str) -> String {
     match found {
+        // Part of no word: one before it is not to blame.
+        Some(c) if is_hard_to_see(c) && !c.is_ascii_whitespace() => {
+            format!("the character {}", named_character(c))
+        }
         _ if word.chars().count() > 1 => shortened(word),
         Some('\n' | '\r') => "the end of the line".to_owned(),
-        Some(c) if is_invisible(c) => format!("the character {}", code_point(c)),
+        Some(c) if is_hard_to_see(c) => format!("the character {}", named_character(c)),
         Some(c) => format!("`{c}`"),
         None => "the end of the file".to_owned(),
     }
@@ -192,8 +196,10 @@ mod tests {
             ("{\"a\": \"x\ny\"}", "1:9", "line break"),
             ("{“a”: 1}", "1:2", "typographic"),
             ("}", "1:1", "expected a value"),
-            ("\u{feff}\u{feff}{}", "1:1", "not the character U+FEFF"),
-            ("{\u{200b}\"a\": 1}", "1:2", "not the character U+200B"),
+            ("\u{feff}\u{feff}{}", "1:1", "not the character U+FEFF (byte order mark)"),
+            ("{\u{200b}\"a\": 1}", "1:2", "not the character U+200B (zero-width space)"),
+            ("{\"a\":\u{a0}1}", "1:6", "not the character U+00A0 (no-break space)"),
+            ("{\"a\": 12\u{a0}}", "1:9", "not the character U+00A0 (no-break space)"),
         ] {
             let error = from_text(text, "s.json", &Registry::builtin(), Defaults::Use).expect_err(text);
             let said = error.to_string();

@@ -7,6 +7,7 @@
 use std::fmt::Display;
 
 use super::definitions;
+use crate::text::named_character;
 
 /// A token of the text.
 #[derive(Clone, Copy, Debug)]
@@ -126,8 +127,7 @@ impl<'a> Scanner<'a> {
     fn token(&mut self) -> Result<(), Finding> {
         let start = self.at;
         self.line_begins = false;
-        let what = "this invisible character separates lines or words; use a space or an ordinary line end";
-        let kind = self.advance().ok_or_else(|| (start, what.to_owned()))?;
+        let kind = self.advance().ok_or_else(|| self.separator(start))?;
         let length = self.at - start;
         if !self.directive {
             if matches!(kind, Kind::Word | Kind::Number) {
@@ -136,6 +136,15 @@ impl<'a> Scanner<'a> {
             self.push(kind, start);
         }
         Ok(())
+    }
+
+    /// The finding about the character that separates what was read since `start`.
+    fn separator(&self, start: usize) -> Finding {
+        let found = self.text[start..self.at].char_indices().find(|(_, c)| divides(*c));
+        let (at, which) =
+            found.map_or((0, String::new()), |(at, c)| (at, format!(" {}", named_character(c))));
+        let what = "separates lines or words; use a space or an ordinary line end";
+        (start + at, format!("the invisible character{which} {what}"))
     }
 
     fn push(&mut self, kind: Kind, start: usize) {
@@ -212,7 +221,7 @@ impl<'a> Scanner<'a> {
         }
         // The text is UTF-8, and only whole characters were read.
         let word = &self.text[start..self.at];
-        if !word.is_ascii() && word.contains(|c: char| separates(c) || c.is_whitespace()) {
+        if !word.is_ascii() && word.contains(divides) {
             return None;
         }
         Some(Kind::Word)
@@ -314,4 +323,9 @@ fn separates(c: char) -> bool {
 /// True for those of them that do not end a line.
 fn joins(c: char) -> bool {
     matches!(c, '\u{200e}' | '\u{200f}')
+}
+
+/// True for characters beyond ASCII that end a word.
+fn divides(c: char) -> bool {
+    separates(c) || c.is_whitespace()
 }

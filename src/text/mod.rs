@@ -18,7 +18,7 @@ pub use words::{
     behind, capitalised, detailed, did_you_mean, facts, listed, nearest, number, one_of, per_cent, plural,
     quoted, sentence, shortened, superscript, trimmed, with_article, wrapped,
 };
-pub(crate) use words::{code_point, is_invisible};
+pub(crate) use words::{is_hard_to_see, is_invisible, named_character};
 
 /// The bytes of a UTF-8 text without the byte order mark that some programs write first.
 pub(crate) fn after_mark(bytes: &[u8]) -> &[u8] {

@@ -157,8 +157,35 @@ pub(crate) fn is_invisible(c: char) -> bool {
 
 /// A character by its number: "U+FEFF".
 #[must_use]
-pub(crate) fn code_point(c: char) -> String {
+fn code_point(c: char) -> String {
     format!("U+{:04X}", u32::from(c))
+}
+
+/// True for characters that nobody finds by looking at the text: [invisible](is_invisible) ones, and spaces that are not
+/// the one of the keyboard.
+#[must_use]
+pub(crate) fn is_hard_to_see(c: char) -> bool {
+    is_invisible(c) || c.is_whitespace() && c != ' '
+}
+
+/// A character that is hard to see, by its number and its name if that is short: "U+FEFF (byte order mark)".
+#[must_use]
+pub(crate) fn named_character(c: char) -> String {
+    let name = match c {
+        '\u{A0}' => " (no-break space)",
+        '\u{AD}' => " (soft hyphen)",
+        '\u{200B}' => " (zero-width space)",
+        '\u{200E}' => " (left-to-right mark)",
+        '\u{200F}' => " (right-to-left mark)",
+        '\u{2028}' => " (line separator)",
+        '\u{2029}' => " (paragraph separator)",
+        '\u{202F}' => " (narrow no-break space)",
+        '\u{2060}' => " (word joiner)",
+        '\u{3000}' => " (ideographic space)",
+        '\u{FEFF}' => " (byte order mark)",
+        _ => "",
+    };
+    code_point(c) + name
 }
 
 /// A rule that follows the name of what breaks it: "metallic is 2, but it must be …", not "but the metallic must be …".
@@ -221,6 +248,20 @@ mod tests {
         assert_eq!(shortened(family), family);
         assert_eq!(shortened(&"ö".repeat(60)), "ö".repeat(60));
         assert_eq!(shortened(&"\u{feff}".repeat(61)), "U+FEFF".repeat(60) + "…");
+    }
+
+    #[test]
+    fn characters_that_are_hard_to_see_have_their_names() {
+        for (c, told) in [
+            ('\u{feff}', "U+FEFF (byte order mark)"),
+            ('\u{200b}', "U+200B (zero-width space)"),
+            ('\u{a0}', "U+00A0 (no-break space)"),
+            ('\u{202e}', "U+202E"),
+        ] {
+            assert!(is_hard_to_see(c), "{told}");
+            assert_eq!(named_character(c), told);
+        }
+        assert!(![' ', 'a', 'ö', '中'].into_iter().any(is_hard_to_see));
     }
 
     #[test]

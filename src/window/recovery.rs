@@ -208,10 +208,12 @@ impl Recovery {
 }
 
 fn about(session: &Session, files: &DiskFiles) -> About {
+    // The next window may start in another folder.
+    let absolute = |path: &Path| fs::absolute(path).unwrap_or_else(|_| path.to_owned());
     About {
         title: session.own_title(),
-        // The next window may start in another folder.
-        path: session.own_path().map(|path| fs::absolute(path).unwrap_or_else(|_| path.to_owned())),
+        path: session.own_path().map(absolute),
+        models: session.shaders.folders.models.as_deref().map(absolute),
         stamp: session.own_path().and_then(|path| files.known(path)),
         process: 0,
     }

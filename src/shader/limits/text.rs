@@ -335,7 +335,7 @@ mod tests {
             ("// a\u{2028}b", "ends the comment"),
             ("// a\rb", "ends the comment"),
             ("fn\u{85}f() { }", "invisible"),
-            ("fn f\u{a0}() { }", "invisible"),
+            ("fn f\u{a0}() { }", "4: the invisible character U+00A0 (no-break space)"),
         ] {
             assert!(said(text).contains(what), "{text:?}\n{}", said(text));
         }

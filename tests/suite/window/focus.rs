@@ -5,8 +5,8 @@ use lights_camera_models::{
     document::Selection,
     panel::{
         state::{
-            Action, Badge, Effect, MATERIALS_TAB, MaterialCommand, ModelCommand, Question, Session, Severity,
-            Steer, TakeCommand, Taken, ViewChange,
+            Action, Badge, Effect, MATERIALS_TAB, MaterialCommand, ModelCommand, Offer, Question, Session,
+            Severity, Steer, TakeCommand, Taken, ViewChange,
         },
         theme::DARK,
     },
@@ -358,6 +358,47 @@ fn no_click_before_a_dialog_is_in_sight_opens_a_menu_over_it() {
     assert!(bench.session.authoring.draft.is_some() && !Popup::is_any_open(&bench.ctx));
     bench.click("Edit");
     assert!(!Popup::is_any_open(&bench.ctx), "nor later");
+}
+
+#[test]
+fn a_click_beside_a_dialog_leaves_the_keys_to_its_field() {
+    let mut bench = Bench::new(Session::default());
+    bench.apply(Action::Model(ModelCommand::New));
+    assert!(bench.ctx.text_edit_focused(), "the name");
+    let menu = bench.find("Edit").expect("a menu").rect.center();
+    for at in [menu, bench.area.rect.left_top() + vec2(30.0, 30.0)] {
+        bench.click_at(at, PointerButton::Primary);
+        assert!(bench.ctx.text_edit_focused(), "after a click at {at:?}");
+    }
+    bench.letter(Key::Q, "q");
+    let name = bench.session.authoring.draft.as_ref().map(|draft| draft.name.clone());
+    assert!(name.as_ref().is_some_and(|name| name.ends_with('q')), "{name:?}");
+    // Without the dialog, a click takes the focus again.
+    bench.key(Key::Escape, Modifiers::NONE);
+    bench.key(Key::F6, Modifiers::NONE);
+    let menu = focused(&bench);
+    assert!(menu.is_some());
+    bench.click_at(bench.area.rect.left_top() + vec2(30.0, 30.0), PointerButton::Primary);
+    assert_ne!(focused(&bench), menu);
+}
+
+#[test]
+fn a_question_that_follows_another_begins_at_its_safe_answer() {
+    let copy = |title: &str| {
+        let scene = Err("what is odd".to_owned());
+        let file = format!("{title}.json").into();
+        let (title, when) = (title.to_owned(), "5 minutes ago".to_owned());
+        Question::Recover(Box::new(Offer { title, path: None, file, when, scene }))
+    };
+    let mut bench = Bench::new(Session::default());
+    bench.session.questions.ask(copy("first"));
+    bench.settle();
+    assert_eq!(name(&bench), "Keep the copy");
+    bench.key(Key::Tab, Modifiers::NONE);
+    assert_eq!(name(&bench), "Delete it");
+    bench.session.questions.ask(copy("other"));
+    bench.settle();
+    assert_eq!(name(&bench), "Keep the copy");
 }
 
 #[test]
