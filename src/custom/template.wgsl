@@ -17,7 +17,7 @@
     // True if light also passes through: l may then point below the surface, and that light is the term `transmitted`.
     "transmits": false,
     // A name alone is a parameter shared with other models: a surface keeps its value when the model changes.
-    // Types are number, integer, colour, triple and choice; missing keys have sensible defaults.
+    // Types are number, integer, colour, triple, choice and flag; missing keys have sensible defaults.
     "parameters": [
         "base_colour",
         {

@@ -12,7 +12,7 @@ use crate::{
     library::assets::{self, Exported, Folders},
     materials::{self, Material, NotSaved},
     panel::{
-        keys,
+        author, keys,
         state::{Authoring, Effect, ModelDraft, Question, Session, Severity},
     },
     registry::Registry,
@@ -109,8 +109,11 @@ fn new_model(
         authoring.draft = Some(ModelDraft { of: of.clone(), name: name.to_owned() });
         "choose another name"
     })?;
-    let open = keys::hint_beside(session, registry, "Open it in an editor", "edit_model");
-    Ok(format!("{} was written. {open}, change it and save it: the picture updates.", path.shown()))
+    let open = match author::open_new(session, &path) {
+        true => "It is open in the panel Code".to_owned(),
+        false => keys::hint_beside(session, registry, "Open it in an editor", "edit_model"),
+    };
+    Ok(format!("{} was written. {open}: change it and save it, and the picture follows.", path.shown()))
 }
 
 fn copy_of(model: &str, registry: &Registry, id: &str, name: &str) -> Result<String, String> {

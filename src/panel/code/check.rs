@@ -15,6 +15,7 @@ use crate::{
     registry::compose::compose,
     shader::{check::ShaderProblem, whole::validate_drawing},
     shading::Stage,
+    text::place::Place,
 };
 
 /// Most errors that are marked.
@@ -73,7 +74,7 @@ impl Given {
     fn run(&self) -> Checked {
         let CodeOf::File(path) = &self.of else {
             let read = read_scene(&self.text, self.scene.as_deref(), &self.registry, &self.outside);
-            let mark = |(line, message)| Mark { line, column: 0, message };
+            let mark = |(at, message): (Place, String)| Mark { line: at.line, column: at.column, message };
             let marks = read.err().into_iter().flatten().take(MOST_MARKS).map(mark).collect();
             return Checked { marks, parameters: None };
         };
@@ -183,6 +184,24 @@ mod tests {
         let text = "/* lcm\n{\n  \"laws\": [\"no law\"],\n  \"nonsense\": 1\n}\n*/\nfn response() {}\n";
         let lines: Vec<_> = said(text).into_iter().map(|mark| mark.line).collect();
         assert_eq!(lines, [3, 4]);
+    }
+
+    #[test]
+    fn an_error_of_the_scene_is_at_its_character() {
+        let marked = |text: &str| {
+            let mut code = super::super::super::state::Code::default();
+            code.add(CodeOf::Scene, String::new(), text, 1);
+            let checked = Given::new(&code.open[0], &Session::default(), &Registry::builtin()).check();
+            checked.marks.first().map(|mark| (mark.line, mark.column))
+        };
+        let text = crate::scene::save::to_json(&Scene::default(), None, &Registry::builtin());
+        assert_eq!(marked(&text), None);
+        let wrong = text.replacen("\"name\"", "\"nmae\"", 1);
+        let at = wrong.find("\"nmae\"").expect("it is given");
+        let line = wrong[..at].matches('\n').count() + 1;
+        let column = at - wrong[..at].rfind('\n').map_or(0, |end| end + 1) + 1;
+        assert_eq!(marked(&wrong), Some((line, column)));
+        assert_eq!(marked("{ \"name\": \"a\" \"lights\": [] }"), Some((1, 15)), "a comma is missing");
     }
 
     #[test]

@@ -27,6 +27,8 @@ pub(super) struct Finder {
     pub(super) widgets: Vec<Id>,
     /// The places, and what they were found in.
     found: Option<(String, String, bool, Vec<Range<usize>>)>,
+    /// Number of places replaced at once, until the text or what is looked for changes.
+    replaced: Option<usize>,
 }
 
 impl Finder {
@@ -37,6 +39,7 @@ impl Finder {
         });
         if !is_known {
             let places = find::find(text, &self.wanted, self.exact);
+            self.replaced = None;
             self.found = Some((text.to_owned(), self.wanted.clone(), self.exact, places));
         }
         self.found.as_ref().map_or(&[], |(.., places)| places)
@@ -112,6 +115,8 @@ pub(super) fn show(ui: &mut Ui, panel: &mut CodePanel, open: &OpenCode, context:
             if asked == Asked::Replace {
                 panel.find_next(ui.ctx(), open, false);
             } else {
+                panel.finder.places(&panel.buffer);
+                panel.finder.replaced = Some(places.len());
                 // A button that has nothing left to do loses the focus, and Esc with it.
                 ui.ctx().memory_mut(|memory| memory.request_focus(Id::new(FIELDS[1])));
             }
@@ -141,6 +146,7 @@ impl Finder {
         if self.replaces {
             widgets.push(field(ui, FIELDS[1], "Replace by", &mut self.by).id);
         }
+        let replaced = self.replaced.filter(|_| selected.is_none());
         let said = match (count, selected) {
             _ if self.wanted.is_empty() => String::new(),
             (0, _) => "not found".to_owned(),
@@ -149,6 +155,7 @@ impl Finder {
             (_, Some(at)) => format!("{} of {count}", at + 1),
             (_, None) => plural(count, "place"),
         };
+        let said = replaced.map_or(said, |count| format!("{count} replaced"));
         ui.label(theme::small(ui, said));
         let mut button = |ui: &mut Ui, word: &str, possible: bool, help: &str, does: Asked| {
             let button = ui.add_enabled(possible, Button::new(word)).on_hover_text(help);

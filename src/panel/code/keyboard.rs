@@ -2,9 +2,12 @@
 
 use bevy_egui::egui::{Event, Modifiers};
 
-use super::super::{
-    prelude::*,
-    state::{CODE_TAB, CodeCommand},
+use super::{
+    super::{
+        prelude::*,
+        state::{CODE_TAB, CodeCommand},
+    },
+    tokens::Language,
 };
 
 /// What a key asks of the panel.
@@ -41,10 +44,48 @@ pub(super) struct Typing {
     pub(super) finds: bool,
     /// The widgets of that bar.
     pub(super) bar: Vec<Id>,
-    /// The indentation of the line of the cursor.
-    pub(super) indent: String,
+    /// The line of the cursor.
+    pub(super) line: Line,
     /// What the keys asked for.
     pub(super) asked: Vec<Ask>,
+}
+
+/// What the keys need to know of the line of the cursor.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Line {
+    /// The indentation of the next line.
+    indent: String,
+    /// Number of characters that a closing bracket takes away, if it is the first of the line.
+    back: usize,
+    /// True if the cursor is before the quote that ends a text.
+    ends_text: bool,
+}
+
+impl Line {
+    /// The line with these texts before and behind the cursor.
+    pub(super) fn new(before: &str, behind: &str, language: Language, nothing_selected: bool) -> Self {
+        let level = match language {
+            Language::Wgsl => 4,
+            Language::Json => 2,
+        };
+        let line = before.rsplit('\n').next().unwrap_or_default();
+        let rest = line.trim_start_matches([' ', '\t']);
+        let mut indent = line[..line.len() - rest.len()].to_owned();
+        let is_open = line.trim_end().ends_with(['{', '[']);
+        let spaces = line.chars().rev().take(level).take_while(|c| *c == ' ').count();
+        let back = if line.ends_with('\t') { 1 } else { spaces };
+        let back = if rest.is_empty() && nothing_selected { back } else { 0 };
+        if is_open {
+            indent.extend(std::iter::repeat_n(' ', level));
+        }
+        let (mut within, mut escaped) = (false, false);
+        for c in line.chars() {
+            within ^= c == '"' && !escaped;
+            escaped = c == '\\' && !escaped;
+        }
+        let ends_text = within && !escaped && nothing_selected && behind.starts_with('"');
+        Self { indent, back, ends_text }
+    }
 }
 
 /// The editor is not in sight.
@@ -67,6 +108,11 @@ pub(in crate::panel) fn keys(ctx: &Context, session: &Session) -> Vec<Action> {
             match meant(&event, &typing, at) {
                 Meant::Itself => input.events.push(event),
                 Meant::Text(text) => input.events.push(Event::Text(text)),
+                Meant::Over => input.events.push(press(Key::ArrowRight)),
+                Meant::Back => {
+                    input.events.extend((0..typing.line.back).map(|_| press(Key::Backspace)));
+                    input.events.push(event);
+                }
                 Meant::Save => actions.push(Action::Code(CodeCommand::Save)),
                 Meant::Ask(ask) => asked.push(ask),
             }
@@ -110,15 +156,33 @@ fn focus(ctx: &Context, text: Id, bar: &[Id]) -> Option<Focus> {
     bar.contains(&id).then_some(if is_field { Focus::Field } else { Focus::Button })
 }
 
+/// A press of a key alone.
+fn press(key: Key) -> Event {
+    Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE }
+}
+
 /// The meaning of an event in the editor.
 enum Meant {
     Itself,
+    /// It is itself, after a level of indentation is taken away.
+    Back,
+    /// The cursor steps over what is typed.
+    Over,
     Text(String),
     Save,
     Ask(Ask),
 }
 
 fn meant(event: &Event, typing: &Typing, at: Focus) -> Meant {
+    if let Event::Text(text) = event
+        && at == Focus::Text
+    {
+        return match text.as_str() {
+            "}" | "]" if typing.line.back > 0 => Meant::Back,
+            "\"" if typing.line.ends_text => Meant::Over,
+            _ => Meant::Itself,
+        };
+    }
     let Event::Key { key, pressed: true, modifiers, .. } = event else { return Meant::Itself };
     let is = |wanted: Modifiers| modifiers.matches_exact(wanted);
     let (plain, ctrl, shift) = (is(Modifiers::NONE), is(Modifiers::COMMAND), is(Modifiers::SHIFT));
@@ -141,9 +205,54 @@ fn meant(event: &Event, typing: &Typing, at: Focus) -> Meant {
         Key::Enter if offers && typing.takes_enter => Ask::Accept,
         // Spaces, as in the shipped models.
         Key::Tab if writes && plain => return Meant::Text("    ".to_owned()),
-        Key::Enter if writes && plain && !typing.indent.is_empty() => {
-            return Meant::Text(format!("\n{}", typing.indent));
+        Key::Enter if writes && plain && !typing.line.indent.is_empty() => {
+            return Meant::Text(format!("\n{}", typing.line.indent));
         }
         _ => return Meant::Itself,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_indented_as_the_one_before_and_a_level_more_after_a_bracket() {
+        let indent = |before: &str, language| Line::new(before, "", language, true).indent.len();
+        for (before, wgsl, json) in [
+            ("", 0, 0),
+            ("fn f() {", 4, 2),
+            ("{\n  \"a\": [ ", 6, 4),
+            ("{\n    let a = 1.0;", 4, 4),
+            ("{\n    \n", 0, 0),
+        ] {
+            let all = [indent(before, Language::Wgsl), indent(before, Language::Json)];
+            assert_eq!(all, [wgsl, json], "{before}");
+        }
+    }
+
+    #[test]
+    fn a_bracket_that_is_first_in_its_line_goes_a_level_back() {
+        let back = |before: &str, language| Line::new(before, "", language, true).back;
+        for (before, wgsl, json) in
+            [("{\n        ", 4, 2), ("{\n ", 1, 1), ("{\n\t", 1, 1), ("{\n  x ", 0, 0), ("", 0, 0)]
+        {
+            assert_eq!(
+                [back(before, Language::Wgsl), back(before, Language::Json)],
+                [wgsl, json],
+                "{before}"
+            );
+        }
+        assert_eq!(Line::new("{\n    ", "", Language::Wgsl, false).back, 0, "it replaces what is selected");
+    }
+
+    #[test]
+    fn a_quote_steps_over_that_which_ends_a_text() {
+        let over = |before: &str, behind: &str| Line::new(before, behind, Language::Json, true).ends_text;
+        assert!(over("{ \"na", "\": 1"));
+        for (before, behind) in [("{ ", "\"name\""), ("{ \"na", "me\""), ("{ \"a\\", "\""), ("{ \"a\"", "\"")]
+        {
+            assert!(!over(before, behind), "{before}|{behind}");
+        }
+    }
 }

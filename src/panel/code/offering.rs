@@ -2,12 +2,17 @@
 
 use bevy_egui::egui::{Area, Frame, Order};
 
-use super::{CodePanel, Offering, find, language, tokens::is_of_word};
+use super::{CodePanel, Offering, find, language, tokens::is_of_word, words::Word};
 use crate::panel::{prelude::*, state::OpenCode};
 
 /// Rows of the list, and its width in points.
 const ROWS: usize = 8;
 const WIDTH: f32 = 420.0;
+/// Distances of the list from the cursor, and of its rows from each other, in points.
+const AWAY: f32 = 2.0;
+const GAP: f32 = 1.0;
+/// Most lines of the help for a word in the list.
+const MOST_LINES: usize = 3;
 /// Letters after which words are offered unasked.
 const LETTERS: usize = 2;
 
@@ -48,31 +53,35 @@ impl CodePanel {
         self.select(ctx, open, end..end);
     }
 
-    /// Shows the list. A click takes a word.
+    /// Shows the list below the cursor, or above it where there is more room. A click takes a word.
     pub(super) fn offers(&mut self, ui: &Ui, open: &OpenCode, context: &mut PanelContext<'_>) {
         let Some(offering) = &self.offer else { return };
-        let palette = Palette::here(ui);
-        let first = offering.chosen.saturating_sub(ROWS - 1);
-        let shown = offering.offer.words.iter().enumerate().skip(first).take(ROWS);
+        let (editor, window) = (ui.max_rect(), ui.ctx().content_rect());
+        let width = WIDTH.min(editor.width() - Frame::popup(ui.style()).total_margin().sum().x).max(0.0);
+        let notes = notes(ui, offering, width);
+        let (above, below) = (self.cursor_at.top() - window.top(), window.bottom() - self.cursor_at.bottom());
+        let fits = rows_within(ui, &notes, above.max(below));
+        let (pivot, at) = match rows_within(ui, &notes, below) < fits.min(offering.offer.words.len()) {
+            true => (Align2::LEFT_BOTTOM, self.cursor_at.left_top() - vec2(0.0, AWAY)),
+            false => (Align2::LEFT_TOP, self.cursor_at.left_bottom() + vec2(0.0, AWAY)),
+        };
+        let first = offering.chosen.saturating_sub(fits - 1);
         let mut taken = None;
-        let area = Area::new(Id::new("offered words")).order(Order::Foreground).constrain(true);
-        area.fixed_pos(self.cursor_at.left_bottom() + vec2(0.0, 2.0)).show(ui.ctx(), |ui| {
+        let area = Area::new(Id::new("offered words")).order(Order::Foreground);
+        // Within the editor from left to right.
+        let area = area.constrain_to(Rect::from_x_y_ranges(editor.x_range(), window.y_range()));
+        area.pivot(pivot).fixed_pos(at).show(ui.ctx(), |ui| {
             Frame::popup(ui.style()).show(ui, |ui| {
-                ui.set_width(WIDTH);
-                ui.spacing_mut().item_spacing.y = 1.0;
-                for (i, word) in shown {
-                    let text = RichText::new(&word.name).monospace();
-                    let button = Button::selectable(i == offering.chosen, text);
-                    let usage = theme::elided(ui, &word.usage, TextStyle::Small, palette.weak, 0.55 * WIDTH);
-                    let row = ui.add(button.min_size(vec2(WIDTH, 0.0)).right_text(usage.text().to_owned()));
-                    if row.clicked() {
+                ui.set_width(width);
+                ui.spacing_mut().item_spacing.y = GAP;
+                for (i, word) in offering.offer.words.iter().enumerate().skip(first).take(fits) {
+                    if row(ui, word, i == offering.chosen, width).clicked() {
                         taken = Some(i);
                     }
                 }
-                if let Some(word) = offering.offer.words.get(offering.chosen).filter(|w| !w.help.is_empty()) {
-                    theme::note(ui, word.help.clone());
+                for note in notes {
+                    ui.label(note);
                 }
-                theme::note(ui, "Tab takes the word, ↑ ↓ choose, Esc closes the list");
             });
         });
         if let Some(i) = taken {
@@ -82,4 +91,36 @@ impl CodePanel {
             self.accept(ui.ctx(), open, context);
         }
     }
+}
+
+/// What stands below the list: help for the chosen word, and the keys.
+fn notes(ui: &Ui, offering: &Offering, width: f32) -> Vec<Arc<Galley>> {
+    let help = offering.offer.words.get(offering.chosen).map_or("", |word| word.help.as_str());
+    let all = [help, "Tab takes the word, ↑ ↓ choose, Esc closes the list"].into_iter();
+    let ink = Palette::here(ui).weak;
+    all.filter(|text| !text.is_empty())
+        .map(|text| theme::lines(ui, text, TextStyle::Small, ink, (width, MOST_LINES)))
+        .collect()
+}
+
+/// The rows that have room above these notes in a list of a height, at least one.
+fn rows_within(ui: &Ui, notes: &[Arc<Galley>], height: f32) -> usize {
+    let around = Frame::popup(ui.style()).total_margin().sum().y + AWAY;
+    let below: f32 = notes.iter().map(|note| note.size().y + GAP).sum();
+    let letters = ui.text_style_height(&TextStyle::Monospace) + 2.0 * ui.spacing().button_padding.y;
+    let row = letters.max(ui.spacing().interact_size.y) + GAP;
+    (((height - around - below) / row).max(1.0) as usize).min(ROWS)
+}
+
+/// A row: the word, and at its right how it is used, cut off where it is too long.
+fn row(ui: &mut Ui, word: &Word, chosen: bool, width: f32) -> Response {
+    let spacing = ui.spacing();
+    // The two texts and the space that grows between them have two gaps.
+    let room = width - 2.0 * (spacing.button_padding.x + spacing.icon_spacing) - 2.0;
+    // The button has the colour of its letters.
+    let name = theme::elided(ui, &word.name, TextStyle::Monospace, Color32::PLACEHOLDER, 0.7 * room);
+    let weak = Palette::here(ui).weak;
+    let usage = theme::elided(ui, &word.usage, TextStyle::Small, weak, room - name.size().x);
+    let button = Button::selectable(chosen, name).min_size(vec2(width, 0.0));
+    ui.add(if word.usage.is_empty() { button } else { button.right_text(usage) })
 }

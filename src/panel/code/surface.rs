@@ -9,7 +9,13 @@ use bevy_egui::egui::{
 };
 
 use super::{
-    CodePanel, Mark, find::line, finder, keyboard, keyboard::Typing, language, steps::State, tokens,
+    CodePanel, Mark,
+    find::line,
+    finder, keyboard,
+    keyboard::{Line, Typing},
+    language,
+    steps::State,
+    tokens,
     words::Word,
 };
 use crate::panel::{
@@ -25,6 +31,9 @@ const GAP: f32 = 10.0;
 
 /// Thickness of the line below a word with an error, and the distance of its middle from the end of the row, in points.
 const UNDERLINE: (f32, f32) = (1.5, 2.0);
+
+/// Lines that stay in sight above and below the cursor.
+const AROUND: f32 = 2.0;
 
 /// The id of the field of a text.
 fn id_of(open: &OpenCode) -> Id {
@@ -152,13 +161,13 @@ impl CodePanel {
         }
         self.offers(ui, open, context);
         theme::column(ui, foot, |ui| self.foot(ui, open, context));
-        let line = self.before().rsplit('\n').next().unwrap_or_default();
-        let indent = line.chars().take_while(|c| matches!(c, ' ' | '\t')).collect();
+        let behind = self.buffer.get(self.selection().end..).unwrap_or_default();
+        let line = Line::new(self.before(), behind, language(open), self.selection().is_empty());
         let (finds, bar) = (self.finder.open, self.finder.widgets.clone());
         let (offers, takes_enter) = (self.offer.is_some(), self.offer.as_ref().is_some_and(|o| o.wanted));
         kept::with(&ctx, |typing: &mut Typing| {
             (typing.id, typing.offers, typing.takes_enter) = (Some(id), offers, takes_enter);
-            (typing.finds, typing.bar, typing.indent) = (finds, bar, indent);
+            (typing.finds, typing.bar, typing.line) = (finds, bar, line);
         });
     }
 
@@ -237,15 +246,20 @@ impl CodePanel {
         output.state.clear_undoer();
         if let Some(cursor) = output.cursor_range {
             let ends = [cursor.primary, cursor.secondary].map(|c| byte(buffer, c.index.0));
-            if std::mem::replace(&mut self.cursor, ends) != ends && !output.response.changed() {
+            let moved = std::mem::replace(&mut self.cursor, ends) != ends;
+            if moved && !output.response.changed() {
                 self.offer = None;
                 self.steps.entry(open.number).or_default().end();
             }
+            // Under the pointer, the text stays where it is.
+            self.reveals |= moved && !ui.input(|i| i.pointer.any_down());
         }
         let at = CCursor::new(character(&self.buffer, self.cursor[0]));
         self.cursor_at = output.galley.pos_from_cursor(at).translate(output.galley_pos.to_vec2());
         if std::mem::take(&mut self.reveals) {
-            ui.scroll_to_rect(self.cursor_at.expand2(vec2(8.0, 24.0)), None);
+            let row = self.cursor_at.height();
+            let around = (AROUND * row).min(0.5 * (ui.clip_rect().height() - row)).max(0.0);
+            ui.scroll_to_rect(self.cursor_at.expand2(vec2(8.0, around)), None);
         }
         self.places(ui, &output.galley, output.galley_pos, &palette);
         self.underline(ui, marks, &output.galley, output.galley_pos, &palette);
@@ -276,7 +290,7 @@ impl CodePanel {
             let row = &galley.rows[mark.line.saturating_sub(1)];
             let text = &self.buffer[line(&self.buffer, mark.line)];
             let from = mark.column.saturating_sub(1).min(text.chars().count());
-            let word = text.chars().skip(from).take_while(|c| tokens::is_of_word(*c)).count().max(1);
+            let word = word_length(text.chars().skip(from));
             let (from, to) = match mark.column {
                 0 => (0, text.chars().count().max(1)),
                 _ => (from, from + word),
@@ -346,6 +360,24 @@ fn said(ui: &mut Ui, mark: Option<&Mark>, word: Option<Word>) {
     }
 }
 
+/// The number of characters of the word at the beginning: a text with its quotes, a number with its sign, a name.
+fn word_length(from: impl Iterator<Item = char>) -> usize {
+    let mut from = from.peekable();
+    let first = from.next_if(|c| matches!(c, '"' | '-'));
+    if first == Some('"') {
+        let mut escaped = false;
+        let within = from.take_while(|c| {
+            let goes_on = escaped || *c != '"';
+            escaped = !escaped && *c == '\\';
+            goes_on
+        });
+        return within.count() + 2;
+    }
+    let is_number = from.peek().is_some_and(char::is_ascii_digit);
+    let rest = from.take_while(|c| tokens::is_of_word(*c) || is_number && *c == '.').count();
+    (usize::from(first.is_some()) + rest).max(1)
+}
+
 /// The rows of a layout that are in sight.
 fn in_sight(galley: &Galley, at: Pos2, clip: Rect) -> Range<usize> {
     let above = |y: f32| galley.rows.partition_point(|row| at.y + row.pos.y + row.size.y < y);
@@ -355,6 +387,15 @@ fn in_sight(galley: &Galley, at: Pos2, clip: Rect) -> Range<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_word_with_an_error_is_underlined_with_its_quotes_or_its_sign() {
+        let all =
+            [("\"a b\\\"c\": 1", 8), ("-0.5, 1", 4), ("roughness: f32", 9), ("m.x", 1), (", 1", 1), ("", 1)];
+        for (text, length) in all {
+            assert_eq!(word_length(text.chars()), length, "{text}");
+        }
+    }
 
     #[test]
     fn bytes_characters_and_lines_lead_to_each_other() {

@@ -10,7 +10,7 @@ use serde_json::Value as Json;
 
 use super::tokens::{Language, Sort, is_of_word, tokens};
 use crate::{
-    parameter::Parameter,
+    parameter::{Parameter, ParameterKind},
     registry::Registry,
     scene::schema,
     shader::compose::{OPTICS, TRANSMISSION},
@@ -146,7 +146,8 @@ impl Vocabulary {
                     insert: if follows { format!("\"{key}\"") } else { format!("\"{key}\": ") },
                     ..Word::json(key, &usage(&node), text_of(&node, "description"))
                 };
-                keys(&parts).into_iter().map(key).collect()
+                let free = keys(&parts).into_iter().filter(|(key, _)| !here.taken.contains(key));
+                free.map(key).collect()
             }
             false => parts.iter().flat_map(|part| values(part.node)).collect(),
         };
@@ -309,8 +310,18 @@ fn usage(node: &Json) -> String {
 
 fn described(parameter: &Parameter) -> Word {
     let unit = if parameter.unit.is_empty() { String::new() } else { format!(", {}", parameter.unit) };
-    let usage = format!("m.{}: {}{unit}", parameter.name, parameter.rule());
+    let usage = format!("{}{unit}", in_wgsl(&parameter.kind, &parameter.rule()));
     Word::new(parameter.name, &usage, parameter.help)
+}
+
+/// What a shader sees of a parameter with this rule: its type, and the values that it has there.
+fn in_wgsl(kind: &ParameterKind, rule: &str) -> String {
+    let all = kind.options().iter().enumerate().map(|(i, (id, _))| format!("{i} is {id}"));
+    match (kind, kind.wgsl()) {
+        (ParameterKind::Colour(_), wgsl) => format!("{wgsl}, linear"),
+        (ParameterKind::Choice(_), wgsl) => format!("{wgsl}: {}", all.collect::<Vec<_>>().join(", ")),
+        (_, wgsl) => format!("{wgsl}, {rule}"),
+    }
 }
 
 /// The words that begin as the typed one does, then those that contain it.
@@ -387,12 +398,15 @@ struct Here<'a> {
     is_key: bool,
     /// The members of the objects around it, the outermost first, with those that follow; none for lists.
     members: Vec<Members<'a>>,
+    /// The other keys of the innermost object.
+    taken: Vec<&'a str>,
 }
 
 /// An object or a list that is open: in an object the key that is being given a value, and the members so far.
 struct Open<'a> {
     key: Option<&'a str>,
     members: Members<'a>,
+    keys: Vec<&'a str>,
 }
 
 /// A walk through JSON.
@@ -403,7 +417,7 @@ struct Walk<'a> {
     last: &'a str,
     /// Number of those open that are around the place, and the members of those that have been closed since.
     around: usize,
-    closed: Vec<Members<'a>>,
+    closed: Vec<Open<'a>>,
 }
 
 impl<'a> Walk<'a> {
@@ -425,7 +439,7 @@ impl<'a> Walk<'a> {
 
     fn word(&mut self, word: &'a str, sort: Sort) {
         self.last = word;
-        if let Some(Open { key: Some(key), members }) = self.open.last_mut()
+        if let Some(Open { key: Some(key), members, .. }) = self.open.last_mut()
             && sort == Sort::Text
             && !self.is_key
         {
@@ -437,7 +451,8 @@ impl<'a> Walk<'a> {
         let is_object = sign == b'{';
         match sign {
             b'{' | b'[' if self.open.len() < DEEPEST => {
-                self.open.push(Open { key: is_object.then_some(""), members: Members::new() });
+                let key = is_object.then_some("");
+                self.open.push(Open { key, members: Members::new(), keys: Vec::new() });
                 self.is_key = is_object;
             }
             b'}' | b']' => {
@@ -445,12 +460,13 @@ impl<'a> Walk<'a> {
                 self.is_key = false;
                 if self.open.len() < self.around {
                     self.around = self.open.len();
-                    self.closed.extend(closed.map(|closed| closed.members));
+                    self.closed.extend(closed);
                 }
             }
             b':' => {
-                if let Some(Open { key: Some(key), .. }) = self.open.last_mut() {
+                if let Some(Open { key: Some(key), keys, .. }) = self.open.last_mut() {
                     *key = self.last;
+                    keys.push(self.last);
                 }
                 self.is_key = false;
             }
@@ -474,8 +490,10 @@ fn place_in<'a>(text: &'a str, word: &Range<usize>) -> Here<'a> {
     walk.over(&text[word.end..]);
     let Walk { mut open, around, closed, .. } = walk;
     open.truncate(around);
-    let members = open.into_iter().map(|open| open.members).chain(closed.into_iter().rev()).collect();
-    Here { path, is_key, members }
+    open.extend(closed.into_iter().rev());
+    let taken = open.last_mut().map(|open| std::mem::take(&mut open.keys)).unwrap_or_default();
+    let members = open.into_iter().map(|open| open.members).collect();
+    Here { path, is_key, members, taken }
 }
 
 #[cfg(test)]
@@ -529,6 +547,20 @@ mod tests {
     }
 
     #[test]
+    fn parameters_are_described_as_the_shader_sees_them() {
+        const FORM: Parameter = Parameter::choice("form", &[("flat", "Flat"), ("round", "Round")], 1);
+        let usage = |parameter: &Parameter| described(parameter).usage;
+        assert_eq!(usage(&crate::parameter::BASE_COLOUR), "vec3<f32>, linear");
+        assert_eq!(usage(&Parameter::flag("two_sided", true)), "u32: 0 is false, 1 is true");
+        assert_eq!(usage(&FORM), "u32: 0 is flat, 1 is round");
+        for model in Registry::builtin().models() {
+            for p in model.parameters {
+                assert!(usage(p).starts_with(p.kind.wgsl()), "{}", usage(p));
+            }
+        }
+    }
+
+    #[test]
     fn keys_of_a_declaration_are_offered_in_it_alone() {
         let text = "/* lcm { \"na";
         assert!(offered(text, "\" } */ fn f() {}", Language::Wgsl, &[]).contains(&"name".to_owned()));
@@ -550,6 +582,27 @@ mod tests {
         let text = "{ \"ligh\" }";
         let offer = vocabulary.offer(text, 7, Language::Json, &[]);
         assert_eq!((&text[offer.place], offer.words[0].insert.as_str()), ("\"ligh\"", "\"lights\": "));
+    }
+
+    #[test]
+    fn keys_that_the_object_has_are_not_offered_again_and_a_value_ends_with_its_quote() {
+        let of = |before: &str, after: &str| offered(before, after, Language::Json, &[]);
+        let (before, after) = ("{ \"lights\": [ { \"position\": [0, 1, 2], \"", "\", \"intensity\": 1 } ] }");
+        let all = of(before, after);
+        let has = |key: &str| all.iter().any(|name| name == key);
+        assert!(has("type") && has("name") && !has("position") && !has("intensity"), "{all:?}");
+        // Of other objects, and the key that is typed itself.
+        assert!(
+            of("{ \"name\": \"a\", \"lights\": [ { \"na", "\": \"b\" } ] }").contains(&"name".to_owned())
+        );
+        let vocabulary = Vocabulary::of(&Registry::builtin());
+        for after in ["", "\n}", "\" }"] {
+            let before = "{ \"reflection_model\": \"pho";
+            let offer = vocabulary.offer(&format!("{before}{after}"), before.len(), Language::Json, &[]);
+            let quoted = usize::from(after.starts_with('"'));
+            assert_eq!(offer.place, before.len() - 4..before.len() + quoted);
+            assert_eq!(offer.words[0].insert, "\"phong\"");
+        }
     }
 
     #[test]

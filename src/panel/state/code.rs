@@ -137,7 +137,7 @@ impl Code {
     }
 
     /// Makes a text visible that is open already, at a line, or with 0 as it was left. True if there is one.
-    pub(super) fn show(&mut self, of: &CodeOf, line: usize) -> bool {
+    pub(in crate::panel) fn show(&mut self, of: &CodeOf, line: usize) -> bool {
         let Some(at) = self.open.iter().position(|open| open.of == *of) else { return false };
         self.shown = at;
         self.goto = Some((self.open[at].number, line));
@@ -170,6 +170,7 @@ impl Code {
 impl Session {
     /// Applies a command for the editor.
     pub(super) fn code(&mut self, command: CodeCommand, registry: &Registry) {
+        self.focus_after(&command);
         match command {
             CodeCommand::Model => {
                 let id = self.model_shown().to_owned();
@@ -221,6 +222,19 @@ impl Session {
                 self.code.visible_mut().into_iter().for_each(|open| open.shows_difference = on)
             }
             CodeCommand::Recover(path) => self.recover_code(&path, registry),
+        }
+    }
+
+    /// Brings the focus back to the text after a choice above it, whose button is gone.
+    fn focus_after(&mut self, command: &CodeCommand) {
+        if matches!(
+            command,
+            CodeCommand::Stay
+                | CodeCommand::KeepMine
+                | CodeCommand::TakeTheirs
+                | CodeCommand::Difference(false)
+        ) {
+            self.code.goto = self.code.visible().map(|open| (open.number, 0));
         }
     }
 
@@ -499,6 +513,22 @@ mod tests {
         typed(&mut session, "one\nTHEIRS\n");
         session.code.open[0].found(theirs);
         assert!(!of(&session).is_unsaved() && of(&session).theirs.is_none());
+    }
+
+    #[test]
+    fn after_a_choice_about_a_conflict_the_focus_goes_back_to_the_text() {
+        for choice in [
+            CodeCommand::KeepMine,
+            CodeCommand::TakeTheirs,
+            CodeCommand::Stay,
+            CodeCommand::Difference(false),
+        ] {
+            let mut session = open();
+            command(&mut session, CodeCommand::Arrived);
+            session.code.open[0].theirs = Some(Theirs::Unreadable("it is no text".to_owned()));
+            command(&mut session, choice);
+            assert_eq!(session.code.goto, Some((of(&session).number, 0)));
+        }
     }
 
     #[test]

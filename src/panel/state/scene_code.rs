@@ -13,6 +13,7 @@ use crate::{
         load::{self, Defaults},
         save,
     },
+    text::place::Place,
 };
 
 impl Session {
@@ -70,8 +71,8 @@ impl Session {
                 }
             }
             Err(problems) => {
-                let first =
-                    problems.first().map_or_else(String::new, |(line, what)| format!("line {line}: {what}"));
+                let said = |(at, what): &(Place, String)| format!("line {}: {what}", at.line);
+                let first = problems.first().map_or_else(String::new, said);
                 let text = format!("The scene was not changed; its JSON has an error in {first}.");
                 self.say(Severity::Warning, text);
             }
@@ -82,22 +83,22 @@ impl Session {
 /// Reads a scene from its JSON. `path` is the file of the document, beside which the files named in the scene are.
 ///
 /// # Errors
-/// Returns the problems, each with its line, from 1.
+/// Returns the problems, each with its place; column 0 is a whole line.
 pub(in crate::panel) fn read_scene(
     text: &str,
     path: Option<&Path>,
     registry: &Registry,
     outside: &Outside,
-) -> Result<Box<Scene>, Vec<(usize, String)>> {
+) -> Result<Box<Scene>, Vec<(Place, String)>> {
     let folder = path.and_then(Path::parent).unwrap_or(Path::new(""));
     let read =
         load::in_folder(text.as_bytes(), (SCENE_JSON, folder), registry, Defaults::Refuse.allowing(outside));
     read.map(|loaded| Box::new(loaded.scene)).map_err(|error| {
-        let line = |problem: &Problem| {
+        let place = |problem: &Problem| {
             let bare = Problem { place: None, ..problem.clone() };
-            (problem.place.map_or(1, |place| place.line), bare.to_string())
+            (problem.place.unwrap_or(Place { line: 1, column: 0 }), bare.to_string())
         };
-        error.problems().iter().map(line).collect()
+        error.problems().iter().map(place).collect()
     })
 }
 
@@ -149,7 +150,7 @@ mod tests {
         let broken = format!("{}\n}}", of(&session).text.trim_end());
         let problems = read_scene(&broken, None, &registry, Outside::NONE).expect_err("a bracket too many");
         assert_eq!(problems.len(), 1);
-        assert_eq!(problems[0].0, lines + 1, "{problems:?}");
+        assert_eq!(problems[0].0.line, lines + 1, "{problems:?}");
         let scene = session.document.scene().clone();
         typed(&mut session, &broken);
         command(&mut session, CodeCommand::Save);

@@ -52,10 +52,11 @@ pub(super) fn unknown(scan: &Scan, i: usize, name: &str) -> String {
         let resource = |word: &&&str| ["texture", "sampler", "atomic"].iter().any(|r| word.starts_with(r));
         let built_in = naga::keywords::wgsl::BUILTIN_IDENTIFIERS.iter().filter(|word| !resource(word));
         let built_in = built_in.map(|word| (*word, *word));
-        let near = nearest(
-            &spelling,
-            known.chain(fields).chain(built_in).chain(own).filter(|(word, _)| word.len() > 2),
-        );
+        let elsewhere = MEANT.lines().filter_map(|line| line.split_once(' '));
+        // A short word is near to many others.
+        let elsewhere = elsewhere.filter(|(word, _)| word.len() > 5);
+        let here = known.chain(fields).chain(built_in).chain(own).filter(|(word, _)| word.len() > 2);
+        let near = nearest(&spelling, here.chain(elsewhere));
         near.filter(|_| name.len() > 2)
     };
     if let Some(code) = exact.or_else(near) {

@@ -264,7 +264,7 @@ fn lobe(x: f32) -> f32 { x = 1.0; return x; }⏎¦¦x = 1.0;¦`x` keeps its valu
 ¦let x = select(cos_l > 0.0, 1.0, 0.0);¦cos_l¦the condition of select comes last: `select(if_false, if_true, condition)`, and both values have one type
 ¦switch m.steps { case 0: { } default: { } }¦m.steps¦a switch needs a whole number; write `i32(…)`, or if and else
 ¦break;¦break¦break can only stand in a loop or a switch
-¦let x = fresnell(cos_l);¦fresnell¦`fresnell` is not defined
+¦let x = fresnell(cos_l);¦fresnell¦`fresnell` is not defined; did you mean `schlick`?
 ¦let x = fresnel_schlick(cos_l, 0.04);¦fresnel_schlick¦`fresnel_schlick` is not defined; did you mean `schlick`?
 ¦let x = schlick(0.04, cos_l);¦0.04¦schlick(f0: vec3<f32>, cos_i: f32) needs a vec3<f32> for f0, but `0.04` is a number; write `vec3(0.04)`
 ¦let x = dpdx(cos_l);¦dpdx¦`dpdx` is not available to a model, which is evaluated without a picture too

@@ -4,14 +4,14 @@ use bevy_egui::egui::{self, Color32, Event, Key, Modifiers, Shape, accesskit::Ro
 use lights_camera_models::{
     panel::{
         command::{all, with_keys},
-        state::{Action, CodeCommand, CodeOf, KeptCode, ModelCommand, OpenCode, Session},
+        state::{Action, CodeCommand, CodeOf, KeptCode, ModelCommand, OpenCode, Session, Theirs, ViewChange},
         theme::Palette,
     },
     recovery::texts::OF_SCENE,
     scene::Scene,
 };
 
-use crate::window::panels::Bench;
+use crate::window::panels::{Bench, Seen};
 
 /// The modifiers that Ctrl has.
 const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
@@ -114,6 +114,8 @@ fn what_is_typed_after_finding_again_replaces_what_was_looked_for_and_tab_goes_t
     bench.click("Replace all");
     let text = &open(&bench).text;
     assert_eq!((text.matches("size").count(), text.matches("extent").count()), (0, before + count));
+    bench.settle();
+    assert!(bench.says(&format!("{count} replaced")) && !bench.says("not found"), "{:?}", bench.words());
 }
 
 #[test]
@@ -193,15 +195,18 @@ fn places_are_found_and_replaced_from_the_keyboard() {
     assert!(bench.session.has_unsaved_code());
 }
 
-/// Number of the first line in sight, once the text has come to rest.
-fn first_line(bench: &mut Bench) -> u32 {
+/// Numbers of the first and the last line in sight, once the text has come to rest.
+fn lines_in_sight(bench: &mut Bench) -> [u32; 2] {
     (0..60).for_each(|_| drop(bench.frame(Vec::new())));
     let text = bench.tree.iter().find(|seen| seen.role == Role::MultilineTextInput);
     let left = text.expect("the text is shown").rect.left();
     let beside = |place: &egui::Rect| place.right() < left + 1.0 && place.left() > left - 60.0;
     let texts = bench.texts_in_sight();
     let numbers = texts.iter().filter(|(_, place)| beside(place)).filter_map(|(text, _)| text.parse().ok());
-    numbers.min().unwrap_or_else(|| panic!("no numbers beside {left}: {texts:?}"))
+    let numbers: Vec<u32> = numbers.collect();
+    let ends = numbers.iter().min().zip(numbers.iter().max());
+    let (first, last) = ends.unwrap_or_else(|| panic!("no numbers beside {left}: {texts:?}"));
+    [*first, *last]
 }
 
 #[test]
@@ -210,7 +215,86 @@ fn a_text_opens_at_its_start() {
     scene.lights = vec![scene.lights[0].clone(); 40];
     let mut bench = Bench::new(Session::new(scene));
     bench.key(Key::J, CTRL | Modifiers::SHIFT);
-    assert_eq!(first_line(&mut bench), 1);
+    assert_eq!(lines_in_sight(&mut bench)[0], 1);
+}
+
+#[test]
+fn two_lines_stay_in_sight_below_the_cursor() {
+    let mut scene = Scene::default();
+    scene.lights = vec![scene.lights[0].clone(); 40];
+    let mut bench = Bench::new(Session::new(scene));
+    bench.key(Key::J, CTRL | Modifiers::SHIFT);
+    let down = 60;
+    (0..down).for_each(|_| bench.key(Key::ArrowDown, Modifiers::NONE));
+    let [first, last] = lines_in_sight(&mut bench);
+    assert!(first > 1 && last >= down + 3, "{first} to {last}, with the cursor in line {}", down + 1);
+}
+
+#[test]
+fn enter_indents_and_a_bracket_goes_back() {
+    let mut bench = with_scene();
+    bench.key(Key::ArrowRight, Modifiers::NONE);
+    let before = open(&bench).text.clone();
+    bench.key(Key::Enter, Modifiers::NONE);
+    assert_eq!(*open(&bench).text, *before.replacen('{', "{\n  ", 1));
+    types(&mut bench, "}");
+    assert_eq!(*open(&bench).text, *before.replacen('{', "{\n}", 1));
+    types(&mut bench, "\"a");
+    types(&mut bench, "\"");
+    bench.key(Key::ArrowLeft, Modifiers::NONE);
+    types(&mut bench, "\"");
+    types(&mut bench, ":");
+    assert_eq!(*open(&bench).text, *before.replacen('{', "{\n}\"a\":", 1), "it steps over the quote");
+}
+
+#[test]
+fn after_a_choice_about_another_version_keys_are_for_the_text() {
+    let mut bench = with_scene();
+    types(&mut bench, "x");
+    let text = bench.ctx.memory(|memory| memory.focused());
+    // Once the text has followed the document.
+    (0..3).for_each(|_| bench.settle());
+    bench.session.code.open[0].theirs = Some(Theirs::Changed("{}".into()));
+    bench.settle();
+    bench.click("Keep mine");
+    bench.settle();
+    assert!(text.is_some() && bench.find("Keep mine").is_none());
+    assert_eq!(bench.ctx.memory(|memory| memory.focused()), text);
+}
+
+#[test]
+fn words_are_offered_one_in_a_line_within_the_editor_and_the_window() {
+    for size in [egui::vec2(1280.0, 720.0), egui::vec2(700.0, 480.0)] {
+        let mut bench = Bench::new(Session::default());
+        bench.size = size;
+        let text = format!("{}let x = schl", "// a line\n".repeat(30));
+        bench.session.code.open.push(OpenCode {
+            of: CodeOf::File("/lab/models/a.wgsl".into()),
+            name: "a.wgsl".to_owned(),
+            text: text.as_str().into(),
+            base: text.as_str().into(),
+            crlf: false,
+            theirs: None,
+            shows_difference: false,
+            replaced: None,
+            closing: false,
+            number: 1,
+        });
+        bench.session.code.goto = Some((1, 1));
+        bench.apply(Action::View(ViewChange::BottomTab("code".to_owned())));
+        bench.key(Key::End, CTRL);
+        bench.key(Key::Space, CTRL);
+        bench.settle();
+        let list = bench.ctx.memory(|memory| memory.area_rect(egui::Id::new("offered words")));
+        let list = list.expect("words are offered");
+        let is_row = |seen: &&Seen| seen.role == Role::Button && seen.label.starts_with("schlick");
+        let rows: Vec<_> = bench.tree.iter().filter(is_row).map(|seen| seen.rect).collect();
+        assert!(rows.len() > 2, "{size}: {:?}", bench.tree);
+        for row in &rows {
+            assert!(row.height() < 40.0 && (row.right() - rows[0].right()).abs() < 0.5, "{size}: {rows:?}");
+        }
+        assert!(bench.ctx.content_rect().expand(0.5).contains_rect(list), "{size}: {list}");
+    }
 }
 
 #[test]

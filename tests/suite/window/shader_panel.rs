@@ -844,6 +844,13 @@ fn new_models_are_written_announced_and_chosen() -> Result<(), Box<dyn std::erro
     let text = fs::read_to_string(&file)?;
     let said = bench.session.messages.last().map(|m| m.text.clone()).unwrap_or_default();
     assert!(said.contains(&*file.to_string_lossy()) && said.contains("was written"), "{said}");
+    let shown = bench.session.code.visible().and_then(OpenCode::path);
+    assert_eq!(
+        (shown, bench.session.view.bottom_tab.as_str()),
+        (Some(&*file), "code"),
+        "it is there to be edited"
+    );
+    assert!(text.contains("choice and flag"), "all types");
     assert_eq!(bench.session.authoring.wanted_model, Some(name()));
     // As the reload system does when it sees the file.
     let model = custom::read(&file, &text, &bench.registry).map_err(|all| all[0].to_string())?;
