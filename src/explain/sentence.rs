@@ -5,10 +5,16 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::{Explanation, Lamp, Seen, dark_glass::WHY};
-use crate::optics::{TERMS, TermSelection, Terms, colour::luminance};
+use crate::{
+    optics::{TERMS, TermSelection, Terms, colour::luminance},
+    text::listed,
+};
 
 /// Fraction above which a term counts as all of a lamp's light.
 const ALL: f64 = 0.995;
+
+/// The terms, in words.
+const NAMES: [&str; TERMS] = ["ambient", "diffuse", "specular", "transmitted"];
 
 /// The contributions of lights to a pixel as luminances, by index of the light: the sum, and the
 /// terms. With Gouraud shading, it is the weighted light of the vertices.
@@ -45,13 +51,27 @@ fn by_term(terms: [f64; TERMS]) -> Option<String> {
     let parts = terms.map(|term| term / sum);
     let (most, name) = parts
         .into_iter()
-        .zip(["ambient", "diffuse", "specular", "transmitted"])
+        .zip(NAMES)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .filter(|_| parts.iter().all(|part| part.is_finite() && *part >= 0.0))?;
     match most {
         m if m >= ALL => Some(format!(", by the {name} term")),
         m if m > 0.5 => Some(format!(", mostly by the {name} term")),
         _ => None,
+    }
+}
+
+/// The terms of the model that are not finite, of those that are shown.
+fn not_finite(seen: &Seen, terms: TermSelection) -> String {
+    let lights = seen.spots.iter().flat_map(|spot| &spot.lights);
+    let responses: Vec<_> = lights.map(|lit| lit.response.only(terms).each()).collect();
+    let is_odd = |i: &usize| responses.iter().any(|each| !each[*i].is_finite());
+    let odd: Vec<_> = (0..TERMS).filter(is_odd).map(|i| NAMES[i]).collect();
+    match &odd[..] {
+        // The light itself.
+        [] => "some of its light is not a finite number".to_owned(),
+        [one] => format!("the {one} term of its model is not a finite number"),
+        all => format!("the {} terms of its model are not finite numbers", listed(all, "and")),
     }
 }
 
@@ -66,7 +86,7 @@ fn most(seen: &Seen, terms: TermSelection, name: &dyn Fn(usize) -> String) -> St
         };
     }
     if given.values().any(|sums| !sums[0].is_finite()) {
-        return "some of its light is not a finite number".to_owned();
+        return not_finite(seen, terms);
     }
     if given.values().any(|sums| sums[0] < 0.0) {
         return "some light has a value below 0, so the parts of the lights have no meaning".to_owned();
@@ -132,6 +152,32 @@ pub fn sentence(explanation: &Explanation, subject: &str, name: &dyn Fn(usize) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{explain::pixel, reference::Settings, registry::Registry, scene::Scene};
+
+    #[test]
+    fn terms_that_are_not_finite_are_named() {
+        let settings = Settings { width: 640, height: 360, ..Settings::default() };
+        let mut explained =
+            pixel(&Scene::default(), &Registry::builtin(), &settings, [320, 180]).expect("the sphere");
+        let mut said = |change: fn(&mut Terms)| {
+            for spot in explained.seen.iter_mut().flat_map(|seen| &mut seen.spots) {
+                for lit in &mut spot.lights {
+                    change(&mut lit.response);
+                    lit.contribution = Vec3::NAN;
+                }
+            }
+            sentence(&explained, "This pixel is", &|light| format!("Lamp {light}"))
+        };
+        let light = said(|_| ());
+        assert!(light.contains(": some of its light is not a finite number."), "{light}");
+        let one = said(|terms| terms.specular.x = f32::NAN);
+        assert!(one.contains(": the specular term of its model is not a finite number."), "{one}");
+        let two = said(|terms| terms.diffuse = Vec3::INFINITY);
+        assert!(
+            two.contains(": the diffuse and specular terms of its model are not finite numbers."),
+            "{two}"
+        );
+    }
 
     #[test]
     fn the_term_is_named_that_gives_the_most() {

@@ -62,8 +62,8 @@ fn laws(ui: &mut Ui, report: &LawReport) {
     }
     let sampling = &report.sampling;
     let how = format!("{}: {}", Sampling::measure(), sampling.error);
-    let severity = (!sampling.fits).then_some(Severity::Info);
-    line(ui, severity, &format!("lobes for sampling: {}", sampling.verdict()), &how, &sampling.at);
+    let severity = (!sampling.fits || !report.is_finite()).then_some(Severity::Info);
+    line(ui, severity, &format!("lobes for sampling: {}", report.sampling_verdict()), &how, &sampling.at);
     if !report.is_finite() {
         let what = format!("NaN or infinite: {} of {} responses", report.not_finite, report.responses);
         line(ui, Some(Severity::Error), &what, "", &report.first_not_finite);

@@ -266,7 +266,8 @@ fn most_of_strip(ui: &Ui, whole: Rect, context: &PanelContext<'_>) -> f32 {
     most.max(LOWEST)
 }
 
-/// The panel of a tab. Guests scroll; the window's own panels have a height of their own in a strip that is too low.
+/// The panel of a tab. Guests scroll; the window's own panels have a height of their own in a strip that is too low, but for
+/// the materials, which scroll as a whole there.
 fn tab(
     ui: &mut Ui,
     (info, panel): (&PanelInfo, &mut Listed),
@@ -274,7 +275,7 @@ fn tab(
     own: f32,
     context: &mut PanelContext<'_>,
 ) {
-    if !info.guest && !is_low {
+    if !info.guest && (!is_low || info.id == MATERIALS_TAB) {
         return panel.show(ui, context);
     }
     ScrollArea::vertical().id_salt(info.id).auto_shrink(false).min_scrolled_height(0.0).show(ui, |ui| {

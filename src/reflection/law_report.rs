@@ -81,6 +81,9 @@ pub struct LawVerdict {
     pub at: Vec<String>,
 }
 
+/// The verdict on what some values that are not finite may spoil.
+const NOT_JUDGED: &str = "cannot be judged: some values are NaN or infinite";
+
 impl LawReport {
     /// The findings of an examination, in which these parameters were given.
     #[must_use]
@@ -147,7 +150,7 @@ impl LawReport {
     #[must_use]
     pub fn verdict(&self, law: &LawVerdict) -> &'static str {
         match (law.claimed, law.kept) {
-            (_, true) if !self.is_finite() => "cannot be judged: some values are NaN or infinite",
+            (_, true) if !self.is_finite() => NOT_JUDGED,
             (false, true) if self.measured => "depends on the file; with this one, no violation was found",
             (false, false) if self.measured => "depends on the file; this one breaks it",
             (true, true) if self.given => "claimed for all parameters, and kept with these",
@@ -160,6 +163,12 @@ impl LawReport {
             (false, true) => "not claimed, but no violation found: claim it?",
             (false, false) => "not claimed and broken",
         }
+    }
+
+    /// The verdict on the lobes. As for laws, they are not said to fit if some responses are not finite.
+    #[must_use]
+    pub fn sampling_verdict(&self) -> &'static str {
+        if self.sampling.fits && !self.is_finite() { NOT_JUDGED } else { self.sampling.verdict() }
     }
 }
 
@@ -176,7 +185,7 @@ impl fmt::Display for LawReport {
             writeln!(f, "{}: {}", law.law, self.verdict(law))?;
             writeln!(f, "  {}: {}{}", law.measure, law.size, places(&law.at))?;
         }
-        writeln!(f, "lobes for sampling: {}", self.sampling.verdict())?;
+        writeln!(f, "lobes for sampling: {}", self.sampling_verdict())?;
         let Sampling { error, at, .. } = &self.sampling;
         writeln!(f, "  {}: {error}{}", Sampling::measure(), places(at))?;
         let verdict = if self.is_finite() { "everywhere" } else { "NOT everywhere" };
@@ -232,7 +241,11 @@ mod tests {
         findings.albedo.size = 2.0;
         let text = report(&findings);
         assert!(!text.contains("kept"), "{text}");
-        assert_eq!(text.matches("cannot be judged: some values are NaN or infinite").count(), 2, "{text}");
+        assert_eq!(text.matches("cannot be judged: some values are NaN or infinite").count(), 3, "{text}");
+        assert!(
+            text.contains("lobes for sampling: cannot be judged") && !text.contains("they fit"),
+            "{text}"
+        );
         assert!(text.contains("energy conserving: claimed and BROKEN"), "{text}");
         assert_eq!(LawReport::new(lambert, &Values::default(), &findings).broken(), ["energy conserving"]);
     }

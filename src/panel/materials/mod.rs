@@ -4,6 +4,7 @@
 use std::{path::PathBuf, sync::Mutex, time::Duration};
 
 use bevy_egui::egui::{LayerId, Order, TextEdit};
+use web_time::Instant;
 
 use super::{
     cover::takes_drops,
@@ -36,6 +37,8 @@ const PICTURE: f32 = 76.0;
 const NAME_LINES: usize = 2;
 /// Width of the search field, in points.
 const SEARCH: f32 = 200.0;
+/// Height below which the panel scrolls as a whole, with its head: otherwise no row of pictures has room.
+const LOW: f32 = 160.0;
 
 /// What the list depends on.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +61,8 @@ struct Found {
 pub(super) struct MaterialPanel {
     library: Mutex<Answers<Question, Arc<Library>>>,
     opened: u64,
+    /// The time at which it did so last.
+    opened_at: Option<Instant>,
     focused: bool,
     search: String,
     /// True if the files that cannot be read are listed.
@@ -76,35 +81,53 @@ pub(super) struct MaterialPanel {
 impl MaterialPanel {
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let back = !std::mem::replace(&mut self.focused, ui.input(|i| i.focused)) && self.focused;
-        self.opened += u64::from(is_new(ui, "materials") || back);
+        if is_new(ui, "materials") || back {
+            self.open();
+        }
         self.notice_saved(context.session());
         let library = self.library(ui.ctx(), context);
-        self.head(ui, context);
-        let Some(library) = library else {
-            ui.weak("Reading the materials…");
-            return;
-        };
-        let all = self.found(&library, context.registry());
-        let found: Vec<_> = all.materials.iter().filter_map(|i| library.materials.get(*i)).collect();
-        let broken: Vec<_> = all.broken.iter().filter_map(|i| library.broken.get(*i)).collect();
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let is_low = ui.available_height() < LOW;
+        if !is_low {
+            self.head(ui, context);
+        }
+        ScrollArea::vertical().auto_shrink(false).min_scrolled_height(0.0).show(ui, |ui| {
             ui.set_max_width(ui.available_width() - 8.0);
-            broken::broken(ui, &broken, &mut self.broken_unfolded);
-            if found.is_empty() {
-                ui.weak("No material has that in its name, description, source or model.");
+            if is_low {
+                self.head(ui, context);
             }
-            let headed = self.search.trim().is_empty();
-            for group in found.chunk_by(|a, b| !headed || a.origin.heading() == b.origin.heading()) {
-                if headed && let Some(first) = group.first() {
-                    ui.label(theme::strong(ui, first.origin.heading()).small());
-                }
-                ui.horizontal_wrapped(|ui| {
-                    ui.spacing_mut().item_spacing = vec2(8.0, 6.0);
-                    group.iter().for_each(|material| self.card(ui, material, context));
-                });
+            match &library {
+                Some(library) => self.list(ui, library, context),
+                None => drop(ui.weak("Reading the materials…")),
             }
         });
         self.drag(ui, context);
+    }
+
+    /// Notes that it came into sight, or that files may have changed.
+    fn open(&mut self) {
+        self.opened += 1;
+        self.opened_at = Some(Instant::now());
+    }
+
+    /// The files that cannot be read, and the materials that the search finds.
+    fn list(&mut self, ui: &mut Ui, library: &Arc<Library>, context: &mut PanelContext<'_>) {
+        let all = self.found(library, context.registry());
+        let found: Vec<_> = all.materials.iter().filter_map(|i| library.materials.get(*i)).collect();
+        let broken: Vec<_> = all.broken.iter().filter_map(|i| library.broken.get(*i)).collect();
+        broken::broken(ui, &broken, &mut self.broken_unfolded);
+        if found.is_empty() {
+            ui.weak("No material has that in its name, description, source or model.");
+        }
+        let headed = self.search.trim().is_empty();
+        for group in found.chunk_by(|a, b| !headed || a.origin.heading() == b.origin.heading()) {
+            if headed && let Some(first) = group.first() {
+                ui.label(theme::strong(ui, first.origin.heading()).small());
+            }
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = vec2(8.0, 6.0);
+                group.iter().for_each(|material| self.card(ui, material, context));
+            });
+        }
     }
 
     /// Makes sure that a material that was just saved is seen: empties the search, and scrolls to it once it is read.
@@ -156,7 +179,7 @@ impl MaterialPanel {
         }
         ui.horizontal(|ui| {
             self.search_and_buttons(ui, context);
-            let text = theme::small(ui, "click: for what is selected · drag: onto an object");
+            let text = theme::small(ui, hint(context.session()));
             ui.add(Label::new(text).truncate());
         });
     }
@@ -172,7 +195,7 @@ impl MaterialPanel {
         context.on_click(&save.on_hover_text(help), || Action::Material(MaterialCommand::Ask));
         let again = ui.button("Read again");
         if again.on_hover_text("Reads your folder of materials again.").clicked() {
-            self.opened += 1;
+            self.open();
         }
     }
 
@@ -200,7 +223,7 @@ impl MaterialPanel {
         }
         let (session, registry) = (context.session(), context.registry());
         let place = Rect::from_min_size(rect.min, Vec2::splat(PICTURE));
-        let picture = shelf::picture(ui.ctx(), material, session, registry);
+        let picture = shelf::picture(ui.ctx(), material, self.opened_at, session, registry);
         shelf::paint(ui, place, &picture);
         let hot = theme::is_hot(&response);
         let edge = Stroke::new(if hot { 2.0 } else { 1.0 }, if hot { palette.accent } else { palette.line });
@@ -239,7 +262,8 @@ impl MaterialPanel {
         let over = takes_drops(ctx, context.area().frame, at).then(|| self.object_at(context, at));
         if down {
             ctx.set_cursor_icon(CursorIcon::Grabbing);
-            let picture = shelf::picture(ctx, &material, context.session(), context.registry());
+            let picture =
+                shelf::picture(ctx, &material, self.opened_at, context.session(), context.registry());
             carried(ui, at, &picture, over.map(|object| words(&material, at, object, context)));
             self.dragged = Some(material);
             return;
@@ -261,6 +285,15 @@ impl MaterialPanel {
         let cell = context.area().cell_at(at);
         let ray = Lens::of(session, cell.map_or(context.area().frame, |cell| cell.rect)).ray(at);
         towards(&mut self.meshes, session.scene(), registry, [ray.eye, ray.eye + ray.way]).map(|(i, _)| i)
+    }
+}
+
+/// What a click and a drag do in the active view.
+fn hint(session: &Session) -> String {
+    match (session.active(), session.document.variants.len()) {
+        (0, 0) => "click: for what is selected · drag: onto an object".to_owned(),
+        (0, _) => "click: for what is selected · drag: onto an object of view A".to_owned(),
+        _ => format!("click, or drag into view {}: for all its objects", session.letter()),
     }
 }
 

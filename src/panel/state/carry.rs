@@ -3,7 +3,7 @@
 
 use std::{
     borrow::Cow,
-    collections::{BTreeMap, HashMap},
+    collections::{BTreeMap, BTreeSet, HashMap},
 };
 
 use super::{Session, Severity, Traveller};
@@ -13,10 +13,11 @@ use crate::{
     reflection::{
         ModelEntry,
         carry::{Carried, Journey, journey},
+        usage::unused,
     },
     registry::Registry,
     scene::{Object, Part, Repetition, Scene},
-    text::listed,
+    text::{listed, plural},
 };
 
 /// Objects that may get another model, before they do.
@@ -29,6 +30,11 @@ pub(super) struct Departure {
 struct Arrival {
     id: PartId,
     index: usize,
+    /// The model that it had, and its material with that.
+    from: String,
+    before: Values,
+    /// The model that it has.
+    to: String,
     /// The values of its material that change.
     changes: BTreeMap<Cow<'static, str>, Option<Value>>,
     journey: Journey,
@@ -67,30 +73,28 @@ impl Session {
 
     /// Carries the materials of objects that have another model now, as part of the step that gave it to them, and says
     /// what went along and what did not.
-    pub(super) fn carry(&mut self, departure: Departure, registry: &Registry) {
-        let Departure { model: from, objects } = departure;
-        let mut arrivals: Vec<_> =
-            objects.into_iter().filter_map(|id| self.arrival(id, &from, registry)).collect();
-        let Some(to) = arrivals.first().map(|one| self.model_at(one.index)) else { return };
+    pub(super) fn carry(&mut self, departures: Vec<Departure>, registry: &Registry) {
+        let mut arrivals = Vec::new();
+        for Departure { model, objects } in departures {
+            arrivals.extend(objects.into_iter().filter_map(|id| self.arrival(id, &model, registry)));
+        }
         self.keep_rows_alike(&mut arrivals);
-        for Arrival { id, journey, .. } in &arrivals {
+        for Arrival { id, from, to, journey, .. } in &arrivals {
             let who = Traveller::Object(*id);
-            self.desk.travels.leave(who, &from);
+            self.desk.travels.leave(who, from);
             for one in &journey.carried {
-                self.desk.travels.carry((who, one.to.name.into()), &to, &one.value);
+                self.desk.travels.carry((who, one.to.name.into()), to, &one.value);
             }
         }
         self.put(&arrivals, registry);
-        if let Some((from, to)) = registry.model(&from).zip(registry.model(&to)) {
-            let said = self.said(&arrivals, from, to, registry);
+        let models: BTreeSet<&str> = arrivals.iter().map(|one| one.to.as_str()).collect();
+        for to in models.into_iter().filter_map(|id| registry.model(id)) {
+            let all: Vec<_> = arrivals.iter().filter(|one| one.to == to.declaration.id).collect();
+            let said = self.said(&all, to, registry);
             if !said.is_empty() {
                 self.say(Severity::Info, said);
             }
         }
-    }
-
-    fn model_at(&self, object: usize) -> String {
-        self.document.model_of(&self.document.objects[object]).to_owned()
     }
 
     /// What becomes of an object's material, if the object has another model than `from` now.
@@ -98,7 +102,8 @@ impl Session {
         let index = self.document.object(id)?;
         let (object, who) = (&self.document.objects[index], Traveller::Object(id));
         let to = Some(self.document.model_of(object)).filter(|to| *to != from)?;
-        let mut material = object.material.clone();
+        let before = object.material.clone();
+        let mut material = before.clone();
         let mut changes = BTreeMap::new();
         // What was carried to the model that is left goes first, so that its origin is carried, and not its copy.
         material.0.retain(|name, value| {
@@ -118,7 +123,8 @@ impl Session {
             changes.insert(one.to.name.into(), Some(one.value.clone()));
         }
         changes.retain(|name, value| object.material.0.get(name) != value.as_ref());
-        Some(Arrival { id, index, changes, journey })
+        let (from, to) = (from.to_owned(), to.to_owned());
+        Some(Arrival { id, index, from, before, to, changes, journey })
     }
 
     /// Copies of a row stay alike: what would differ from copy to copy does not go along.
@@ -176,46 +182,128 @@ impl Session {
         }
     }
 
-    /// The message: what went along, and what did not.
-    fn said(&self, arrivals: &[Arrival], from: &ModelEntry, to: &ModelEntry, registry: &Registry) -> String {
-        let carried: Vec<_> = arrivals.iter().filter(|one| !one.journey.carried.is_empty()).collect();
-        let of = |all: &[&Arrival]| match all {
+    /// The message: what went along, what did not, and what has another default.
+    fn said(&self, arrivals: &[&Arrival], to: &ModelEntry, registry: &Registry) -> String {
+        let mut by_model: BTreeMap<&str, Vec<&Arrival>> = BTreeMap::new();
+        arrivals.iter().for_each(|one| by_model.entry(&one.from).or_default().push(one));
+        let names = |all: &[&Arrival]| match all {
             [one] => self.name_of(Selection::Object(one.index), registry),
-            all => format!("{} objects", all.len()),
+            all => plural(all.len(), "object"),
         };
-        let mut said = String::new();
-        if !carried.is_empty() {
-            let mut words: Vec<String> = Vec::new();
-            for one in carried.iter().flat_map(|one| &one.journey.carried) {
-                let word = match carried[..] {
-                    [only] => with_values(one, &self.document.objects[only.index].material),
-                    _ => without_values(one),
+        let (mut clauses, mut left, mut defaults) = (Vec::new(), Vec::new(), Vec::new());
+        for (from, all) in &by_model {
+            let Some(from) = registry.model(from) else { continue };
+            clauses.extend(went(all, from, to).map(|(who, list)| (from, who, list)));
+            left.extend(stayed(all).map(|(who, which)| (from, who, which)));
+            all.iter().for_each(|one| add_all(&mut defaults, one.other_defaults(from, to)));
+        }
+        let name = to.declaration.name;
+        let mut said = Vec::new();
+        match &clauses[..] {
+            [] => {}
+            [(_, who, list)] if who.len() == arrivals.len() => {
+                said.push(format!("{name} for {}: {list}.", names(who)));
+            }
+            _ => {
+                let clause = |(from, who, list): &(&ModelEntry, Vec<&Arrival>, String)| {
+                    let who = if who.len() == 1 { names(who) } else { who.len().to_string() };
+                    let had = format!(" that had {}", from.declaration.name);
+                    format!("of {who}{}: {list}", if by_model.len() == 1 { "" } else { had.as_str() })
                 };
-                if !words.contains(&word) {
-                    words.push(word);
-                }
-            }
-            let list = words.join(", ");
-            said = format!("{} for {}: {list}.", to.declaration.name, of(&carried));
-        }
-        let mut left: Vec<&'static Parameter> = Vec::new();
-        for p in arrivals.iter().flat_map(|one| &one.journey.left) {
-            if left.iter().all(|known| known.name != p.name) {
-                left.push(*p);
+                let clauses: Vec<_> = clauses.iter().map(clause).collect();
+                said.push(format!("{} use {name}; {}.", names(arrivals), clauses.join("; ")));
             }
         }
-        if !left.is_empty() {
-            said += &match said.is_empty() {
-                true => {
-                    let miss: Vec<_> = arrivals.iter().filter(|one| !one.journey.left.is_empty()).collect();
-                    format!("{}: ", of(&miss))
-                }
-                false => " ".to_owned(),
-            };
-            said += &left_behind(&left, Some(from.declaration.name), to);
+        for (i, (from, who, which)) in left.iter().enumerate() {
+            let whose = (who.len() != arrivals.len()).then(|| names(who));
+            let sentence = left_behind(which, Some(with_whose(from.declaration.name, whose).as_str()), to);
+            let head = if i == 0 && clauses.is_empty() { names(arrivals) + ": " } else { String::new() };
+            said.push(head + &sentence);
         }
-        said
+        if !defaults.is_empty() {
+            let word = if defaults.len() == 1 { "Default" } else { "Defaults" };
+            said.push(format!("{word} of {name}: {}.", defaults.join(", ")));
+        }
+        said.join(" ")
     }
+}
+
+impl Arrival {
+    /// What went along, named as the model that is left shows it.
+    fn shown(&self, from: &ModelEntry, to: &ModelEntry) -> Vec<Carried> {
+        let all = self.journey.carried.iter().map(|one| as_shown(one, from, to, &self.before));
+        all.filter(is_news).collect()
+    }
+
+    /// "roughness 0.3 (was 0.5)": values that nobody set, and that change because each model has a default of its own.
+    fn other_defaults(&self, from: &ModelEntry, to: &ModelEntry) -> Vec<String> {
+        let is_set = |name: &str| self.before.0.contains_key(name) || self.changes.contains_key(name);
+        let other = |p: &'static Parameter| {
+            let old = from.parameter(p.name).filter(|_| !is_set(p.name))?.default_value();
+            let new = Some(p.default_value()).filter(|new| *new != old)?;
+            unused(to.parameters, p, &self.before).is_none().then(|| format!("{} {new} (was {old})", p.label))
+        };
+        to.parameters.iter().filter_map(other).collect()
+    }
+}
+
+/// Of objects that had one model, those with which something went along, and what, in words.
+fn went<'a>(all: &[&'a Arrival], from: &ModelEntry, to: &ModelEntry) -> Option<(Vec<&'a Arrival>, String)> {
+    let shown = all.iter().map(|one| (*one, one.shown(from, to)));
+    let goers: Vec<_> = shown.filter(|(_, carried)| !carried.is_empty()).collect();
+    let mut words = Vec::new();
+    for (arrival, carried) in &goers {
+        let word = |one: &Carried| match goers.len() {
+            1 => with_values(one, &arrival.before),
+            _ => without_values(one),
+        };
+        add_all(&mut words, carried.iter().map(word));
+    }
+    (!goers.is_empty()).then(|| (goers.iter().map(|(one, _)| *one).collect(), words.join(", ")))
+}
+
+/// Of objects that had one model, those of which something did not go along, and what.
+fn stayed<'a>(all: &[&'a Arrival]) -> Option<(Vec<&'a Arrival>, Vec<&'static Parameter>)> {
+    let who: Vec<_> = all.iter().copied().filter(|one| !one.journey.left.is_empty()).collect();
+    let mut left: Vec<&'static Parameter> = Vec::new();
+    for p in who.iter().flat_map(|one| &one.journey.left) {
+        if left.iter().all(|known| known.name != p.name) {
+            left.push(*p);
+        }
+    }
+    (!who.is_empty()).then_some((who, left))
+}
+
+/// Adds those that are new.
+fn add_all(known: &mut Vec<String>, more: impl IntoIterator<Item = String>) {
+    for one in more {
+        if !known.contains(&one) {
+            known.push(one);
+        }
+    }
+}
+
+/// "OpenPBR (6 objects)": the model with which values come back, and whose, unless they are those of all.
+pub(super) fn with_whose(model: &str, whose: Option<String>) -> String {
+    whose.map_or_else(|| model.to_owned(), |whose| format!("{model} ({whose})"))
+}
+
+/// What goes along, following from the parameters under which the model that is left shows it: it may come from an
+/// earlier model, of whose values that one has copies.
+pub(super) fn as_shown(one: &Carried, from: &ModelEntry, to: &ModelEntry, before: &Values) -> Carried {
+    let name = one.to.name;
+    if let Some(same) = from.parameter(name).filter(|_| before.0.get(name) == Some(&one.value)) {
+        return Carried { from: vec![same], ..one.clone() };
+    }
+    let mut before = before.clone();
+    before.0.remove(name);
+    let there = journey(&[from], to, &before).carried.into_iter().find(|other| other.to.name == name);
+    Carried { from: there.map_or_else(|| one.from.clone(), |there| there.from), ..one.clone() }
+}
+
+/// False of a value that stays under its name.
+pub(super) fn is_news(one: &Carried) -> bool {
+    one.from.iter().all(|p| p.name != one.to.name)
 }
 
 /// The parameters for which a new model has no place, of those whose values were carried to the model that is left and
@@ -268,9 +356,10 @@ mod tests {
         Value::Number(v)
     }
 
-    /// A session with so many spheres of a model and these values.
+    /// A session with so many spheres of a model and these values, and a colour, whose default models do not share.
     fn begin(model: &str, count: usize, values: &[(&'static str, f32)]) -> (Session, Registry) {
         let mut scene = Scene { reflection_model: model.to_owned(), ..Scene::default() };
+        scene.objects[0].material.set("base_colour", Value::Colour([200, 100, 50]));
         values.iter().for_each(|(name, v)| scene.objects[0].material.set(*name, number(*v)));
         for i in 1..count {
             let mut copy = scene.objects[0].clone();
@@ -325,7 +414,9 @@ mod tests {
 
     #[test]
     fn carried_values_without_a_place_are_named_too() {
-        for values in [&[("clearcoat", 0.8), ("sheen", 0.4)][..], &[("clearcoat", 0.0), ("sheen", 0.0)]] {
+        // The roughness is set, since its default is another in each of the models.
+        for coat in [[0.8, 0.4], [0.0, 0.0]] {
+            let values = &[("clearcoat", coat[0]), ("sheen", coat[1]), ("roughness", 0.4)];
             let (mut session, registry) = begin("disney", 1, values);
             let is_set = values[0].1 > 0.0;
             choose(&mut session, &registry, "openpbr");
@@ -344,6 +435,84 @@ mod tests {
             choose(&mut session, &registry, "disney");
             assert_eq!(last(&session), "");
         }
+    }
+
+    /// Objects with these models and one value each.
+    fn mixed(all: &[(&'static str, &'static str, f32)]) -> (Session, Registry) {
+        let (mut session, registry) = begin("lambert", all.len(), &[]);
+        let mut scene = session.document.scene().clone();
+        for (object, (model, name, v)) in scene.objects.iter_mut().zip(all) {
+            object.reflection_model = Some((*model).to_owned());
+            object.material.set(*name, number(*v));
+            object.material.set("roughness", number(0.4));
+        }
+        session.document = Document::new(scene);
+        (session, registry)
+    }
+
+    fn choose_for_each(session: &mut Session, registry: &Registry, id: &'static str) {
+        session.document.end_gesture();
+        let edits = (0..session.document.objects.len())
+            .map(|i| Edit::set(Part::Object(i), Object::reflection_model, id))
+            .collect();
+        let _ = session.apply(Action::Edit(Edit::Each { edits, step: "Models".to_owned() }), registry);
+    }
+
+    #[test]
+    fn each_value_is_named_with_the_model_that_the_object_had() {
+        let disney = ("disney", "specular", 0.4);
+        let openpbr = ("openpbr", "coat_weight", 0.8);
+        let (mut session, registry) = mixed(&[disney, disney, openpbr, openpbr]);
+        choose_for_each(&mut session, &registry, "metallic_roughness");
+        let [note] = &session.messages[..] else { panic!("one message: {}", session.messages.len()) };
+        assert_eq!(
+            note.text,
+            "4 objects use Metallic–roughness; of 2 that had Disney: specular becomes reflectance. \
+             Metallic–roughness has no place for coat; it comes back with OpenPBR (2 objects)."
+        );
+    }
+
+    #[test]
+    fn a_message_counts_the_objects_that_changed_and_those_of_which_it_is_true() {
+        let (mut session, registry) = begin("disney", 3, &[("roughness", 0.4)]);
+        for i in [0, 1] {
+            let edit = Edit::material(Part::Object(i), "specular", number(0.4));
+            let _ = session.apply(Action::Edit(edit), &registry);
+        }
+        choose(&mut session, &registry, "metallic_roughness");
+        assert_eq!(last(&session), "3 objects use Metallic–roughness; of 2: specular becomes reflectance.");
+    }
+
+    #[test]
+    fn a_value_has_the_name_that_the_model_showed_from_which_the_object_comes() {
+        let (mut session, registry) = begin("openpbr", 1, &[("specular_ior", 1.4), ("roughness", 0.4)]);
+        choose(&mut session, &registry, "disney");
+        assert!(last(&session).contains("refractive index 1.4 becomes specular"), "{}", last(&session));
+        choose(&mut session, &registry, "metallic_roughness");
+        let said = last(&session);
+        assert!(said.starts_with("Metallic–roughness for Sphere 1: specular "), "{said}");
+        assert!(said.contains(" becomes reflectance ") && !said.contains("index"), "{said}");
+        // A value that keeps its name and size is no news.
+        let (mut session, registry) = begin("ward", 1, &[("alpha_x", 0.25), ("alpha_y", 0.25)]);
+        choose(&mut session, &registry, "disney");
+        session.messages.clear();
+        choose(&mut session, &registry, "metallic_roughness");
+        assert_eq!(value(&session, "roughness"), Some(number(0.5)));
+        assert_eq!(last(&session), "");
+    }
+
+    #[test]
+    fn another_default_is_said() {
+        let (mut session, registry) = begin("disney", 1, &[]);
+        let start = session.document.objects[0].material.clone();
+        choose(&mut session, &registry, "openpbr");
+        assert_eq!(last(&session), "Default of OpenPBR: roughness 0.3 (was 0.5).");
+        assert_eq!(session.document.objects[0].material, start, "and nothing is written into the scene");
+        choose(&mut session, &registry, "disney");
+        assert!(last(&session).contains("roughness 0.5 (was 0.3)"), "{}", last(&session));
+        let (mut session, registry) = begin("disney", 1, &[("roughness", 0.5)]);
+        choose(&mut session, &registry, "openpbr");
+        assert!(!last(&session).contains("roughness"), "a value that is set stays");
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! Materials go along when a view of a comparison gets another model. A variant has one material for all objects, so only
 //! what is the same for all visible ones goes along.
 
+use std::collections::BTreeMap;
+
 use super::{
     Session, Severity, Traveller,
-    carry::{copies_left, left_behind, without_values},
+    carry::{as_shown, copies_left, is_news, left_behind, with_whose, without_values},
 };
 use crate::{
     document::{Edit, Extent},
@@ -14,7 +16,7 @@ use crate::{
     },
     registry::Registry,
     scene::{Part, Variant, variant::LETTERS},
-    text::{capitalised, listed},
+    text::{capitalised, listed, plural},
 };
 
 /// A variant that may get another model, before it does.
@@ -29,15 +31,23 @@ pub(super) struct ViewDeparture {
 #[derive(Default)]
 struct Common {
     carried: Option<Vec<Carried>>,
-    left: Vec<&'static Parameter>,
+    /// By the model that is left, with the number of objects that it had a value of.
+    left: BTreeMap<String, (usize, Vec<&'static Parameter>)>,
+    /// The number of objects.
+    all: usize,
     differ: Vec<&'static Parameter>,
 }
 
 impl Common {
-    /// Adds an object.
-    fn add(&mut self, found: Journey) {
+    /// Adds an object, which had a model.
+    fn add(&mut self, found: Journey, from: &str) {
         let alike = |a: &Carried, b: &Carried| a.to.name == b.to.name && a.value == b.value;
-        found.left.into_iter().for_each(|p| add(&mut self.left, p));
+        self.all += 1;
+        if !found.left.is_empty() {
+            let (count, left) = self.left.entry(from.to_owned()).or_default();
+            *count += 1;
+            found.left.into_iter().for_each(|p| add(left, p));
+        }
         let (stays, differs) = match self.carried.take() {
             None => (found.carried, Vec::new()),
             Some(all) => {
@@ -102,14 +112,16 @@ impl Session {
                 material.0.extend(merged.material.0.clone());
                 let is_gone = |name: &str| gone.iter().any(|known| known == name);
                 found.left.extend(copies_left(from, to, &material, is_gone));
+                found.carried.iter_mut().for_each(|one| *one = as_shown(one, from, to, &material));
             }
             if from != to {
                 models.get_or_insert_with(|| (from.clone(), to.to_owned()));
             }
-            common.add(found);
+            common.add(found, from);
         }
-        let Common { carried, left, differ } = common;
-        let (Some((from, to)), carried) = (models, carried.unwrap_or_default()) else { return };
+        let (Some((from, to)), carried) = (models, common.carried.clone().unwrap_or_default()) else {
+            return;
+        };
         self.desk.travels.leave(who, &from);
         for one in &carried {
             self.desk.travels.carry((who, one.to.name.into()), &to, &one.value);
@@ -122,9 +134,8 @@ impl Session {
             });
         }
         let Some(to) = registry.model(&to) else { return };
-        let from = registry.model(&from).map(|model| model.declaration.name);
         let view = LETTERS.get(variant + 1).copied().unwrap_or_default();
-        let said = words(view, from, to, &Common { carried: Some(carried), left, differ });
+        let said = words(view, to, &common, registry);
         if !said.is_empty() {
             self.say(Severity::Info, said);
         }
@@ -132,14 +143,17 @@ impl Session {
 }
 
 /// The message: what went along, and what did not.
-fn words(view: &str, from: Option<&str>, to: &ModelEntry, common: &Common) -> String {
+fn words(view: &str, to: &ModelEntry, common: &Common, registry: &Registry) -> String {
     let mut said = Vec::new();
-    let carried: Vec<_> = common.carried.iter().flatten().map(without_values).collect();
+    let carried: Vec<_> =
+        common.carried.iter().flatten().filter(|one| is_news(one)).map(without_values).collect();
     if !carried.is_empty() {
         said.push(format!("{} in view {view}: {}.", to.declaration.name, carried.join(", ")));
     }
-    if !common.left.is_empty() {
-        said.push(left_behind(&common.left, from, to));
+    for (from, (count, left)) in &common.left {
+        let whose = (*count != common.all).then(|| plural(*count, "object"));
+        let from = registry.model(from).map(|model| with_whose(model.declaration.name, whose));
+        said.push(left_behind(left, from.as_deref(), to));
     }
     let differ: Vec<_> = common.differ.iter().map(|p| p.label).collect();
     if !differ.is_empty() {
@@ -157,7 +171,7 @@ mod tests {
         document::Document,
         panel::state::{Action, CompareCommand},
         parameter::Value,
-        scene::Scene,
+        scene::{Object, Scene},
     };
 
     /// A session with a view B that is active, of spheres with these roughnesses.
@@ -218,6 +232,36 @@ mod tests {
         choose(&mut session, &registry, "metallic_roughness");
         let said = session.messages.last().map_or("", |note| &note.text);
         assert!(said.ends_with(" has no place for coat; it comes back with OpenPBR."), "{said}");
+    }
+
+    #[test]
+    fn what_has_no_place_is_named_with_the_model_of_its_objects() {
+        let (mut session, registry) = begin(&[0.5, 0.5, 0.5, 0.5]);
+        for i in [2, 3] {
+            let edit = Edit::set(Part::Object(i), Object::reflection_model, "openpbr");
+            session.edit_here(edit, &registry);
+            session.edit_here(Edit::material(Part::Object(i), "coat_weight", Value::Number(0.8)), &registry);
+        }
+        session.messages.clear();
+        let edit = Edit::set(Part::Variant(0), Variant::reflection_model, "metallic_roughness");
+        session.edit_here(edit, &registry);
+        let said: Vec<_> = session.messages.iter().map(|note| note.text.as_str()).collect();
+        let expected = "Metallic–roughness has no place for coat; it comes back with OpenPBR (2 objects).";
+        assert_eq!(said, [expected]);
+    }
+
+    #[test]
+    fn a_value_of_a_view_has_the_name_that_its_model_showed() {
+        let (mut session, registry) = begin(&[0.5]);
+        let set = |session: &mut Session, edit| session.edit_here(edit, &registry);
+        set(&mut session, Edit::set(Part::Object(0), Object::reflection_model, "openpbr"));
+        set(&mut session, Edit::material(Part::Object(0), "specular_ior", Value::Number(1.4)));
+        choose(&mut session, &registry, "disney");
+        let last =
+            |session: &Session| session.messages.last().map_or(String::new(), |note| note.text.clone());
+        assert!(last(&session).contains("refractive index becomes specular"), "{}", last(&session));
+        choose(&mut session, &registry, "metallic_roughness");
+        assert!(last(&session).contains("specular becomes reflectance"), "{}", last(&session));
     }
 
     #[test]

@@ -65,7 +65,7 @@ impl Session {
             self.model_slots.take(&id);
         }
         if let Some(departure) = departure.filter(|_| self.document.revision() != before) {
-            self.carry(departure, registry);
+            self.carry(vec![departure], registry);
         }
         if let Some(departure) = of_view.filter(|_| self.document.revision() != before) {
             self.carry_in_view(departure, registry);

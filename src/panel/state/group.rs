@@ -48,7 +48,7 @@ impl Session {
             return;
         }
         model.iter().for_each(|id| self.model_slots.take(id));
-        departures.into_iter().for_each(|departure| self.carry(departure, registry));
+        self.carry(departures, registry);
         if chooses {
             follow_model(self, registry);
         }

@@ -203,7 +203,7 @@ impl Session {
     }
 
     /// The letter of the active view.
-    fn letter(&self) -> &'static str {
+    pub(in crate::panel) fn letter(&self) -> &'static str {
         crate::scene::variant::LETTERS.get(self.active()).copied().unwrap_or_default()
     }
 }

@@ -2,7 +2,7 @@
 
 use std::{fs, thread::sleep, time::Duration};
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Shape, TouchPhase, vec2};
 use glam::Vec3;
 use lights_camera_models::{
     document::Selection,
@@ -289,6 +289,47 @@ fn many_broken_files_take_one_line_which_unfolds_and_leave_the_materials_their_p
     bench.click("5 files cannot be read");
     bench.hover(Pos2::ZERO);
     assert!(!bench.says("bad3.json"));
+}
+
+#[test]
+fn tiles_are_reached_below_a_low_strip_with_large_type() {
+    let (mut bench, folder) = bench();
+    own(&mut bench, &folder, &["Apple"]);
+    for i in 0..8 {
+        fs::write(folder.path().join(format!("materials/bad{i}.json")), "{").expect("written");
+    }
+    bench.click("Read again");
+    wait_for(&mut bench, "8 files cannot be read");
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::Scale(200)));
+    (0..3).for_each(|_| bench.settle());
+    let at = bench.field("Search materials").rect.center();
+    bench.frame(vec![Event::PointerMoved(at)]);
+    let mut seen = false;
+    for _ in 0..40 {
+        let wheel = Event::MouseWheel {
+            unit: MouseWheelUnit::Point,
+            delta: vec2(0.0, -8.0),
+            phase: TouchPhase::Move,
+            modifiers: Modifiers::NONE,
+        };
+        bench.frame(vec![wheel]);
+        bench.settle();
+        seen |= bench.texts_in_sight().into_iter().any(|(text, _)| text == "Apple");
+    }
+    assert!(seen, "the name of a tile is never in sight");
+}
+
+#[test]
+fn the_hint_says_what_a_drag_does_in_the_active_view() {
+    let (mut bench, _folder) = bench();
+    assert!(bench.says("drag: onto an object") && !bench.says("of view A"));
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.settle();
+    assert!(bench.says("click, or drag into view B: for all its objects"));
+    bench.apply(Action::Compare(CompareCommand::Activate(0)));
+    bench.settle();
+    assert!(bench.says("drag: onto an object of view A"));
 }
 
 #[test]
