@@ -101,6 +101,10 @@ fn absorb(
     if session.view.narrow != narrow::is(ctx) {
         session.view.narrow = narrow::is(ctx);
     }
+    // A shortcut in the finder, or another program, may ask something.
+    if session.view.finder_open && panels.asks(session).is_some() {
+        session.view.finder_open = false;
+    }
     if !session.panels.iter().copied().eq(panels.infos()) {
         let first = session.panels.is_empty();
         session.panels = panels.infos().collect();

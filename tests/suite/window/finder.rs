@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, sync::LazyLock};
 use bevy_egui::egui::{Event, Key, Modifiers, vec2};
 use lights_camera_models::{
     custom,
-    document::Selection,
+    document::{Edit, Selection},
     panel::{
         Panels,
         command::{Command, Group, Menu, all, declared, with_keys},
@@ -14,7 +14,7 @@ use lights_camera_models::{
         state::{Action, Effect, LessonSource, Session, Shortcut, ViewChange},
     },
     registry::Registry,
-    scene::Scene,
+    scene::{Part, Scene},
 };
 
 use crate::window::panels::Bench;
@@ -63,6 +63,20 @@ fn open(bench: &mut Bench) {
 fn write(bench: &mut Bench, text: &str) {
     bench.frame(vec![Event::Text(text.to_owned())]);
     bench.settle();
+}
+
+#[test]
+fn the_finder_makes_way_for_a_question() {
+    let mut bench = bench();
+    bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "flat")));
+    open(&mut bench);
+    write(&mut bench, "labels");
+    press(&mut bench, "new");
+    bench.settle();
+    assert!(bench.says("Save the changes?") && !bench.session.view.finder_open);
+    bench.key(Key::Escape, Modifiers::NONE);
+    assert!(!bench.says("Save the changes?"), "the question has the keys");
+    assert_eq!(bench.session.document.shading_model, "flat");
 }
 
 /// Finds something and runs the first that is found.
