@@ -1,11 +1,11 @@
 //! Custom models and shaders: the dialog that names a new file, and the buttons that open files in an editor.
 
-use std::{ops::DerefMut, path::Path};
+use std::ops::DerefMut;
 
 use super::{
-    code, draft, keys,
+    draft, keys,
     prelude::*,
-    state::{BUILT_IN, CODE_TAB, CodeCommand, CodeOf, ModelDraft, NameProblem, check_name},
+    state::{BUILT_IN, CodeCommand, ModelDraft, NameProblem, check_name},
 };
 use crate::{custom::source_path, library::status::Trouble};
 
@@ -28,20 +28,6 @@ pub fn notice_shaders(session: &mut impl DerefMut<Target = Session>, registry: &
     if session.authoring.wanted_model.as_ref().is_some_and(|id| registry.model(id).is_some()) {
         session.choose_wanted_model(registry);
     }
-}
-
-/// Opens the file of a new model in the panel *Code*, if that is in sight or has room. True if it does.
-pub fn open_new(session: &mut Session, path: &Path) -> bool {
-    let view = &session.view;
-    let in_sight = view.bottom_open && view.bottom_tab == CODE_TAB;
-    if view.presenting || view.narrow && !in_sight {
-        return false;
-    }
-    session.view.unfold(CODE_TAB);
-    if !session.code.show(&CodeOf::File(path.to_owned()), 1) {
-        code::disk::open(session, path.to_owned(), 1);
-    }
-    true
 }
 
 /// The buttons about custom models, for the chooser and the panel.

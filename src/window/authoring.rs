@@ -12,7 +12,7 @@ use crate::{
     library::assets::{self, Exported, Folders},
     materials::{self, Material, NotSaved},
     panel::{
-        author, keys,
+        code, keys,
         state::{Authoring, Effect, ModelDraft, Question, Session, Severity},
     },
     registry::Registry,
@@ -109,7 +109,7 @@ fn new_model(
         authoring.draft = Some(ModelDraft { of: of.clone(), name: name.to_owned() });
         "choose another name"
     })?;
-    let open = match author::open_new(session, &path) {
+    let open = match code::open_new(session, &path) {
         true => "It is open in the panel Code".to_owned(),
         false => keys::hint_beside(session, registry, "Open it in an editor", "edit_model"),
     };

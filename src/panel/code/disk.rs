@@ -9,9 +9,23 @@ use std::{
 use crate::{
     custom::file,
     files::{self, FileError, Shown as _},
-    panel::state::{CodeOf, MOST_CODE, OpenCode, Session, Severity, Theirs},
+    panel::state::{CODE_TAB, CodeOf, MOST_CODE, OpenCode, Session, Severity, Theirs},
     shader::check::ShaderProblem,
 };
+
+/// Opens the file of a new model in the panel *Code*, if that is in sight or has room. True if it does.
+pub fn open_new(session: &mut Session, path: &Path) -> bool {
+    let view = &session.view;
+    let in_sight = view.bottom_open && view.bottom_tab == CODE_TAB;
+    if view.presenting || view.narrow && !in_sight {
+        return false;
+    }
+    session.view.unfold(CODE_TAB);
+    if !session.code.show(&CodeOf::File(path.to_owned()), 1) {
+        open(session, path.to_owned(), 1);
+    }
+    true
+}
 
 /// The text of a file, or why it cannot be edited.
 enum Read {

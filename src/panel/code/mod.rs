@@ -36,6 +36,8 @@ mod surface;
 pub mod tokens;
 pub mod words;
 
+pub use disk::open_new;
+
 pub(super) use keyboard::keys;
 
 /// Rest after which a text is checked, seconds.

@@ -309,7 +309,10 @@ fn usage(node: &Json) -> String {
 }
 
 fn described(parameter: &Parameter) -> Word {
-    let unit = if parameter.unit.is_empty() { String::new() } else { format!(", {}", parameter.unit) };
+    // That of a colour is of its codes.
+    let unit = Some(parameter.unit).filter(|unit| !unit.is_empty());
+    let unit = unit.filter(|_| !matches!(parameter.kind, ParameterKind::Colour(_)));
+    let unit = unit.map_or_else(String::new, |unit| format!(", {unit}"));
     let usage = format!("{}{unit}", in_wgsl(&parameter.kind, &parameter.rule()));
     Word::new(parameter.name, &usage, parameter.help)
 }

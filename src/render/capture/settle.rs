@@ -266,14 +266,16 @@ impl GpuRenderer {
     /// - Cameras take the format of their target from the frame before.
     ///
     /// Meanwhile, meshes and materials go to the GPU. Later, a frame shows everything that it gets itself, see
-    /// [`shows_all`](Self::shows_all).
+    /// [`shows_all`](Self::shows_all). Shaders on trial are not waited for: they are tried by the example of a pipeline that
+    /// draws.
     fn start(&mut self) -> Result<(), GpuError> {
         // Views switch their cameras themselves.
         if self.on_demand || std::mem::replace(&mut self.started, true) {
             return Ok(());
         }
         self.switch_camera(false);
-        let started = self.run_until(|_, ready| ready > 0);
+        let started =
+            self.run_until(|this, ready| ready > 0 || this.prepared().is_some() && this.is_trying());
         self.switch_camera(true);
         started
     }
@@ -394,11 +396,15 @@ impl GpuRenderer {
                 return Err(GpuError::Shader(error.to_string()));
             }
         }
-        let trying = self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying);
         // Bevy still lists a pipeline for one frame after creating it.
         let made =
             |id| matches!(cache.pipelines().nth(id).map(|p| &p.state), Some(CachedPipelineState::Ok(_)));
-        Ok(trying || !cache.waiting_pipelines().all(made))
+        Ok(self.is_trying() || !cache.waiting_pipelines().all(made))
+    }
+
+    /// True while shaders are tried before they are drawn with.
+    fn is_trying(&self) -> bool {
+        self.app.world().get_resource::<LiveShaders>().is_some_and(LiveShaders::is_trying)
     }
 
     /// The reason why shapes are missing in the picture, if any.

@@ -64,7 +64,7 @@ fn esc_closes_the_list_of_words_and_what_is_typed_next_is_text() {
     let before = open(&bench).text.clone();
     // Behind the first brace, where a key is expected.
     bench.key(Key::ArrowRight, Modifiers::NONE);
-    types(&mut bench, "\"re");
+    types(&mut bench, "\"va");
     assert!(bench.says(LIST), "{:?}", bench.tree);
     let focused = bench.ctx.memory(|memory| memory.focused());
     assert!(focused.is_some());
@@ -72,7 +72,7 @@ fn esc_closes_the_list_of_words_and_what_is_typed_next_is_text() {
     assert!(!bench.says(LIST));
     assert_eq!(bench.ctx.memory(|memory| memory.focused()), focused);
     types(&mut bench, "x");
-    assert_eq!(*open(&bench).text, *before.replacen('{', "{\"rex", 1));
+    assert_eq!(*open(&bench).text, *before.replacen('{', "{\"vax", 1));
     // The text takes what it undoes.
     bench.key(Key::Z, CTRL);
     assert_eq!(open(&bench).text, before);
@@ -221,7 +221,7 @@ fn a_text_opens_at_its_start() {
 #[test]
 fn two_lines_stay_in_sight_below_the_cursor() {
     let mut scene = Scene::default();
-    scene.lights = vec![scene.lights[0].clone(); 40];
+    scene.lights = vec![scene.lights[0].clone(); 90];
     let mut bench = Bench::new(Session::new(scene));
     bench.key(Key::J, CTRL | Modifiers::SHIFT);
     let down = 60;

@@ -87,6 +87,8 @@ fn the_picture_is_above_and_each_panel_can_be_brought_below_it() {
             ("Materials", MATERIALS_TAB),
             ("Explain", EXPLAIN_TAB),
         ] {
+            // The panel before may need some frames for its height.
+            bench.settle();
             bench.click("More panels");
             bench.click(title);
             let view = &bench.session.view;
