@@ -84,11 +84,9 @@ fn the_picture_is_above_and_each_panel_can_be_brought_below_it() {
             ("Plots", PLOTS_TAB),
             ("Code", CODE_TAB),
             ("Shader", SHADER_TAB),
-            ("Materials", MATERIALS_TAB),
             ("Explain", EXPLAIN_TAB),
+            ("Materials", MATERIALS_TAB),
         ] {
-            // The panel before may need some frames for its height.
-            bench.settle();
             bench.click("More panels");
             bench.click(title);
             let view = &bench.session.view;
