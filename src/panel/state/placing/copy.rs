@@ -12,6 +12,8 @@ const FARTHER: f32 = 0.03;
 const MOST_FARTHER: u8 = 150;
 /// Number of places across and down the picture that are tried all over it.
 const PLACES: [i16; 2] = [48, 32];
+/// The part of the bounds of objects that two of them cannot share.
+const SOLID: f32 = 0.85;
 /// Number of points across a copy that are tested for being covered or cut off.
 const POINTS: i16 = 12;
 /// Cost of a covered part of a copy relative to that of a part that is cut off.
@@ -70,6 +72,8 @@ struct Around<'s> {
     block: Block,
     /// The bounds of the original and of its neighbours.
     neighbours: Vec<Framed>,
+    /// What a copy stands in only if there is no other place, the original among it.
+    solid: Vec<Block>,
     /// Floors and backdrops, on which a copy may stand, but not in them.
     ground: Vec<Block>,
     /// True if the original is out of the picture: its copy stands beside it nevertheless.
@@ -132,6 +136,7 @@ impl<'s> Around<'s> {
         let is_out = !stand.sees(original.position, 0.0);
         let own = stand.framed(&block);
         let (mut neighbours, mut ground): (Vec<_>, Vec<_>) = (own.into_iter().collect(), Vec::new());
+        let mut solid = vec![block.scaled(SOLID)];
         let (at, depth) = stand.flat(block.centre);
         let picture = Framed { low: -stand.widest(), high: stand.widest() };
         for (_, other) in stand.taken.iter().enumerate().filter(|(i, _)| *i != index) {
@@ -146,11 +151,14 @@ impl<'s> Around<'s> {
             neighbours.extend(framed.filter(|framed| !is_ground(framed) && is_in_sight(framed)));
             // A room holds the camera or the original.
             let is_room = other.gap(stand.eye) <= 0.0 || other.gap(block.centre) <= 0.0;
+            if !is_room {
+                solid.push(other.scaled(SOLID));
+            }
             if !is_room && (is_out || framed.is_none_or(|framed| is_ground(&framed))) {
                 ground.push(*other);
             }
         }
-        Self { stand, original, block, neighbours, ground, is_out }
+        Self { stand, original, block, neighbours, solid, ground, is_out }
     }
 
     /// The place of a copy at an offset to the right and up, at the depth of the original.
@@ -249,7 +257,9 @@ impl<'s> Around<'s> {
                 }
             }
         }
-        let stands_in = self.ground.iter().any(|other| block.touches(other));
+        let core = block.scaled(SOLID);
+        let stands_in = self.ground.iter().any(|other| block.touches(other))
+            || self.solid.iter().any(|other| core.touches(other));
         let mostly = if cut > 0.5 * count { MOSTLY_CUT } else { 0.0 };
         let offset = (self.stand.turn.inverse() * (p - self.original.position)).truncate().abs();
         let askew = if offset.min_element() > 0.02 * self.block.radius { ASKEW } else { 0.0 };
@@ -299,6 +309,14 @@ mod tests {
         let (original, copy, seen) = copied("compare_phong_blinn_phong", 0);
         assert!(seen, "{copy:?}");
         assert!(copy.centre.distance(original.centre) > 1.1 * original.radius, "{copy:?}");
+    }
+
+    #[test]
+    fn a_copy_without_room_does_not_stand_in_the_original() {
+        for name in ["compare_phong_blinn_phong", "portrait"] {
+            let (original, copy, seen) = copied(name, 0);
+            assert!(seen && !copy.scaled(SOLID).touches(&original.scaled(SOLID)), "{name}: {copy:?}");
+        }
     }
 
     /// The bounds of all objects after copies of one were made, each wholly in the picture and over no other object.
