@@ -4,7 +4,6 @@
 use bevy_egui::egui::{Frame, Margin};
 
 use super::{
-    compare,
     context::{Listed, PanelContext, Panels},
     focus::{self, Region},
     glyphs, keys,
@@ -190,11 +189,9 @@ const MATERIAL_STRIP: f32 = 212.0;
 
 /// Height of the tabs, with the borders of the strip, in points.
 pub(super) const TABS: f32 = 40.0;
-/// Fraction of the height of a window that the strip takes at most, and the one that the picture keeps.
+/// Fraction of the height of a window that the strip takes at most, and the one that the picture keeps in a narrow window.
 const STRIP: f32 = 0.6;
 pub(super) const PICTURE: f32 = 0.4;
-/// Minimum height of the strip in any window, in points.
-const LOWEST: f32 = 48.0;
 
 /// The strip at the bottom. Tabs appear if there is more than one panel.
 pub(super) fn bottom(
@@ -205,7 +202,7 @@ pub(super) fn bottom(
     context: &mut PanelContext<'_>,
 ) {
     let session = context.session();
-    let most = most_of_strip(ui, whole, context);
+    let most = STRIP * whole.height();
     let (kind, least, start) = heights(&session.view.bottom_tab, whole);
     let strip = egui::Panel::bottom(Id::new(("bottom", zoom_percent(ui.ctx()), kind)))
         .frame(theme::panel_frame(&Palette::of(&session.settings), vec2(12.0, 4.0)))
@@ -249,21 +246,6 @@ pub(super) fn heights(tab: &str, whole: Rect) -> (u8, f32, f32) {
         MESSAGES_TAB => (0, 72.0, 0.0),
         _ => (6, 72.0, 0.0),
     }
-}
-
-/// Maximum height of the strip, which leaves the picture its part of a window, without the headers and the bar of
-/// compared views.
-fn most_of_strip(ui: &Ui, whole: Rect, context: &PanelContext<'_>) -> f32 {
-    let (session, before) = (context.session(), context.area().rect);
-    let width = if before.is_positive() { before.width() } else { PICTURE * whole.width() };
-    let mut most = STRIP * whole.height();
-    // The bar has fewer rows in less room.
-    for _ in 0..4 {
-        let room = Rect::from_min_size(whole.min, vec2(width, (ui.available_height() - most).max(0.0)));
-        let picture = compare::arrange(session, room, 0.0, 0.0).picture.height().max(0.0);
-        most -= (PICTURE * whole.height() - picture).max(0.0);
-    }
-    most.max(LOWEST)
 }
 
 /// The panel of a tab. Guests scroll; the window's own panels have a height of their own in a strip that is too low, but for

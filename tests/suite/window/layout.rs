@@ -9,12 +9,9 @@ use lights_camera_models::{
     document::{Edit, Selection},
     panel::{
         keys,
-        state::{
-            Action, CODE_TAB, CompareCommand, EXPLAIN_TAB, MATERIALS_TAB, MESSAGES_TAB, PLOTS_TAB,
-            SHADER_TAB, Session, Severity, ViewChange,
-        },
+        state::{Action, Session, Severity, ViewChange},
     },
-    scene::{Light, Object, Part, Scene, comparison::Layout},
+    scene::{Light, Object, Part, Scene},
 };
 
 use crate::window::panels::Bench;
@@ -68,26 +65,6 @@ fn panels_give_way_to_the_picture_and_the_width_of_a_user_counts() {
             "{scale} %: the other one is as it was"
         );
         assert_eq!(bench.area.rect.left(), picture.left(), "{scale} %: on screen too");
-    }
-}
-
-#[test]
-fn above_every_tab_the_pictures_keep_two_fifths_of_the_window() {
-    for (scale, views) in [100, 150, 200].into_iter().flat_map(|scale| [(scale, 1), (scale, 2)]) {
-        let whole = 720.0 / (f32::from(scale) / 100.0);
-        let mut bench = bench(scale);
-        if views > 1 {
-            bench.apply(Action::Compare(CompareCommand::Add));
-            bench.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)));
-        }
-        for tab in [PLOTS_TAB, SHADER_TAB, EXPLAIN_TAB, CODE_TAB, MATERIALS_TAB, MESSAGES_TAB] {
-            bench.apply(Action::View(ViewChange::BottomTab(tab.to_owned())));
-            bench.settle();
-            let picture = bench.area.rect;
-            let here = format!("{scale} %, {views} views, {tab}: {picture:?} of {whole}");
-            assert!(picture.height() >= 0.4 * whole - 1.0, "{here}");
-            assert!(picture.bottom() <= whole - 60.0, "{here}: nothing is left to the strip");
-        }
     }
 }
 

@@ -300,7 +300,7 @@ fn tiles_are_reached_below_a_low_strip_with_large_type() {
     }
     bench.click("Read again");
     wait_for(&mut bench, "8 files cannot be read");
-    bench.size = vec2(1280.0, 720.0);
+    bench.size = vec2(1280.0, 640.0);
     bench.apply(Action::View(ViewChange::Scale(200)));
     (0..3).for_each(|_| bench.settle());
     let at = bench.field("Search materials").rect.center();
