@@ -303,6 +303,11 @@ fn surface(scene: &Scene, object: &Object, model: &ModelEntry, registry: &Regist
     Some(of_model(model.declaration.id, value, &where_, &place_of(model, function, registry)))
 }
 
+/// True for light from everywhere.
+fn is_ambient(light: &Light) -> bool {
+    light.position.is_none() && light.direction.is_none()
+}
+
 /// The function of a custom model in its file, after a colon, if its text defines the function: by default, ambient light
 /// is that of the response.
 fn place_of(model: &ModelEntry, function: &str, registry: &Registry) -> String {
@@ -355,7 +360,7 @@ fn directed(surface: &dyn Surface, model: &ModelEntry) -> Option<(Vec3, String)>
 
 fn everywhere(surface: &dyn Surface, scene: &Scene) -> Option<(Vec3, String)> {
     // Calculated only where needed: it takes long for some models.
-    if !scene.shining().any(|light| light.position.is_none() && light.direction.is_none()) {
+    if !scene.shining().any(is_ambient) {
         return None;
     }
     VIEWS.into_iter().find_map(|view| {
@@ -419,7 +424,6 @@ fn of_pixel(
                 None => {
                     let value = odd(&lit.response).unwrap_or(lit.contribution);
                     let where_ = format!("{} at pixel {x},{y}", part("lights", *index));
-                    let is_ambient = |l: &Light| l.position.is_none() && l.direction.is_none();
                     let ambient = scene.lights.get(lit.light.index).is_some_and(is_ambient);
                     let function = if ambient { AMBIENT } else { RESPONSE };
                     let place =

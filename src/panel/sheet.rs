@@ -3,7 +3,7 @@
 
 use super::{
     compare,
-    context::{Listed, PanelContext, Panels},
+    context::{PanelContext, Panels},
     focus::{self, Region},
     glyphs,
     lesson::point,
@@ -150,24 +150,5 @@ fn tab(ui: &mut Ui, whole: Rect, panels: &mut Panels, context: &mut PanelContext
         EXPLAIN_TAB | CODE_TAB | SHADER_TAB => vec2(WIDE, high),
         _ => vec2(0.0, high),
     };
-    scrolled(ui, info, panel, least, context);
-}
-
-/// A panel that scrolls where it has less room than it needs.
-fn scrolled(ui: &mut Ui, info: &PanelInfo, panel: &mut Listed, least: Vec2, context: &mut PanelContext<'_>) {
-    let room = ui.available_size();
-    if !info.guest && room.x >= least.x && room.y >= least.y {
-        return panel.show(ui, context);
-    }
-    let area = ScrollArea::new([room.x < least.x, true]).id_salt(info.id).auto_shrink(false);
-    area.min_scrolled_height(0.0).show(ui, |ui| {
-        // The scroll bar floats over this margin.
-        let inner = room - vec2(8.0, 0.0);
-        if info.guest {
-            ui.set_max_width(inner.x);
-            return panel.show(ui, context);
-        }
-        let (rect, _) = ui.allocate_exact_size(inner.max(least), Sense::hover());
-        ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| panel.show(ui, context));
-    });
+    sides::scrolled(ui, info, panel, least, context);
 }

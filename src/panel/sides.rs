@@ -221,7 +221,10 @@ pub(super) fn bottom(
             });
         });
         if let Some((info, panel)) = all.get_mut(shown) {
-            tab(ui, (&*info, &mut **panel), most < least, least - TABS, context);
+            // The materials scroll as a whole by themselves.
+            let is_low = most < least && info.id != MATERIALS_TAB;
+            let own = if is_low { vec2(0.0, least - TABS) } else { Vec2::ZERO };
+            scrolled(ui, info, panel, own, context);
         }
         ui.take_available_height();
     });
@@ -248,24 +251,27 @@ pub(super) fn heights(tab: &str, whole: Rect) -> (u8, f32, f32) {
     }
 }
 
-/// The panel of a tab. Guests scroll; the window's own panels have a height of their own in a strip that is too low, but for
-/// the materials, which scroll as a whole there.
-fn tab(
+/// A panel that scrolls where it has less room than it needs, as guests do in any.
+pub(super) fn scrolled(
     ui: &mut Ui,
-    (info, panel): (&PanelInfo, &mut Listed),
-    is_low: bool,
-    own: f32,
+    info: &PanelInfo,
+    panel: &mut Listed,
+    least: Vec2,
     context: &mut PanelContext<'_>,
 ) {
-    if !info.guest && (!is_low || info.id == MATERIALS_TAB) {
+    let room = ui.available_size();
+    if !info.guest && room.x >= least.x && room.y >= least.y {
         return panel.show(ui, context);
     }
-    ScrollArea::vertical().id_salt(info.id).auto_shrink(false).min_scrolled_height(0.0).show(ui, |ui| {
-        ui.set_max_width(ui.available_width() - 8.0);
+    let area = ScrollArea::new([room.x < least.x, true]).id_salt(info.id).auto_shrink(false);
+    area.min_scrolled_height(0.0).show(ui, |ui| {
+        // The scroll bar floats over this margin.
+        let inner = room - vec2(8.0, 0.0);
         if info.guest {
+            ui.set_max_width(inner.x);
             return panel.show(ui, context);
         }
-        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), own), Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(inner.max(least), Sense::hover());
         ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| panel.show(ui, context));
     });
 }
