@@ -34,7 +34,7 @@ pub(super) struct Arguments {
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Column and row of the pixel, from 0,0 at the top left
-    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y", value_parser = place)]
     at: [u32; 2],
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", value_parser = sides, default_value = "1280x720")]

@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     overwrite: bool,
     /// The object for forms that hold one: its name, or its place in the list from 0
-    #[arg(long, value_name = "NAME|INDEX", allow_negative_numbers = true)]
+    #[arg(long, value_name = "NAME|INDEX")]
     object: Option<String>,
     /// Export this view: A, B, C or D, or the name of a variant; by default view A, and of programs and pages all views
     #[arg(long, value_name = "VIEW")]
@@ -51,7 +51,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "WxH", value_parser = sides, default_value = "1280x720")]
     size: [u32; 2],
     /// Say on a web page why this pixel has its colour: column and row, from 0,0 at the top left
-    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y", value_parser = place)]
     explain: Option<[u32; 2]>,
 }
 

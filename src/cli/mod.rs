@@ -19,6 +19,7 @@ use crate::{
     text::{listed, nearest},
 };
 use std::{
+    any::TypeId,
     ffi::OsString,
     fmt,
     io::{self, IsTerminal as _, Write},
@@ -29,7 +30,7 @@ use std::{
     time::Duration,
 };
 
-use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, error::ErrorKind};
+use clap::{Arg, Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, error::ErrorKind};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 pub use engine::App;
@@ -473,10 +474,27 @@ pub fn main_with(types: impl FnOnce(&mut Registry), window: impl FnOnce(&mut App
 
 /// [`clap`]'s command with the name of the program.
 fn command() -> clap::Command {
-    Cli::command()
+    taking_negative_numbers(Cli::command())
         .name(program::command())
         .bin_name(program::command())
         .override_usage(in_own_words(USAGE).into_owned())
+}
+
+/// A command whose options take negative numbers, so that each refuses them by its own rule. Otherwise, clap takes them for
+/// options that do not exist.
+fn taking_negative_numbers(command: clap::Command) -> clap::Command {
+    let taking = |arg: Arg| {
+        let value = arg.get_value_parser().type_id();
+        if arg.is_positional() || !arg.get_action().takes_values() || value == TypeId::of::<PathBuf>() {
+            return arg;
+        }
+        // Two numbers, as in -8x8 or -1,0, are none for clap.
+        if value == TypeId::of::<[u32; 2]>() {
+            return arg.allow_hyphen_values(true);
+        }
+        arg.allow_negative_numbers(true)
+    };
+    command.mut_args(taking).mut_subcommands(taking_negative_numbers)
 }
 
 /// Like [`main_with`], with these arguments, of which the first is the name of the program.
@@ -763,7 +781,7 @@ mod tests {
 
     #[test]
     fn the_declaration_of_the_command_line_is_sound() {
-        Cli::command().debug_assert();
+        command().debug_assert();
     }
 
     #[test]

@@ -54,10 +54,10 @@ pub(super) struct Arguments {
     #[arg(long, value_parser = kind(), default_value = "f", hide_possible_values = true, help = format!("The quantity: {}", Kind::listed()))]
     kind: Kind,
     /// The angle between light and normal, degrees, for kinds in the plane of incidence
-    #[arg(long, value_name = "DEG", default_value_t = 45.0, allow_negative_numbers = true, value_parser = angle)]
+    #[arg(long, value_name = "DEG", default_value_t = 45.0, value_parser = angle)]
     theta_i: f64,
     /// The azimuth of the plane from the tangent, degrees, for anisotropic models
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true, value_parser = angle)]
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = angle)]
     phi_i: f64,
     /// What figures show of three channels: luminance by default, for slices colour
     #[arg(long, value_parser = channel())]

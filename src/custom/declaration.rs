@@ -71,9 +71,8 @@ pub(super) fn read(text: &str, id: &str, registry: &Registry) -> Result<Said, Ve
         let what = format!("the declaration is longer than {} KiB, the most allowed", MOST_BYTES >> 10);
         return Err(vec![(comment.start, what)]);
     }
-    let parsed = json::parse(comment.json, &OPTIONS).map_err(|(at, what)| {
-        vec![(comment.start + at, format!("the declaration is not JSON: {}", lower(&what)))]
-    })?;
+    let parsed = json::parse(comment.json, &OPTIONS)
+        .map_err(|(at, what)| vec![(comment.start + at, format!("the declaration is not JSON: {what}"))])?;
     let Some(root) = parsed else {
         let what = "the declaration is empty; it must be an object: { \"name\": …, \"parameters\": […] }";
         return Err(vec![(comment.start, what.to_owned())]);
@@ -96,12 +95,6 @@ pub(super) fn written<'a>(json: &'a str, key: &'static str) -> Option<&'a str> {
     let root = json::parse(json, &OPTIONS).ok()??;
     let range = Cursor::root(&root).get(key)?.value.range();
     json.get(range.start..range.end)
-}
-
-/// The text with a lower-case first letter.
-fn lower(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
 impl Reader<'_> {

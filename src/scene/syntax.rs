@@ -2,7 +2,11 @@
 
 use serde::{Deserialize as _, de::IgnoredAny};
 
-use crate::text::{is_hard_to_see, named_character, shortened};
+use crate::text::{
+    is_hard_to_see,
+    json::{slip, word_at},
+    named_character, shortened,
+};
 
 /// Maximum nesting of JSON. Scenes need four levels.
 pub const MAX_DEPTH: usize = 64;
@@ -83,16 +87,10 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
     }
     let rest = &text[at..];
     let found = rest.chars().next();
-    // The word around the place: NaN, -Infinity, 0x1F, .5, 'text'.
-    let part_of_word = |c: char| c.is_alphanumeric() || "+-._".contains(c);
-    let start = text[..at].char_indices().rev().take_while(|(_, c)| part_of_word(*c)).last();
-    let start = start.map_or(at, |(i, _)| i);
-    let word = &text[start..];
-    let word = &word[..word.find(|c| !part_of_word(c)).unwrap_or(word.len())];
+    let (start, word) = word_at(text, at);
     let before = text[..start].trim_end().chars().next_back();
     let said = error.to_string();
     let said = said.split(" at line ").next().unwrap_or_default();
-    let lower = word.trim_start_matches(['+', '-']).to_lowercase();
     let is_value = said != "key must be a string";
 
     let what = if rest.starts_with("//") || rest.starts_with("/*") || found == Some('#') {
@@ -103,21 +101,9 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
         "text and keys need straight double quotes (\"), not typographic ones".to_owned()
     } else if matches!(found, Some('}' | ']')) && before == Some(',') {
         "there is a comma after the last entry; remove it".to_owned()
-    } else if is_value && matches!(lower.as_str(), "nan" | "inf" | "infinity") {
+    } else if let Some(slip) = slip(word).filter(|_| is_value) {
         at = start;
-        format!("{word} is not a number in JSON; write a finite number")
-    } else if is_value && matches!(lower.as_str(), "true" | "false" | "null" | "none" | "undefined") {
-        at = start;
-        format!("{word} is not JSON; true, false and null are written in lower case")
-    } else if is_value && word.starts_with('+') {
-        at = start;
-        format!("{word}: numbers have no plus sign")
-    } else if is_value && word.starts_with(['.', '-']) && word.contains('.') {
-        at = start;
-        format!("{word}: numbers begin with a digit: 0.5, not .5")
-    } else if is_value && lower.starts_with("0x") {
-        at = start;
-        format!("{word}: numbers are decimal")
+        slip
     } else {
         match said {
             "expected value" => format!(
@@ -137,7 +123,11 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
                 at += rest.find(char::is_control).unwrap_or_default();
                 "a line break or control character in a text; end the text with \" or write \\n".to_owned()
             }
-            s if s.starts_with("expected") => format!("{s}, not {}", shown(found, word)),
+            s if s.starts_with("expected") => {
+                // A word that ends before is not to blame.
+                let word = if at < start + word.len() { word } else { "" };
+                format!("{s}, not {}", shown(found, word))
+            }
             s => s.to_owned(),
         }
     };
@@ -186,6 +176,7 @@ mod tests {
             ("{\"a\": -.5}", "1:7", "numbers begin with a digit"),
             ("{\"a\": +5}", "1:7", "no plus sign"),
             ("{\"a\": 0x1F}", "1:7", "decimal"),
+            ("[-1.5}", "1:6", "expected `,` or `]`, not `}`"),
             ("{\"a\": 01}", "1:8", "is not a number in JSON"),
             ("{\"a\": 1 \"b\": 2}", "1:9", "expected `,` or `}`"),
             ("{\"a\" 1}", "1:6", "expected `:`"),

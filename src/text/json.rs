@@ -38,8 +38,54 @@ const HALF_PAIR: &str =
 /// Returns the byte at which the text stops being JSON, and the reason.
 pub fn parse<'a>(text: &'a str, options: &ParseOptions) -> Result<Option<Ast<'a>>, (usize, String)> {
     let parsed = parse_to_ast(text, &CollectOptions::default(), options);
-    let said = |what: String| if what.contains("surrogate") { HALF_PAIR.to_owned() } else { what };
-    parsed.map(|p| p.value).map_err(|e| (e.range().start, said(e.kind().to_string())))
+    parsed.map(|p| p.value).map_err(|e| explained(text, e.range().start, &e.kind().to_string()))
+}
+
+/// The byte and the reason of an error of the parser.
+fn explained(text: &str, at: usize, said: &str) -> (usize, String) {
+    let (start, word) = word_at(text, at);
+    let is_key = text[start + word.len()..].trim_start().starts_with(':');
+    if let Some(what) = slip(word).filter(|_| !is_key) {
+        return (start, what);
+    }
+    if said.contains("surrogate") {
+        return (at, HALF_PAIR.to_owned());
+    }
+    let mut letters = said.chars();
+    let first = letters.next().into_iter().flat_map(char::to_lowercase);
+    (at, first.chain(letters).collect())
+}
+
+/// The word around a byte, such as `NaN`, `-Infinity`, `0x1F` or `.5`, and the byte where it begins; empty if there is none.
+#[must_use]
+pub fn word_at(text: &str, mut at: usize) -> (usize, &str) {
+    let part_of_word = |c: char| c.is_alphanumeric() || "+-._".contains(c);
+    at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    let start = text[..at].char_indices().rev().take_while(|(_, c)| part_of_word(*c)).last();
+    let start = start.map_or(at, |(i, _)| i);
+    let word = &text[start..];
+    (start, &word[..word.find(|c| !part_of_word(c)).unwrap_or(word.len())])
+}
+
+/// The message about a word that is meant as a value and is none in JSON, if the slip is a common one.
+#[must_use]
+pub fn slip(word: &str) -> Option<String> {
+    let unsigned = word.trim_start_matches(['+', '-']);
+    let lower = unsigned.to_lowercase();
+    let what = match lower.as_str() {
+        "nan" | "inf" | "infinity" => " is not a number in JSON; write a finite number",
+        "true" | "false" | "null" | "none" | "undefined" if !["true", "false", "null"].contains(&word) => {
+            " is not JSON; true, false and null are written in lower case"
+        }
+        _ if word.starts_with('+') => ": numbers have no plus sign",
+        _ if unsigned.starts_with('.') => ": numbers begin with a digit: 0.5, not .5",
+        _ if lower.starts_with("0x") => ": numbers are decimal",
+        _ => return None,
+    };
+    Some(format!("{word}{what}"))
 }
 
 /// A value, and its path. The path is built on demand: most values are valid, and there may be many.

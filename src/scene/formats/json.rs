@@ -48,7 +48,7 @@ pub(super) fn parse<'a>(
 ) -> Result<Option<Parsed<'a>>, (usize, String)> {
     check_syntax(text)?;
     // The two parsers agree except for half surrogate pairs, which only this one refuses.
-    let root = json::parse(text, &STRICT).map_err(|(at, what)| (at, what.to_lowercase()))?;
+    let root = json::parse(text, &STRICT)?;
     Ok(root.map(|root| read::parsed(text, root, source, registry, Default::default())))
 }
 

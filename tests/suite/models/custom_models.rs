@@ -77,6 +77,18 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ("[]", "1:8: the declaration is [], but a model must be an object, with the keys name, author"),
         ("{ \"name\": }", "1:18: the declaration is not JSON: "),
         ("{ 'name': \"x\" }", "1:10: the declaration is not JSON: "),
+        (
+            "{ \"parameters\": [{ \"name\": \"x\", \"default\": NaN }] }",
+            "1:51: the declaration is not JSON: NaN is not a number in JSON; write a finite number",
+        ),
+        (
+            "{ \"parameters\": [{ \"name\": \"x\", \"min\": -inf, \"max\": 1, \"default\": 0 }] }",
+            "1:47: the declaration is not JSON: -inf is not a number in JSON; write a finite number",
+        ),
+        (
+            "{ \"parameters\": [{ \"name\": \"x\", \"min\": .5 }] }",
+            "1:47: the declaration is not JSON: .5: numbers begin with a digit: 0.5, not .5",
+        ),
         ("{ \"nam\": \"x\" }", "1:10: nam is not a key of a model; did you mean \"name\"?"),
         ("{ \"title\": \"x\" }", "did you mean \"name\"?"),
         (
