@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// Parser of all files and folders that commands write. An empty path is refused, and so is `-`: where standard output is allowed, it
-/// has a name.
+/// has a name. No folder is made only to be left again.
 pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|text: OsString| {
         if text == "-" {
@@ -30,7 +30,7 @@ pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
         if text.is_empty() {
             return Err("the path is empty; name a file or a folder");
         }
-        Ok(PathBuf::from(text))
+        Ok(files::without_detours(Path::new(&text)))
     })
 }
 

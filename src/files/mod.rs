@@ -81,7 +81,7 @@ pub use output::{
 };
 pub use shown::{OnOneLine, Shown, printable, printable_json};
 pub use stamp::Stamp;
-pub use typed::meant;
+pub use typed::{meant, without_detours};
 pub use words::words;
 
 texts! {

@@ -1,6 +1,8 @@
-//! Names of files as users type them into dialogs.
+//! Names of files as users type them into dialogs and on the command line.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
+
+use crate::platform::fs;
 
 /// The file that a name from a dialog means, which has the usual extension if none was typed.
 ///
@@ -15,9 +17,52 @@ pub fn meant(typed: &Path, usual: &str, is_known: impl Fn(&Path) -> bool) -> Pat
     }
 }
 
+/// A path without steps into missing folders and out of them again: `a/../b` is `b` if there is no `a`. For the system, `a`
+/// would have to be made first, and would stay, empty.
+#[must_use]
+pub fn without_detours(path: &Path) -> PathBuf {
+    let mut straight = PathBuf::new();
+    for part in path.components() {
+        let turns_back = part == Component::ParentDir
+            && matches!(straight.components().next_back(), Some(Component::Normal(_)))
+            && fs::symlink_metadata(&straight).is_err();
+        if turns_back {
+            straight.pop();
+        } else {
+            straight.push(part);
+        }
+    }
+    match straight {
+        same if same == path => path.to_owned(),
+        here if here.as_os_str().is_empty() => PathBuf::from("."),
+        straight => straight,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn folders_that_are_left_again_are_passed_by_if_they_are_missing() {
+        let around = tempfile::tempdir().expect("a folder");
+        let at = |path: &str| around.path().join(path);
+        fs::create_dir(at("a")).expect("made");
+        for (path, expected) in [
+            ("b/../c.png", "c.png"),
+            ("b/./d/../../c/e.png", "c/e.png"),
+            ("a/b/../c.png", "a/c.png"),
+            ("a/../c.png", "a/../c.png"),
+            ("a/../b/../c.png", "a/../c.png"),
+        ] {
+            assert_eq!(without_detours(&at(path)), at(expected), "{path}");
+        }
+        for (path, expected) in
+            [("no such/..", "."), ("no such/../../x", "../x"), ("./no such/", "./no such/"), ("..", "..")]
+        {
+            assert_eq!(without_detours(Path::new(path)).as_os_str(), expected, "{path}");
+        }
+    }
 
     #[test]
     fn an_extension_is_added_once() {

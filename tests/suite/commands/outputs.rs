@@ -102,6 +102,22 @@ fn where_a_result_cannot_be_written_its_command_says_so_before_it_draws() {
 }
 
 #[test]
+fn no_folder_is_made_that_the_way_to_a_result_only_passes() {
+    let folder = folder();
+    let work = folder.path().join("work");
+    fs::create_dir(&work).expect("made");
+    let render = |output: &str| {
+        let usual = ["render", "../s.json", "--size", "64x36", "--renderer", "cpu", "--samples", "1", "-o"];
+        lcm_in(&work, &[&usual[..], &[output]].concat(), b"")
+    };
+    refused(&render("b/../../s.json/c.png"), 4, "s.json is not a folder");
+    assert_eq!((names(&work), names(folder.path())), (vec![], vec!["s.json".to_owned(), "work".to_owned()]));
+    let run = render("b/../../zz/c.png");
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    assert_eq!((names(&work), names(&folder.path().join("zz"))), (vec![], vec!["c.png".to_owned()]));
+}
+
+#[test]
 fn attempts_to_write_into_one_new_folder_do_not_disturb_each_other() {
     let folder = folder();
     let place = folder.path().join("new/er/a.png");
