@@ -4,8 +4,11 @@
 use std::{collections::HashSet, path::Path as FilePath};
 
 use super::{
+    Scene,
     error::Path,
+    field::Kind,
     formats::{Located, Parsed, Source},
+    part::{Fields as _, Structure as _},
     problem::{MAX_PROBLEMS, Problem},
     reading::Missing,
 };
@@ -118,6 +121,32 @@ impl<'a> Reader<'a> {
         self.reported.insert(path);
     }
 
+    /// The end of the message about a key that exactly one other part has. Variants do not count: they repeat the keys of others.
+    fn home(&self, written: &str) -> Option<String> {
+        let mut homes = Vec::new();
+        if json::canonical(written, &Scene::keys()).is_some() {
+            homes.push("; it is a key of the scene itself".to_owned());
+        }
+        if json::canonical(written, &self.material_keys).is_some() {
+            homes.push("; it is a material parameter: write it in \"material\" of an object".to_owned());
+        }
+        Scene::default().each(&mut |field, held, _| {
+            let mut keys = Vec::new();
+            match field.key {
+                key if key == Scene::lights.key => keys.clone_from(&self.light_keys),
+                key if key == Scene::objects.key => keys.clone_from(&self.object_keys),
+                _ => held.parts().iter().for_each(|part| part.each(&mut |field, _, _| keys.push(field.key))),
+            }
+            let Some(key) = json::canonical(written, &keys) else { return };
+            let part = field.key;
+            homes.push(match field.kind {
+                Kind::Parts => format!("; it is a key of the entries of \"{part}\""),
+                _ => format!("; it is a key of \"{part}\": {part}.{key}"),
+            });
+        });
+        homes.pop().filter(|_| homes.is_empty())
+    }
+
     /// Records a missing part with a default.
     fn missing(&mut self, path: Path, at: usize, default: String) {
         self.missing.push(Missing { path, default, place: Some(self.lines.place(at)) });
@@ -144,7 +173,7 @@ impl json::Reader for Reader<'_> {
         format!("{spelt}; first given at {at}")
     }
 
-    /// The nearest known key, or the object to which the key belongs.
+    /// The nearest known key, or the part to which the key belongs.
     fn hint(&mut self, written: &str, known: &[&'static str], what: &str) -> String {
         self.suggestions += 1;
         if self.suggestions > MAX_SUGGESTIONS {
@@ -154,6 +183,11 @@ impl json::Reader for Reader<'_> {
             return "; it is a material parameter: write it in \"material\"".to_owned();
         }
         let others = keys::OTHER_WORDS.iter().copied().filter(|(_, key)| known.contains(key));
+        if !others.clone().any(|(word, _)| word == written)
+            && let Some(home) = self.home(written)
+        {
+            return home;
+        }
         let parameters = self.registry.material_parameters();
         let labels = parameters.flat_map(|p| [(p.label, p.name), (p.symbol, p.name)]);
         let labels = labels.filter(|_| what == "a material");

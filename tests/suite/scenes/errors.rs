@@ -436,6 +436,15 @@ fn unknown_keys_name_the_nearest_known_one_or_where_they_belong() {
         ("/objects/0/material/kd", "did you mean \"k_d\"?"),
         ("/objects/0/material/basecolor", "did you mean \"base_colour\"?"),
         ("/display/gamma", "did you mean \"encoding\"?"),
+        ("/exposure", "exposure is not a key of a scene; it is a key of \"display\": display.exposure"),
+        ("/display/field_of_view", "it is a key of \"observer\": observer.field_of_view"),
+        ("/observer/background_color", "it is a key of \"display\": display.background_colour"),
+        ("/cone_angle", "cone_angle is not a key of a scene; it is a key of the entries of \"lights\""),
+        ("/display/variants", "display.variants is not a key of display; it is a key of the scene itself"),
+        (
+            "/k_d",
+            "k_d is not a key of a scene; it is a material parameter: write it in \"material\" of an object",
+        ),
         (
             "/scene_size/zzzzzz",
             "zzzzzz is not a key of scene_size; scene_size has the keys height, width and depth",
@@ -445,6 +454,9 @@ fn unknown_keys_name_the_nearest_known_one_or_where_they_belong() {
         check_wording(&said);
         assert!(said.contains(expected), "{pointer}: {said}");
     }
+    // Lights and objects have one.
+    let several = said(&changed(|scene| put(scene, "/display/position", json!(1))));
+    assert!(several.contains("is not a key of display") && !several.contains("it is a key of"), "{several}");
 }
 
 #[test]
