@@ -96,7 +96,7 @@ fn select(to: &mut List) {
     for by in Alike::ALL {
         let all = command(format!("select.{}", by.id()), by.name(), Action::SelectAlike(by));
         let all = if by == Alike::Kind {
-            all.says("Select all objects, or all lights").keys("Ctrl+A")
+            all.says("Select all objects, all lights, or both").keys("Ctrl+A")
         } else {
             all
         };

@@ -1,6 +1,6 @@
 //! Selections of several lights and objects: one by one, by ranges of the list, and by what they have in common.
 
-use std::collections::HashSet;
+use std::{collections::HashSet, mem};
 
 use super::Session;
 use crate::{
@@ -17,7 +17,7 @@ texts! {
         name
     ) {
         /// Being lights, or being objects.
-        Kind = "all" "All objects, or all lights",
+        Kind = "all" "All objects, all lights, or both",
         /// The type of light or object.
         Type = "same_type" "All of the same type",
         /// The reflection model of objects.
@@ -164,7 +164,10 @@ impl Session {
             Selection::Room | Selection::Observer => Selection::Object(0),
             part => part,
         };
+        let group = self.group();
+        let is_mixed = group.first().map(mem::discriminant) != group.last().map(mem::discriminant);
         let same = |part: &Selection| match (by, like, *part) {
+            (Alike::Kind, ..) if is_mixed => true,
             (Alike::Kind, Selection::Light(_), Selection::Light(_))
             | (Alike::Kind, Selection::Object(_), Selection::Object(_)) => true,
             (Alike::Type, Selection::Light(i), Selection::Light(k)) => {

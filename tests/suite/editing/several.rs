@@ -120,6 +120,14 @@ fn parts_are_selected_by_kind_type_and_model() {
     window.act(Action::Select(L(1)));
     window.act(Action::SelectAlike(Alike::Kind));
     assert_eq!(window.session.group(), [L(0), L(1)]);
+    // Of both kinds, all of both, whichever is the first.
+    for parts in [[L(1), O(3)], [O(3), L(1)]] {
+        window.act(Action::Select(parts[0]));
+        window.act(Action::SelectAlso(parts[1]));
+        window.act(Action::SelectAlike(Alike::Kind));
+        assert_eq!(window.session.group(), [L(0), L(1), O(0), O(1), O(2), O(3), O(4)]);
+        assert_eq!(window.session.selection, parts[0]);
+    }
 }
 
 #[test]
