@@ -1,7 +1,5 @@
 //! Opens the window: the program around the panels and the picture.
 
-use std::panic::{self, AssertUnwindSafe};
-
 use bevy::app::{App, PluginGroup as _, Plugins};
 
 use super::{
@@ -13,7 +11,11 @@ use super::{
     recovery::Recovery,
     requirements::{RequirementsPlugin, need_display, need_driver},
 };
-use crate::{caught::lock, failure::Failure, platform};
+use crate::{
+    caught::{catch_silently, lock, message},
+    failure::Failure,
+    platform,
+};
 
 /// Opens the window and returns once it is closed. `extend` adds panels, systems and plugins to the app.
 ///
@@ -56,21 +58,11 @@ fn add_with_display<M>(app: &mut App, plugins: impl Plugins<M>) -> Result<(), Fa
         platform::report_panics();
         return Ok(());
     }
-    let hook = panic::take_hook();
-    panic::set_hook(Box::new(|_| {}));
-    let added = panic::catch_unwind(AssertUnwindSafe(|| {
-        app.add_plugins(plugins);
-    }));
-    panic::set_hook(hook);
+    let added = catch_silently(|| _ = app.add_plugins(plugins));
     added.map_err(|payload| {
-        let why = payload
-            .downcast_ref::<String>()
-            .map(String::as_str)
-            .or_else(|| payload.downcast_ref::<&str>().copied())
-            .and_then(|text| text.lines().next())
-            // The windowing library reports its own source files, not the cause.
-            .filter(|text| !text.contains("event loop"))
-            .map_or_else(|| "it does not answer".to_owned(), str::to_owned);
+        let first = message(&*payload).lines().next();
+        // The windowing library reports its own source files, not the cause.
+        let why = first.filter(|text| !text.contains("event loop")).unwrap_or("it does not answer");
         let named = ["DISPLAY", "WAYLAND_DISPLAY"]
             .into_iter()
             .filter_map(|name| {
