@@ -52,7 +52,6 @@ pub struct SceneEntities {
     pub(super) agreed: Option<Tick>,
     /// The index of each object.
     places: EntityHashMap<usize>,
-    /// Number of changes of the list of objects: other entities represent them.
     pub(super) lists: u64,
     pub(super) visits: u64,
 }
@@ -75,6 +74,12 @@ impl SceneEntities {
     #[must_use]
     pub fn visits(&self) -> u64 {
         self.visits
+    }
+
+    /// The number of changes of the list of objects since the start: after each, other entities represent them.
+    #[must_use]
+    pub fn lists(&self) -> u64 {
+        self.lists
     }
 
     /// Messages about changes of entities that were refused in this frame. Each is reported once, until a

@@ -72,6 +72,7 @@ with_defaults! {
         reached: u64 = WINDOW_BUDGET,
         /// With their triangles if these did not fit, and otherwise with 0.
         omitted: Vec<(Entity, u64)> = Vec::new(),
+        omissions: u64 = 0,
         /// True if there is more room than when they were refused.
         room: bool = false,
         /// True if meshes were added since unused ones were last dropped.
@@ -159,6 +160,12 @@ impl ShapeMeshes {
         self.omitted.iter().map(|(object, _)| *object)
     }
 
+    /// The number of changes of these objects since the start.
+    #[must_use]
+    pub fn omissions(&self) -> u64 {
+        self.omissions
+    }
+
     /// The number of omitted objects.
     pub(super) fn omitted(&self) -> usize {
         self.omitted.len()
@@ -224,6 +231,7 @@ impl ShapeMeshes {
         let mut meshes = world.resource_mut::<Self>();
         meshes.refused.clear();
         meshes.omitted.clear();
+        meshes.omissions += 1;
         meshes.hidden = false;
     }
 
@@ -326,6 +334,7 @@ impl ShapeMeshes {
     /// Omits an object without a mesh, or with so many triangles that they do not fit.
     pub(super) fn leave_out(&mut self, object: Entity, triangles: u64) {
         self.omitted.push((object, triangles));
+        self.omissions += 1;
     }
 
     /// The omitted objects, to be tried again: all if the scene has changed. If memory was freed, those whose triangles fit,
@@ -356,6 +365,7 @@ impl ShapeMeshes {
         let (chosen, others): (Vec<_>, _) =
             std::mem::take(&mut self.omitted).into_iter().partition(|(_, own)| is_chosen(*own));
         self.omitted = others;
+        self.omissions += u64::from(!chosen.is_empty());
         chosen.into_iter().map(|(object, _)| object).collect()
     }
 
@@ -588,9 +598,14 @@ mod tests {
         for (object, triangles) in objects.iter().zip([60, 0, 30, 60, 300]) {
             meshes.leave_out(*object, triangles);
         }
+        let known = meshes.omissions();
+        assert_eq!((meshes.try_again(false), meshes.omissions()), (vec![], known), "there is no more room");
         let mut next = || {
+            let known = meshes.omissions();
             meshes.make_room();
-            meshes.try_again(false)
+            let next = meshes.try_again(false);
+            assert_eq!(meshes.omissions() > known, !next.is_empty());
+            next
         };
         assert_eq!(next(), [objects[0], objects[2]]);
         assert_eq!(next(), [objects[3]]);

@@ -33,7 +33,7 @@ pub struct Stage {
     pub(super) illumination: LightBuffers,
     /// Copies by object.
     pub(super) copies: EntityHashMap<Entity>,
-    /// The [list](SceneEntities::lists) of the copied objects.
+    /// The [list](SceneEntities::lists()) of the copied objects.
     list: Option<u64>,
 }
 

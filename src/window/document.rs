@@ -261,15 +261,17 @@ fn publish(
 fn take_over(
     meshes: Res<ShapeMeshes>,
     mut reported: Local<Option<String>>,
+    mut known: Local<(u64, u64, bool)>,
     mut scene: ResMut<CurrentScene>,
     mut entities: ResMut<SceneEntities>,
     registry: Res<Registry>,
     mut session: ResMut<Session>,
 ) {
     let problem = meshes.problem();
-    let left_out = meshes.left_out().filter(|_| problem.is_some());
-    let left_out: BTreeSet<_> = left_out.filter_map(|object| entities.place_of(object)).collect();
-    if !session.facts.not_drawn.iter().eq(&left_out) {
+    let now = (meshes.omissions(), entities.lists(), problem.is_some());
+    if std::mem::replace(&mut *known, now) != now {
+        let left_out = meshes.left_out().filter(|_| problem.is_some());
+        let left_out: BTreeSet<_> = left_out.filter_map(|object| entities.place_of(object)).collect();
         session.bypass_change_detection().facts.not_drawn = left_out.into_iter().collect();
     }
     if *reported != problem {
