@@ -3,7 +3,7 @@
 //! The scene itself is view A; its variants are the views B, C and D. A variant inherits everything and overrides what
 //! it gives.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, iter};
 
 pub use super::views::{LETTERS, MAX_VARIANTS};
 use super::{
@@ -156,26 +156,22 @@ impl Scene {
     /// for view 0, the scene itself.
     #[must_use]
     pub fn overrides(&self, view: usize) -> Option<Variant> {
-        let mut variant = self.variants.get(view.checked_sub(1)?)?.clone();
+        let mut chain = self.chain(view);
+        let own = chain.next()?.clone();
+        Some(Variant { based_on: None, ..chain.fold(own, Variant::over) })
+    }
+
+    /// The variant of a view and those on which it is based, each before its base; none for view 0, the scene itself.
+    fn chain(&self, view: usize) -> impl Iterator<Item = &Variant> {
+        let own = view.checked_sub(1).and_then(|i| self.variants.get(i));
+        let all = iter::successors(own, move |variant| self.variant(variant.based_on.as_deref()?));
         // Each variant in a cycle is visited at most once.
-        for _ in 0..self.variants.len() {
-            let Some(base) = variant.based_on.take().and_then(|name| self.variant(&name)) else { break };
-            variant = variant.over(base);
-        }
-        Some(Variant { based_on: None, ..variant })
+        all.take(self.variants.len())
     }
 
     /// The reflection model that a view shows instead of those of the objects, if it does.
     fn model_over(&self, view: usize) -> Option<&str> {
-        let mut variant = self.variants.get(view.checked_sub(1)?)?;
-        // Each variant in a cycle is visited at most once.
-        for _ in 0..self.variants.len() {
-            if let Some(model) = &variant.reflection_model {
-                return Some(model);
-            }
-            variant = self.variant(variant.based_on.as_deref()?)?;
-        }
-        None
+        self.chain(view).find_map(|variant| variant.reflection_model.as_deref())
     }
 
     /// The ids of the reflection models of the objects that a view shows, each once.
