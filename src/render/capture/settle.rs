@@ -1,10 +1,10 @@
 //! Complete pictures: draws frames until nothing is missing, in batches if the shapes do not all fit into
 //! memory at once.
 
-use std::{any::TypeId, time::Duration};
+use std::{any::TypeId, cell::Cell, time::Duration};
 
 use bevy::{
-    camera::{Camera3dDepthLoadOp, visibility::VisibleEntities},
+    camera::{Camera3dDepthLoadOp, Viewport, visibility::VisibleEntities},
     pbr::{PreparedMaterial, SpecializedMaterialPipelineCache},
     prelude::*,
     render::{
@@ -44,6 +44,10 @@ use crate::{
 
 /// The number of samples of a frame that cannot take all.
 const PART: u32 = 8;
+/// The share of width and height that is drawn while shaders are tried: one in so many.
+const SMALLER: u32 = 16;
+/// The most such frames. Where little is in sight, it may be outside of them.
+const MOST_SMALL: u32 = 64;
 
 impl GpuRenderer {
     /// Draws frames until nothing is waiting to be loaded or compiled, and all objects are in the picture: if
@@ -101,6 +105,9 @@ impl GpuRenderer {
         }
         self.start()?;
         self.set_parts(by_parts);
+        if !by_parts {
+            self.try_shaders()?;
+        }
         self.draw_frames()?;
         if let Some(why) = self.refused() {
             if by_parts && noise.is_some() {
@@ -278,6 +285,29 @@ impl GpuRenderer {
             self.run_until(|this, ready| ready > 0 || this.prepared().is_some() && this.is_trying());
         self.switch_camera(true);
         started
+    }
+
+    /// Draws small frames while shaders are tried: trials need a pipeline that draws, so at the start objects have built-in
+    /// shaders, whose picture nobody sees. Frames with a part of the samples are cheap as they are.
+    fn try_shaders(&mut self) -> Result<(), GpuError> {
+        // Views switch their cameras themselves.
+        if self.on_demand || !self.is_trying() {
+            return Ok(());
+        }
+        let physical_size = UVec2::new(self.width.div_ceil(SMALLER), self.height.div_ceil(SMALLER));
+        self.set_viewport(Some(Viewport { physical_size, ..default() }));
+        let frames = Cell::new(0);
+        let tried = self.run_until(|_, ready| ready > 0 || frames.replace(frames.get() + 1) == MOST_SMALL);
+        self.set_viewport(None);
+        tried
+    }
+
+    fn set_viewport(&mut self, viewport: Option<Viewport>) {
+        self.edit_camera(|camera| {
+            if let Some(mut camera) = camera.get_mut::<Camera>() {
+                camera.viewport = viewport;
+            }
+        });
     }
 
     fn switch_camera(&mut self, on: bool) {

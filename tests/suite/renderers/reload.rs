@@ -7,7 +7,7 @@ use std::{
     time::Duration,
 };
 
-use bevy::prelude::Mut;
+use bevy::prelude::{Camera, Last, Mut, Query, ResMut, Resource, With};
 
 use lights_camera_models::{
     library::{
@@ -19,6 +19,7 @@ use lights_camera_models::{
     parameter::Value,
     registry::Registry,
     render::{
+        camera::PictureCamera,
         capture::gpu::{GpuRenderer, Output},
         live::LiveShaders,
     },
@@ -538,6 +539,30 @@ fn a_file_that_is_broken_at_the_start_is_replaced_by_the_built_in_copy() {
     let mut lab = Lab::with_files(scene, &[("reflection/phong.wgsl", &text)]);
     assert!(lab.settled() != expected);
     assert_eq!(lab.troubles(), []);
+}
+
+#[test]
+fn a_picture_with_edited_shaders_is_drawn_once() {
+    /// The number of whole frames.
+    #[derive(Default, Resource)]
+    struct Whole(usize);
+    fn count(cameras: Query<&Camera, With<PictureCamera>>, mut whole: ResMut<Whole>) {
+        whole.0 += cameras.iter().filter(|camera| camera.is_active && camera.viewport.is_none()).count();
+    }
+    let text = original("reflection/phong.wgsl").replace("m.k_d", "0.3 * m.k_d");
+    let mut renderer =
+        GpuRenderer::new(SIZE, SIZE, 1, Output::Display).expect("software Vulkan is installed");
+    renderer.app().init_resource::<Whole>().add_systems(Last, count);
+    let world = renderer.app().world_mut();
+    world.resource_mut::<Registry>().sources_mut().edit("reflection/phong.wgsl", text.as_str());
+    world.resource_mut::<LiveShaders>().start();
+    renderer.set_scene(phong_scene("phong"));
+    renderer.settle().expect("the GPU draws");
+    assert_eq!(renderer.app().world().resource::<Whole>().0, 1);
+    let picture = renderer.read_rgb8().expect("the picture can be read");
+    let mut lab = Lab::with_files(phong_scene("phong"), &[("reflection/phong.wgsl", &text)]);
+    assert!(lab.settled() == picture, "it is that with the edited shader, and whole");
+    assert!(Lab::new(phong_scene("phong")).frame() != picture);
 }
 
 #[test]
