@@ -58,7 +58,7 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32, band: f32) -> Arrang
         false => 1.0 + arranging.rows[0] as f32,
     };
     // The rest of the bar goes where it would leave nothing to the picture, or little above a panel.
-    let share = if session.view.narrow { 0.25 } else { 0.5 };
+    let share = if session.view.bottom_open || session.view.narrow { 0.25 } else { 0.5 };
     let rows = rows.min((share * whole.height() / ROW).floor().max(0.0));
     let bar = Rect::from_min_max(pos2(whole.left(), whole.bottom() - rows * ROW), whole.max);
     let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top() - footer));
