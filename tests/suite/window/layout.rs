@@ -137,6 +137,33 @@ fn a_drag_of_something_else_gives_the_strip_no_height() {
 }
 
 #[test]
+fn headers_name_their_models_whole_however_large_everything_is() {
+    for (scale, layout) in
+        [100, 150, 200].into_iter().flat_map(|s| [(s, Layout::SideBySide), (s, Layout::Wipe)])
+    {
+        let mut bench = bench(scale);
+        two_views(&mut bench);
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        bench.apply(Action::Compare(CompareCommand::Activate(1)));
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "blinn_phong")));
+        bench.settle();
+        let picture = bench.area.rect;
+        let headers: Vec<_> = (bench.shapes().into_iter())
+            .filter_map(|shape| match shape {
+                Shape::Text(text) if picture.x_range().contains(text.pos.x) => Some(text),
+                _ => None,
+            })
+            .filter(|text| (picture.top() - 40.0..picture.top()).contains(&text.pos.y))
+            .map(|text| (text.galley.text().replace('\n', ""), text.galley.elided))
+            .collect();
+        for name in ["Phong", "Blinn–Phong"] {
+            let is_whole = headers.contains(&(name.to_owned(), false));
+            assert!(is_whole, "{name} at {scale} %, {layout:?}: {headers:?}");
+        }
+    }
+}
+
+#[test]
 fn an_override_is_said_at_the_top_however_large_everything_is() {
     for scale in [100, 125, 150, 175] {
         let mut bench = bench(scale);
