@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use bevy_egui::egui::Layout as Direction;
+use bevy_egui::egui::{Layout as Direction, epaint::text::PlacedRow};
 
 mod bar;
 mod place;
@@ -229,23 +229,32 @@ fn title(ui: &mut Ui, (view, header): (usize, Rect), (said, at): (&[Vec<Part>], 
     }
 }
 
-/// What a header says at least, where that does not fit: broken within names or smaller, and only then cut.
+/// What a header says at least, where that does not fit: broken after a dash or smaller, and only then cut.
 fn cut_title(ui: &Ui, text: &str, (size, ink): (f32, Color32), (room, rows): (f32, usize)) -> Arc<Galley> {
     let small = size * theme::SMALL / TextStyle::Body.resolve(ui.style()).size;
-    let broken = text.replace('–', "–\n");
-    let set = |(text, size): (&str, f32)| match rows {
+    let set = |(text, size, room): (&str, f32, f32)| match rows {
         1 => theme::elided(ui, text, FontId::proportional(size), ink, room),
         _ => theme::lines(ui, text, FontId::proportional(size), ink, (room, rows)),
     };
-    let broken = if rows == 1 { text } else { broken.as_str() };
-    let ways = [(text, size), (broken, size), (broken, small)];
-    // A row that is broken within a word is no better than one that is cut.
-    let is_whole = |galley: &Arc<Galley>| {
-        let words = galley.text().split_whitespace();
-        !galley.elided && (rows == 1 || words.count() >= galley.rows.len())
+    let last = (text, small, room);
+    // A row ends after the dash if there is no room for the letter behind it.
+    let tight = |size: f32| {
+        let (head, tail) = text.split_once('–').filter(|_| rows > 1)?;
+        let row = format!("{head}–{}", tail.chars().next()?);
+        let width = theme::width_in(ui, &row, &FontId::proportional(size)) - 0.5;
+        (width <= room).then_some((text, size, width))
     };
-    let whole = ways.into_iter().map(set).find(is_whole);
-    whole.unwrap_or_else(|| set((broken, small)))
+    let broken = text.replace('–', "–\n");
+    let apart = [size, small].map(|size| (broken.as_str(), size, room));
+    let apart = apart.into_iter().filter(|_| rows > 1);
+    let ends_well = |row: &PlacedRow| row.glyphs.last().is_some_and(|glyph| " –".contains(glyph.chr));
+    let is_whole = |galley: &Arc<Galley>| {
+        let before_last = galley.rows.split_last().map_or(&[][..], |(_, before)| before);
+        !galley.elided && before_last.iter().all(ends_well)
+    };
+    let ways = [(text, size, room)].into_iter().chain([tight(size), tight(small)].into_iter().flatten());
+    let whole = ways.chain(apart).chain([last]).map(set).find(is_whole);
+    whole.unwrap_or_else(|| set(last))
 }
 
 /// The rank up to which the parts of every header fit, so that all headers say the same things; each keeps its first part.
