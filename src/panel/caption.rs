@@ -189,6 +189,11 @@ impl Lines {
         (Self { runs, size: vec2(most, at.y + height), cut: false }, rows)
     }
 
+    /// True if a part is cut within, since it is longer than a line.
+    pub(super) fn is_elided(&self) -> bool {
+        self.runs.iter().any(|(_, galley)| galley.elided)
+    }
+
     /// The lines without the dots at their ends: on a slide, a dot that nothing follows looks like a mistake.
     pub(super) fn closed(mut self) -> Self {
         self.runs.retain(|(_, galley)| galley.text() != " ·");

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use bevy_egui::egui::Layout as Direction;
+use bevy_egui::egui::{Layout as Direction, epaint::text::PlacedRow};
 
 mod bar;
 mod place;
@@ -14,7 +14,7 @@ mod single;
 mod wipe;
 
 use bar::{NARROW, ROW, bar};
-use place::{Arranging, Frame, HEADER};
+use place::{Arranging, Frame, HEADER, NARROW_HEADER, TWO_LINES};
 
 pub use place::Arrangement;
 
@@ -58,14 +58,23 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32, band: f32) -> Arrang
         false => 1.0 + arranging.rows[0] as f32,
     };
     // The rest of the bar goes where it would leave nothing to the picture, or little above a panel.
-    let share = if session.view.narrow { 0.25 } else { 0.5 };
+    let share = if session.view.bottom_open || session.view.narrow { 0.25 } else { 0.5 };
     let rows = rows.min((share * whole.height() / ROW).floor().max(0.0));
     let bar = Rect::from_min_max(pos2(whole.left(), whole.bottom() - rows * ROW), whole.max);
     let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top() - footer));
     // Readable from the back row.
     let high = if session.view.presenting { (0.055 * whole.height()).max(HEADER) } else { HEADER };
-    let mut all = Arrangement { bar: (rows > 0.0).then_some(bar), ..Arrangement::new(picture) };
-    (arranging.arrange)(&mut all, &Frame { session, picture, views: comparison.views(variants), high, band });
+    let arranged = |high: f32| {
+        let mut all = Arrangement { bar: (rows > 0.0).then_some(bar), ..Arrangement::new(picture) };
+        let views = comparison.views(variants);
+        (arranging.arrange)(&mut all, &Frame { session, picture, views, high, band });
+        all
+    };
+    let mut all = arranged(high);
+    let is_narrow = all.headers.len() > 1 && all.headers.iter().any(|(_, at)| at.width() < NARROW_HEADER);
+    if is_narrow && !session.view.presenting {
+        all = arranged(TWO_LINES);
+    }
     let first = all.cells.iter().map(|cell| cell.rect);
     all.picture = first.reduce(Rect::union).unwrap_or(picture);
     all
@@ -143,7 +152,7 @@ fn header(
             switches(ui, view, context);
         }
         ui.with_layout(Direction::left_to_right(Align::Center), |ui| {
-            title(ui, (view, rect), said, &text, session);
+            title(ui, (view, rect), said, session);
         });
     });
     theme::tip(click, 320.0, |ui| {
@@ -172,13 +181,7 @@ fn switches(ui: &mut Ui, view: usize, context: &mut PanelContext<'_>) {
 }
 
 /// The letter of a view, and how it differs from A.
-fn title(
-    ui: &mut Ui,
-    (view, header): (usize, Rect),
-    (said, at): (&[Vec<Part>], usize),
-    text: &str,
-    session: &Session,
-) {
+fn title(ui: &mut Ui, (view, header): (usize, Rect), (said, at): (&[Vec<Part>], usize), session: &Session) {
     let palette = Palette::here(ui);
     let comparison = &session.document.comparison;
     // When views alternate, the visible one stands out.
@@ -186,7 +189,9 @@ fn title(
     let hidden = in_turn && view != if session.view.blinking { comparison.with } else { 0 };
     let lit = if in_turn { !hidden } else { session.active() == view };
     let ink = if hidden { palette.weak } else { palette.text };
-    let scale = header.height() / HEADER;
+    let presenting = session.view.presenting;
+    let scale = if presenting { header.height() / HEADER } else { 1.0 };
+    let rows = if scale == 1.0 && header.height() > HEADER { 2 } else { 1 };
     let size = scale * TextStyle::Body.resolve(ui.style()).size;
     let centre = pos2(ui.max_rect().left() + 10.0 * scale, header.center().y);
     let badge = Rect::from_center_size(centre, vec2(20.0, 20.0) * scale);
@@ -201,26 +206,55 @@ fn title(
     let dots = theme::elided(ui, ", …", FontId::proportional(size), ink, room);
     let lines = |parts: Vec<Part>, all: &[Part], dotted: bool| {
         let room = room - if dotted && parts.len() < all.len() { dots.size().x } else { 0.0 };
-        let lines = Lines::within(ui, parts, size, ink, room, 1);
-        (lines.size.y < 1.9 * size && lines.size.x <= room).then_some(lines)
+        let lines = Lines::within(ui, parts, size, ink, room, rows);
+        let is_low = lines.size.y < (0.55 + 1.35 * rows as f32) * size;
+        (is_low && lines.size.x <= room && !lines.is_elided()).then_some(lines)
     };
     let rank = |dotted: bool| rank_that_fits(said, |parts, all| lines(parts, all, dotted).is_some());
     // A fact beside the first one is worth more than dots, for which there is no room then.
-    let (ranks, dots_too) = ([true, false].map(rank), !session.view.presenting);
+    let (ranks, dots_too) = ([true, false].map(rank), !presenting && rows == 1);
     let dotted = dots_too && (ranks[0] == ranks[1] || said.iter().any(|all| up_to(all, ranks[0]).len() > 1));
     let parts = up_to(&said[at], ranks[usize::from(!dotted)]);
     let cut = dotted && parts.len() < said[at].len();
-    if let Some(lines) = lines(parts, &said[at], dotted) {
+    if let Some(lines) = lines(parts.clone(), &said[at], dotted) {
         let place = Align2::LEFT_CENTER.anchor_size(left, lines.size);
         if cut {
             ui.painter().galley(place.right_top(), dots, ink);
         }
         lines.paint(ui, place.min, ink);
     } else {
-        let galley = theme::elided(ui, text, FontId::proportional(size), ink, room);
+        let galley = cut_title(ui, &line(&parts), (size, ink), (room, rows));
         let at = Align2::LEFT_CENTER.anchor_size(left, galley.size());
         ui.painter().galley(at.min, galley, ink);
     }
+}
+
+/// What a header says at least, where that does not fit: broken after a dash or smaller, and only then cut.
+fn cut_title(ui: &Ui, text: &str, (size, ink): (f32, Color32), (room, rows): (f32, usize)) -> Arc<Galley> {
+    let small = size * theme::SMALL / TextStyle::Body.resolve(ui.style()).size;
+    let set = |(text, size, room): (&str, f32, f32)| match rows {
+        1 => theme::elided(ui, text, FontId::proportional(size), ink, room),
+        _ => theme::lines(ui, text, FontId::proportional(size), ink, (room, rows)),
+    };
+    let last = (text, small, room);
+    // A row ends after the dash if there is no room for the letter behind it.
+    let tight = |size: f32| {
+        let (head, tail) = text.split_once('–').filter(|_| rows > 1)?;
+        let row = format!("{head}–{}", tail.chars().next()?);
+        let width = theme::width_in(ui, &row, &FontId::proportional(size)) - 0.5;
+        (width <= room).then_some((text, size, width))
+    };
+    let broken = text.replace('–', "–\n");
+    let apart = [size, small].map(|size| (broken.as_str(), size, room));
+    let apart = apart.into_iter().filter(|_| rows > 1);
+    let ends_well = |row: &PlacedRow| row.glyphs.last().is_some_and(|glyph| " –".contains(glyph.chr));
+    let is_whole = |galley: &Arc<Galley>| {
+        let before_last = galley.rows.split_last().map_or(&[][..], |(_, before)| before);
+        !galley.elided && before_last.iter().all(ends_well)
+    };
+    let ways = [(text, size, room)].into_iter().chain([tight(size), tight(small)].into_iter().flatten());
+    let whole = ways.chain(apart).chain([last]).map(set).find(is_whole);
+    whole.unwrap_or_else(|| set(last))
 }
 
 /// The rank up to which the parts of every header fit, so that all headers say the same things; each keeps its first part.

@@ -184,7 +184,7 @@ fn around(ui: &mut Ui, panels: &mut Panels, context: &mut PanelContext<'_>) {
     };
     for place in order {
         if place == Place::Bottom && session.view.bottom_open {
-            sides::bottom(ui, panels, whole, &mut sizes.2, context);
+            sides::bottom(ui, panels, whole, (&mut sizes.2, widths.is_height_given), context);
         } else if place == Place::Left && session.view.left_open {
             let edge = egui::Panel::left(Id::new((left, zoom)))
                 .frame(theme::panel_frame(&palette, vec2(0.0, 4.0)))

@@ -36,8 +36,8 @@ const AXES_CORNER: f32 = 84.0;
 const NARROWEST: f32 = 140.0;
 /// Width of a wide legend, in points.
 const WIDE_PLATE: f32 = 330.0;
-/// Maximum fraction of a picture that the plate about an error covers, and of its height down to the end of the plate
-/// where the editor shows the error.
+/// Maximum fraction of a picture that badges cover, that the plate about an error covers, and of its height down to the
+/// end of the plate where the editor shows the error.
 const PLATE: f32 = 0.25;
 
 /// Maximum size of letters over one of several pictures of a presentation, as a fraction of its height.
@@ -136,7 +136,8 @@ impl<'a> Overlaid<'_, 'a> {
             self.channel(ui, &mut placer, view);
             let signs = badges_of(view, whole, ui, session, registry);
             let signs = signs.into_iter().chain(of_disk(session)).collect();
-            self.badges(ui, &mut placer, signs);
+            let most = if stage.is_some() { f32::INFINITY } else { PLATE * rect.area() };
+            self.badges(ui, &mut placer, signs, most);
             self.sizes = Needed::of(&placer.sizes, placer.room.width());
             hint(ui, rect, session);
         });
@@ -250,7 +251,7 @@ impl<'a> Overlaid<'_, 'a> {
             self.channel(ui, &mut placer, cell.view);
             let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
             signs.extend(disk.take());
-            self.badges(ui, &mut placer, signs);
+            self.badges(ui, &mut placer, signs, f32::INFINITY);
             self.sizes = self.sizes.or(Needed::of(&placer.sizes, cell.rect.width()));
             shared = Some(placer);
         }
@@ -265,6 +266,7 @@ impl<'a> Overlaid<'_, 'a> {
         let mut next = None;
         let mut disk = of_disk(session);
         let mut missing = no_map(session);
+        let sharing = if apart { 1.0 } else { cells.len() as f32 };
         // The badges of a difference are those of both views.
         for cell in cells.iter().filter(|cell| cell.part.is_positive() || comparison.layout.is_map()) {
             let free = stale.filter(|(view, _)| *view == cell.view || !apart);
@@ -293,7 +295,7 @@ impl<'a> Overlaid<'_, 'a> {
             let beside = cell.part.is_positive() && cell.part.width() >= NARROWEST * scale;
             let room = if beside { cell.part } else { cell.rect };
             let mut placer = Placer::column(room, from.0, placer.below());
-            self.badges(ui, &mut placer, signs);
+            self.badges(ui, &mut placer, signs, PLATE * cell.rect.area() / sharing);
             next = Some(placer.below());
         }
     }
@@ -351,16 +353,18 @@ impl<'a> Overlaid<'_, 'a> {
         place
     }
 
-    /// Paints badges, one after the other.
-    fn badges(&mut self, ui: &mut Ui, placer: &mut Placer, all: Vec<Sign>) {
+    /// Paints badges, one after the other; in fewer words or gathered where they would cover more than `most` square
+    /// points.
+    fn badges(&mut self, ui: &mut Ui, placer: &mut Placer, all: Vec<Sign>, most: f32) {
         let palette = Palette::here(ui);
         let scale = theme::scale_here(ui);
         let font = theme::bold(ui);
         let rect = placer.room;
+        let (all, short) = yielding(ui, rect, all, most);
         for (badge, actions) in all {
             let put = |size| placer.place(size);
-            let text = one_line(ui, rect, &badge, &font, 18.0 * scale);
-            let place = plate(ui, rect, put, text, font.clone(), 18.0 * scale);
+            let text = words(ui, rect, &badge, short);
+            let place = plate(ui, rect, put, text, font.clone(), BADGE_SIGN * scale);
             let sense = if actions.is_empty() { Sense::hover() | Sense::FOCUSABLE } else { Sense::click() };
             let response = ui.interact(place, ui.id().with(("badge", &badge.text)), sense);
             let painter = ui.painter_at(rect);
@@ -499,24 +503,79 @@ fn plate_room(ui: &Ui, rect: Rect, left: f32) -> f32 {
     (rect.width() - 16.0 - 16.0 * theme::scale_here(ui) - left).max(64.0)
 }
 
-/// The text of a badge: the longest that takes one line. If none does, the shortest.
-fn one_line<'b>(ui: &Ui, rect: Rect, badge: &'b Badge, font: &FontId, left: f32) -> &'b String {
-    let room = plate_room(ui, rect, left);
+/// Room for the sign of a badge, in points at the usual size of text.
+const BADGE_SIGN: f32 = 18.0;
+
+/// The text of a badge: the longest that takes one line, if it need not be `short`. If none does, the shortest.
+fn words<'b>(ui: &Ui, rect: Rect, badge: &'b Badge, short: bool) -> &'b String {
+    let room = plate_room(ui, rect, BADGE_SIGN * theme::scale_here(ui));
+    let font = theme::bold(ui);
     let mut texts = iter::once(&badge.text).chain(&badge.shorter);
     let shortest = badge.shorter.last().unwrap_or(&badge.text);
-    texts.find(|text| theme::width_in(ui, text, font) <= room).unwrap_or(shortest)
+    texts.find(|text| !short && theme::width_in(ui, text, &font) <= room).unwrap_or(shortest)
+}
+
+/// Badges that cover at most `most` square points, as far as that is possible, and true if they have their shortest words.
+/// If those cover too much, one badge is left, which says under the pointer what all say.
+fn yielding(ui: &Ui, rect: Rect, all: Vec<Sign>, most: f32) -> (Vec<Sign>, bool) {
+    let left = BADGE_SIGN * theme::scale_here(ui);
+    let covered = |short: bool| -> f32 {
+        let area = |(badge, _): &Sign| {
+            let size = lay_out_plate(ui, rect, words(ui, rect, badge, short), theme::bold(ui), left).1;
+            size.x * size.y
+        };
+        all.iter().map(area).sum()
+    };
+    if covered(false) <= most {
+        return (all, false);
+    }
+    if all.len() < 2 || covered(true) <= most {
+        return (all, true);
+    }
+    (vec![gathered(&all)], true)
+}
+
+/// One badge for several, without their actions.
+fn gathered(all: &[Sign]) -> Sign {
+    let badges = || all.iter().map(|(badge, _)| badge);
+    let joined = |texts: Vec<&str>, by: &str| texts.join(by);
+    let letter = badges().find_map(|badge| {
+        let (letter, _) = badge.text.split_once(" · ")?;
+        LETTERS.contains(&letter).then(|| format!("{letter} · "))
+    });
+    let badge = Badge {
+        severity: badges().map(|badge| badge.severity).max().unwrap_or(Severity::Info),
+        text: joined(badges().map(|badge| badge.text.as_str()).collect(), "; "),
+        shorter: vec![format!("{}{}", letter.unwrap_or_default(), plural(all.len(), "note"))],
+        help: joined(
+            badges().map(|badge| badge.help.as_str()).filter(|help| !help.is_empty()).collect(),
+            " ",
+        ),
+    };
+    (badge, Vec::new())
+}
+
+/// The text of a plate in a picture, and the size of the plate.
+fn lay_out_plate(ui: &Ui, rect: Rect, text: &str, font: FontId, left: f32) -> (Arc<Galley>, Vec2) {
+    let room = plate_room(ui, rect, left);
+    let galley = ui.painter().layout(text.to_owned(), font, Palette::here(ui).text, room);
+    let size = galley.size() + 2.0 * plate_padding(ui) + vec2(left, 0.0);
+    (galley, size)
+}
+
+/// Space around the text of a plate.
+fn plate_padding(ui: &Ui) -> Vec2 {
+    vec2(8.0, 4.0) * theme::scale_here(ui)
 }
 
 /// Text on a background that is readable over any picture, where `put` puts a plate of its size. Returns the rectangle.
 fn plate(ui: &Ui, rect: Rect, put: impl FnOnce(Vec2) -> Rect, text: &str, font: FontId, left: f32) -> Rect {
     let palette = Palette::here(ui);
-    let padding = vec2(8.0, 4.0) * theme::scale_here(ui);
-    let room = plate_room(ui, rect, left);
-    let galley = ui.painter().layout(text.to_owned(), font, palette.text, room);
-    let place = put(galley.size() + 2.0 * padding + vec2(left, 0.0));
+    let (galley, size) = lay_out_plate(ui, rect, text, font, left);
+    let place = put(size);
     let painter = ui.painter_at(rect);
     painter.rect_filled(place, 4.0, palette.plate());
-    painter.galley(place.min + padding + vec2(left, 0.0), galley, palette.text);
+    painter.galley(place.min + plate_padding(ui) + vec2(left, 0.0), galley, palette.text);
     place
 }
 
@@ -560,7 +619,7 @@ fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<S
     let badge = Badge {
         severity: if whose.is_empty() { Severity::Info } else { Severity::Warning },
         text: format!("Only the {shown} term{whose} · Show all"),
-        shorter: Vec::new(),
+        shorter: vec![format!("Only the {shown} term"), format!("Only {shown}")],
         help: "The other terms of the equation are hidden. Click to show them all; T goes on to the next."
             .to_owned(),
     };
@@ -582,7 +641,7 @@ fn no_number(view: usize, session: &Session, registry: &Registry) -> Option<Sign
     let badge = Badge {
         severity: Severity::Warning,
         text: format!("Not a number: {}", names.join(", ")),
-        shorter: Vec::new(),
+        shorter: vec!["Not a number".to_owned()],
         help: format!("{} It is drawn black or white. Click to show where.", lines.join(" ")),
     };
     let shown = session.view.channels.get(view).copied().flatten() == Some(DebugChannel::NotANumber);

@@ -2,13 +2,12 @@
 //! buttons chooses it; the list of panels says where each stands, and so which button it is behind.
 
 use super::{
-    compare,
     context::{PanelContext, Panels},
     focus::{self, Region},
     glyphs,
     lesson::point,
     prelude::*,
-    sides::{self, PICTURE, TABS},
+    sides::{self, TABS},
     state::{CODE_TAB, EXPLAIN_TAB, PLOTS_TAB, PanelInfo, SHADER_TAB},
 };
 
@@ -29,7 +28,10 @@ pub(super) fn below(ui: &mut Ui, panels: &mut Panels, whole: Rect, context: &mut
     let frame = theme::panel_frame(&Palette::of(&session.settings), vec2(SIDE, 2.0));
     let strip = egui::Panel::bottom(Id::new(("below the picture", shown.is_some()))).frame(frame);
     let strip = match shown {
-        Some(_) => strip.exact_size(height(ui, whole, context)),
+        Some(_) => {
+            let left = sides::left_below(ui, whole, whole.width(), context);
+            strip.exact_size(left.max(LEAST).floor())
+        }
         None => strip,
     };
     let response = strip.show(ui, |ui| {
@@ -47,20 +49,6 @@ pub(super) fn below(ui: &mut Ui, panels: &mut Panels, whole: Rect, context: &mut
     });
     let region = Region::Panel(shown.unwrap_or(Place::Bottom));
     focus::region(ui.ctx(), region, response.response.rect);
-}
-
-/// The height of everything below the picture, which leaves the picture its part of the window, without the headers and
-/// the bar of compared views.
-fn height(ui: &Ui, whole: Rect, context: &PanelContext<'_>) -> f32 {
-    let mut height = ui.available_height() - PICTURE * whole.height();
-    // The bar has fewer rows in less room.
-    for _ in 0..4 {
-        let room = vec2(whole.width(), (ui.available_height() - height).max(0.0));
-        let room = Rect::from_min_size(whole.min, room);
-        let picture = compare::arrange(context.session(), room, 0.0, 0.0).picture.height().max(0.0);
-        height -= (PICTURE * whole.height() - picture).max(0.0);
-    }
-    height.max(LEAST).floor()
 }
 
 /// The buttons: one for each side, two where the lesson and the scene list share one, and a menu of all other panels.

@@ -1,9 +1,10 @@
 //! The panels beside and below the picture. At a side, guest panels are sections at the bottom, which fold, and scroll
 //! if they are long; the window's own panel takes the remaining space. At the bottom, panels are tabs.
 
-use bevy_egui::egui::{Frame, Margin};
+use bevy_egui::egui::{Frame, Margin, containers::panel::PanelState};
 
 use super::{
+    compare,
     context::{Listed, PanelContext, Panels},
     focus::{self, Region},
     glyphs, keys,
@@ -189,26 +190,38 @@ const MATERIAL_STRIP: f32 = 212.0;
 
 /// Height of the tabs, with the borders of the strip, in points.
 pub(super) const TABS: f32 = 40.0;
-/// Fraction of the height of a window that the strip takes at most, and the one that the picture keeps in a narrow window.
+/// Fraction of the height of a window that the strip takes at most, and the one that the picture keeps unless the user
+/// gives the strip more.
 const STRIP: f32 = 0.6;
-pub(super) const PICTURE: f32 = 0.4;
+const PICTURE: f32 = 0.4;
+/// Minimum height of the strip in any window, in points.
+const LOWEST: f32 = 48.0;
+/// Fraction of the height of a panel that it gets at the cost of the picture: scrolling by so little is not worth it.
+const LITTLE: f32 = 0.1;
 
-/// The strip at the bottom. Tabs appear if there is more than one panel.
+/// The strip at the bottom, with its height, and true if the user has given it that. Tabs appear if there is more than
+/// one panel.
 pub(super) fn bottom(
     ui: &mut Ui,
     panels: &mut Panels,
     whole: Rect,
-    height: &mut f32,
+    (height, is_given): (&mut f32, bool),
     context: &mut PanelContext<'_>,
 ) {
     let session = context.session();
-    let most = STRIP * whole.height();
     let (kind, least, start) = heights(&session.view.bottom_tab, whole);
-    let strip = egui::Panel::bottom(Id::new(("bottom", zoom_percent(ui.ctx()), kind)))
+    let usual = usual_most(ui, whole, least, context);
+    let most = if is_given { STRIP * whole.height() } else { usual };
+    let low = least.min(usual);
+    let first = height.max(low).max(start).min(most);
+    let id = Id::new(("bottom", zoom_percent(ui.ctx()), kind));
+    let before = PanelState::load(ui.ctx(), id).map_or(first, |state| state.size().y).clamp(low, most);
+    let before = before.min(ui.available_height());
+    let strip = egui::Panel::bottom(id)
         .frame(theme::panel_frame(&Palette::of(&session.settings), vec2(12.0, 4.0)))
         .resizable(true)
-        .default_size(height.max(least).max(start).min(most))
-        .size_range(least.min(most)..=most);
+        .default_size(first)
+        .size_range(low..=most);
     let response = strip.show(ui, |ui| {
         let mut all: Vec<_> = panels.at(Place::Bottom, session).collect();
         let shown = all.iter().position(|(info, _)| info.id == session.view.bottom_tab).unwrap_or(0);
@@ -222,16 +235,41 @@ pub(super) fn bottom(
         });
         if let Some((info, panel)) = all.get_mut(shown) {
             // The materials scroll as a whole by themselves.
-            let is_low = most < least && info.id != MATERIALS_TAB;
+            let is_low = low < least && info.id != MATERIALS_TAB;
             let own = if is_low { vec2(0.0, least - TABS) } else { Vec2::ZERO };
             scrolled(ui, info, panel, own, context);
         }
         ui.take_available_height();
     });
     focus::region(ui.ctx(), Region::Panel(Place::Bottom), response.response.rect);
-    if response.response.rect.height() > least + 1.0 {
-        *height = response.response.rect.height();
+    // Only a drag of its edge gives it another height.
+    let shown = response.response.rect.height();
+    if shown > low + 1.0 && (shown - before).abs() > 1.0 {
+        *height = shown;
     }
+}
+
+/// Maximum height of the strip that nobody has given one, whose panel needs at least so much.
+fn usual_most(ui: &Ui, whole: Rect, least: f32, context: &PanelContext<'_>) -> f32 {
+    let before = context.area().rect;
+    let width = if before.is_positive() { before.width() } else { PICTURE * whole.width() };
+    let left = left_below(ui, whole, width, context);
+    let most = if left >= (1.0 - LITTLE) * least { left.max(least) } else { left };
+    most.max(LOWEST).min(STRIP * whole.height())
+}
+
+/// The height that is left below a picture of this width, with the headers and the bar of compared views, if it keeps its
+/// part of the window.
+pub(super) fn left_below(ui: &Ui, whole: Rect, width: f32, context: &PanelContext<'_>) -> f32 {
+    let mut left = ui.available_height() - PICTURE * whole.height();
+    // The bar has fewer rows in less room.
+    for _ in 0..4 {
+        let room = vec2(width, (ui.available_height() - left).max(0.0));
+        let room = Rect::from_min_size(whole.min, room);
+        let picture = compare::arrange(context.session(), room, 0.0, 0.0).picture.height().max(0.0);
+        left -= (PICTURE * whole.height() - picture).max(0.0);
+    }
+    left
 }
 
 /// The kind of a panel in the strip, of which each has a height of its own, its minimum height with the tabs, and the

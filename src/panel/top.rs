@@ -52,19 +52,26 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The bar of a narrow window: all menus in one, the choices, and the scene's name if there is room.
+/// The bar of a narrow window: all menus in one, the choices, and the scene's name if there is room. Where there is none
+/// for both choices, that of shading is in the menu.
 fn in_narrow(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let (session, registry) = (context.session(), context.registry());
     ui.spacing_mut().item_spacing.x = 4.0;
-    one_menu(ui, context);
+    let beside = SHADING + 12.0;
+    let folds = ui.available_width() < SIGN + LEAST + beside;
+    let menu = one_menu(ui, folds, context);
     let from = ui.cursor().left();
-    let width = (ui.available_width() - SHADING - 12.0).clamp(LEAST, chooser::WIDTH);
-    chooser::show(ui, width, context);
+    let width = ui.available_width() - if folds { 0.0 } else { beside };
+    chooser::show(ui, width.clamp(LEAST, chooser::WIDTH), context);
     pointed(ui, "reflection", from);
-    let from = ui.cursor().left();
-    let names: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.name).collect();
-    shading(ui, &names, false, context);
-    pointed(ui, "shading", from);
+    if folds {
+        point::button(ui, "shading", menu);
+    } else {
+        let from = ui.cursor().left();
+        let names: Vec<_> = registry.shading_models().iter().map(|m| m.declaration.name).collect();
+        shading(ui, &names, false, context);
+        pointed(ui, "shading", from);
+    }
     model_override::whose(ui, session, registry);
     if ui.available_width() >= NAMED {
         document(ui, context);
@@ -87,7 +94,9 @@ fn caption(ui: &mut Ui, text: &str) {
 }
 
 /// Width of the list of shading models, in points.
-const SHADING: f32 = 88.0;
+const SHADING: f32 = 100.0;
+/// Width of the button for the menus where it is a sign alone, with the space beside it, in points.
+const SIGN: f32 = 36.0;
 /// Minimum width of the button for the reflection model, in points.
 const LEAST: f32 = 64.0;
 /// Width of a narrow bar from which on the button for the menus has a word beside its sign, in points.
@@ -182,12 +191,16 @@ fn beside<'s>(
     }
 }
 
-/// The menus as one, of which each is an entry.
-fn one_menu(ui: &mut Ui, context: &mut PanelContext<'_>) {
+/// The menus as one, of which each is an entry, after the choice of shading if that `folds` into it. Returns the place of
+/// its button.
+fn one_menu(ui: &mut Ui, folds: bool, context: &mut PanelContext<'_>) -> Rect {
     let (session, registry) = (context.session(), context.registry());
     let words = if ui.available_width() >= WORD { "☰ Menu" } else { "☰" };
     let button = ui.menu_button(words, |ui| {
         let all = command::all(session, registry, has_sides(ui.ctx(), session));
+        if folds {
+            menu::submenu(ui, "Shading", |ui| shading_entries(ui, context));
+        }
         for (_, name) in command::BAR {
             let Some(menu) = all.find(name) else { continue };
             let special = beside(session, registry);
@@ -198,7 +211,20 @@ fn one_menu(ui: &mut Ui, context: &mut PanelContext<'_>) {
     for (_, name) in command::BAR {
         point::menu(ui, name, button.response.rect);
     }
+    let place = button.response.rect;
     menu::bar(ui.ctx(), &[("Menu", button.response)]);
+    place
+}
+
+/// The shading models as entries of a menu.
+fn shading_entries(ui: &mut Ui, context: &mut PanelContext<'_>) {
+    let (session, registry) = (context.session(), context.registry());
+    for d in registry.shading_models().iter().map(|model| model.declaration) {
+        if ui.radio(session.shading_shown() == d.id, d.name).on_hover_text(d.summary).clicked() {
+            context.edit(session.edit_shading_model(d.id));
+            ui.close();
+        }
+    }
 }
 
 fn menus(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -240,7 +266,7 @@ fn shading(ui: &mut Ui, names: &[&str], apart: bool, context: &mut PanelContext<
     let picked = if apart {
         segmented(ui, "Shading", names, chosen, tip)
     } else {
-        let combo = egui::ComboBox::from_id_salt("shading").width(SHADING);
+        let combo = egui::ComboBox::from_id_salt("shading").width(SHADING).truncate();
         menu::list(ui, combo, "Shading", names, chosen, tip).1
     };
     if let Some(i) = picked {

@@ -1,5 +1,5 @@
 //! The widths of the panels beside the picture: if there is little room, panels that the user has not resized give way
-//! to the picture.
+//! to the picture. So does the strip below it.
 
 use bevy_egui::egui::Rangef;
 
@@ -20,6 +20,8 @@ pub(super) struct Width {
 pub(super) struct Widths {
     pub(super) left: Width,
     pub(super) right: Width,
+    /// True if the user has given the strip at the bottom a height, or is dragging.
+    pub(super) is_height_given: bool,
 }
 
 /// A panel beside the picture.
@@ -106,7 +108,9 @@ impl Widths {
         };
         let [left, right] = sides;
         let (left, right) = (width(left, of_left), width(right, of_right));
-        Self { left, right }
+        let height = |settings: &Settings| settings.strip_height(&view.bottom_tab);
+        let is_height_given = dragged || height(own) != height(&Settings::default());
+        Self { left, right, is_height_given }
     }
 
     /// The action that stores the widths and the height of the bottom strip after dragging; `sizes` are those on

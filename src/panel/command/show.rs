@@ -1,6 +1,8 @@
 //! Menus, drawn from the declarations.
 
-use bevy_egui::egui::{Align, Button, Checkbox, Layout, RadioButton, Response, RichText, ScrollArea, Ui};
+use bevy_egui::egui::{
+    Align, Atom, Atoms, Button, Checkbox, Id, Layout, RadioButton, Response, RichText, ScrollArea, Ui, vec2,
+};
 
 use super::{Command, Item, Mark, Menu, all};
 use crate::{
@@ -56,7 +58,7 @@ fn items(ui: &mut Ui, menu: &Menu, special: Special, actions: &mut Vec<Action>) 
         match item {
             Item::Line => _ = ui.separator(),
             Item::Menu(inner) => {
-                let name = inner.shown.as_deref().unwrap_or(inner.name);
+                let name = in_line(ui, menu, inner.shown.as_deref().unwrap_or(inner.name));
                 let right = ui.max_rect().right();
                 menu::submenu(ui, name, |ui| {
                     special(ui, inner, right, actions);
@@ -66,6 +68,17 @@ fn items(ui: &mut Ui, menu: &Menu, special: Special, actions: &mut Vec<Action>) 
             Item::Command(command) => entry(ui, command, menu, actions),
         }
     }
+}
+
+/// The name of an entry without a mark. Beside entries with marks, it begins where their names do.
+fn in_line<'a>(ui: &Ui, menu: &Menu, name: &'a str) -> Atoms<'a> {
+    let is_marked = |item: &Item| matches!(item, Item::Command(command) if command.mark != Mark::None);
+    let mut all = Atoms::new(name);
+    if menu.items.iter().any(is_marked) {
+        let width = ui.spacing().icon_width - ui.spacing().button_padding.x;
+        all.push_left(Atom::custom(Id::new("room of a mark"), vec2(width, 0.0)));
+    }
+    all
 }
 
 /// The name of a command, with characters that the fonts have.
@@ -84,7 +97,7 @@ fn entry(ui: &mut Ui, command: &Command, menu: &Menu, actions: &mut Vec<Action>)
         Mark::None => {
             let keys = RichText::new(keys).color(Palette::here(ui).weak);
             let button = match command.glyph {
-                "" => Button::new(name),
+                "" => Button::new(in_line(ui, menu, &name)),
                 sign => glyphs::entry(ui, sign, &command.name),
             };
             // In a menu of a fixed width there is room for keys.

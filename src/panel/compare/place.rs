@@ -7,6 +7,9 @@ use crate::{
 
 /// Height of a header, in points.
 pub(super) const HEADER: f32 = 28.0;
+/// Width below which the header of one of several views has two lines, and its height then, in points.
+pub(super) const NARROW_HEADER: f32 = 180.0;
+pub(super) const TWO_LINES: f32 = 38.0;
 /// Gap between views, in points.
 pub(super) const GAP: f32 = 2.0;
 

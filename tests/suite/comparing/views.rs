@@ -474,6 +474,42 @@ fn badges_take_one_line_where_there_is_little_room() {
 }
 
 #[test]
+fn badges_cover_at_most_a_quarter_of_a_small_picture() {
+    let clipped = |share: u32| Clipping::new(vec![share; Clipping::GRID[0] * Clipping::GRID[1]]);
+    for (layout, scale) in
+        [Layout::Wipe, Layout::SideBySide].into_iter().flat_map(|l| [100, 125, 150].map(|s| (l, s)))
+    {
+        let here = format!("{layout:?} at {scale} %");
+        let mut bench = bench();
+        bench.size = vec2(640.0, 360.0);
+        bench.apply(Action::View(ViewChange::Scale(scale)));
+        bench.apply(Action::Compare(CompareCommand::Add));
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        bench.apply(Action::Edit(Edit::set(Part::Variant(0), Variant::terms, TermSelection::Diffuse)));
+        bench.session.facts.clipping = [clipped(2), clipped(20), None, None];
+        bench.settle();
+        let mut badges = bench.tree.clone();
+        badges.retain(|s| ["A · ", "B · "].iter().any(|letter| s.label.starts_with(letter)));
+        let all: Vec<_> = badges.iter().map(|s| s.label.as_str()).collect();
+        // Read out, nothing is missing.
+        for words in ["A · Clipped: ", "B · Clipped: ", "B · Only the diffuse term"] {
+            assert!(all.iter().any(|label| label.contains(words)), "{here}: {words} of {all:?}");
+        }
+        let covered: f32 = badges.iter().map(|s| s.rect.area()).sum();
+        let cells = &bench.area.cells;
+        let picture: f32 = match layout {
+            Layout::Wipe => cells[0].rect.area(),
+            _ => cells.iter().map(|cell| cell.rect.area()).sum(),
+        };
+        // In less, the sign and a word take more.
+        if picture > 24_000.0 {
+            assert!(covered <= 0.25 * picture + 1.0, "{here}: {covered} of {picture}");
+        }
+        assert!(badges.len() == 3 || all.iter().any(|label| label.contains("; ")), "{here}: {all:?}");
+    }
+}
+
+#[test]
 fn a_view_differs_only_in_what_differs_now() {
     let mut bench = bench();
     bench.key(Key::B, CTRL);

@@ -3,15 +3,20 @@
 
 use std::collections::BTreeSet;
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, epaint::TextShape, pos2, vec2};
+use bevy_egui::egui::{
+    Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, epaint::TextShape, pos2, vec2,
+};
 use glam::Vec3;
 use lights_camera_models::{
     document::{Edit, Selection},
     panel::{
         keys,
-        state::{Action, Session, Severity, ViewChange},
+        state::{
+            Action, CODE_TAB, CompareCommand, EXPLAIN_TAB, MATERIALS_TAB, MESSAGES_TAB, PLOTS_TAB,
+            SHADER_TAB, Session, Severity, ViewChange,
+        },
     },
-    scene::{Light, Object, Part, Scene},
+    scene::{Light, Object, Part, Scene, comparison::Layout},
 };
 
 use crate::window::panels::Bench;
@@ -41,20 +46,7 @@ fn panels_give_way_to_the_picture_and_the_width_of_a_user_counts() {
         // The edge of the properties is dragged to the left.
         let kept = bench.session.settings.clone();
         let (from, to) = (pos2(picture.right(), 200.0), pos2(picture.right() - 60.0, 200.0));
-        let press = |pos, pressed| Event::PointerButton {
-            pos,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        };
-        bench.frame(vec![Event::PointerMoved(from)]);
-        bench.frame(vec![press(from, true)]);
-        for k in 1..=6 {
-            bench.frame(vec![Event::PointerMoved(from + (to - from) * (k as f32 / 6.0))]);
-        }
-        bench.frame(Vec::new());
-        bench.frame(vec![press(to, false)]);
-        bench.settle();
+        drag(&mut bench, from, to);
         let most = 0.45 * whole;
         let wanted = (whole - to.x).min(most);
         let right = whole - bench.area.rect.right();
@@ -65,6 +57,109 @@ fn panels_give_way_to_the_picture_and_the_width_of_a_user_counts() {
             "{scale} %: the other one is as it was"
         );
         assert_eq!(bench.area.rect.left(), picture.left(), "{scale} %: on screen too");
+    }
+}
+
+/// Two views beside each other.
+fn two_views(bench: &mut Bench) {
+    bench.apply(Action::Compare(CompareCommand::Add));
+    bench.apply(Action::Compare(CompareCommand::Layout(Layout::SideBySide)));
+}
+
+/// Drags from one place to another.
+fn drag(bench: &mut Bench, from: Pos2, to: Pos2) {
+    let press = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    bench.frame(vec![Event::PointerMoved(from)]);
+    bench.frame(vec![press(from, true)]);
+    for k in 1..=6 {
+        bench.frame(vec![Event::PointerMoved(from + (to - from) * (k as f32 / 6.0))]);
+    }
+    bench.frame(Vec::new());
+    bench.frame(vec![press(to, false)]);
+    bench.settle();
+}
+
+#[test]
+fn above_a_strip_that_nobody_has_dragged_the_pictures_keep_their_part_of_the_window() {
+    for (scale, views) in [100, 150, 200].into_iter().flat_map(|scale| [(scale, 1), (scale, 2)]) {
+        let whole = 720.0 / (f32::from(scale) / 100.0);
+        let mut bench = bench(scale);
+        if views > 1 {
+            two_views(&mut bench);
+        }
+        for tab in [PLOTS_TAB, SHADER_TAB, EXPLAIN_TAB, CODE_TAB, MATERIALS_TAB, MESSAGES_TAB] {
+            bench.apply(Action::View(ViewChange::BottomTab(tab.to_owned())));
+            bench.settle();
+            let picture = bench.area.rect;
+            let here = format!("{scale} %, {views} views, {tab}: {picture:?} of {whole}");
+            assert!(picture.height() >= 0.34 * whole, "{here}");
+            assert!(picture.bottom() <= whole - 60.0, "{here}: nothing is left to the strip");
+        }
+    }
+}
+
+#[test]
+fn a_height_that_a_user_gave_the_strip_stays() {
+    let mut bench = bench(200);
+    bench.apply(Action::View(ViewChange::BottomTab(PLOTS_TAB.to_owned())));
+    let usual = bench.session.settings.bottom_height;
+    let edge = bench.area.rect.bottom();
+    assert!(edge < 240.0, "{edge}");
+    drag(&mut bench, pos2(320.0, edge), pos2(320.0, edge - 36.0));
+    let given = bench.session.settings.bottom_height;
+    assert!(given != usual, "{given}");
+    for tab in [MESSAGES_TAB, PLOTS_TAB] {
+        bench.apply(Action::View(ViewChange::BottomTab(tab.to_owned())));
+    }
+    bench.settle();
+    let now = bench.area.rect;
+    assert!((now.bottom() - edge + 36.0).abs() < 4.0, "{now:?}, and the edge was at {edge}");
+    assert!(now.height() < 0.34 * 360.0, "{now:?}");
+}
+
+#[test]
+fn a_drag_of_something_else_gives_the_strip_no_height() {
+    let mut bench = bench(100);
+    bench.size.y = 1600.0;
+    bench.apply(Action::View(ViewChange::BottomTab(PLOTS_TAB.to_owned())));
+    let before = bench.session.settings.clone();
+    let picture = bench.area.rect;
+    drag(&mut bench, pos2(picture.right(), 200.0), pos2(picture.right() - 60.0, 200.0));
+    let after = &bench.session.settings;
+    assert!(after.right_width != before.right_width, "{}", after.right_width);
+    assert_eq!(after.bottom_height, before.bottom_height);
+    assert_eq!(bench.area.rect.bottom(), picture.bottom());
+}
+
+#[test]
+fn headers_name_their_models_whole_however_large_everything_is() {
+    for (scale, layout) in
+        [100, 150, 200].into_iter().flat_map(|s| [(s, Layout::SideBySide), (s, Layout::Wipe)])
+    {
+        let mut bench = bench(scale);
+        two_views(&mut bench);
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        bench.apply(Action::Compare(CompareCommand::Activate(1)));
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::reflection_model, "blinn_phong")));
+        bench.settle();
+        let picture = bench.area.rect;
+        let headers: Vec<_> = (bench.shapes().into_iter())
+            .filter_map(|shape| match shape {
+                Shape::Text(text) if picture.x_range().contains(text.pos.x) => Some(text),
+                _ => None,
+            })
+            .filter(|text| (picture.top() - 40.0..picture.top()).contains(&text.pos.y))
+            .map(|text| (text.galley.text().replace('\n', ""), text.galley.elided))
+            .collect();
+        for name in ["Phong", "Blinn–Phong"] {
+            let is_whole = headers.contains(&(name.to_owned(), false));
+            assert!(is_whole, "{name} at {scale} %, {layout:?}: {headers:?}");
+        }
     }
 }
 
@@ -85,7 +180,7 @@ fn an_override_is_said_at_the_top_however_large_everything_is() {
 }
 
 #[test]
-fn what_is_switched_in_the_view_menu_stands_in_line() {
+fn the_entries_of_the_view_menu_stand_in_line_with_and_without_marks() {
     let mut bench = bench(100);
     bench.click("View");
     let left = |bench: &mut Bench, words: &str| {
@@ -96,7 +191,10 @@ fn what_is_switched_in_the_view_menu_stands_in_line() {
         });
         found.unwrap_or_else(|| panic!("no {words}"))
     };
-    assert_eq!(left(&mut bench, "Presentation"), left(&mut bench, "Full screen"));
+    let marked = left(&mut bench, "Presentation");
+    for words in ["Full screen", "Home: the observer’s view", "Compare", "Marks", "Theme"] {
+        assert!((left(&mut bench, words) - marked).abs() < 0.6, "{words}: {marked}");
+    }
     bench.click("Presentation");
     assert!(bench.session.view.presenting && !bench.says("Full screen"), "the menu is gone");
 }

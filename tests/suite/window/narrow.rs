@@ -1,13 +1,13 @@
 //! Narrow windows, such as those of phones: the picture at the top, one panel below it, and controls for a thumb.
 
-use bevy_egui::egui::{Id, Key, Modifiers, Rect, accesskit::Role, vec2};
+use bevy_egui::egui::{Id, Key, Modifiers, PointerButton, Rect, accesskit::Role, vec2};
 use lights_camera_models::{
     document::{Edit, Selection},
     panel::state::{
         Action, CODE_TAB, CompareCommand, EXPLAIN_TAB, LessonCommand, LessonSource, MATERIALS_TAB,
         MESSAGES_TAB, PLOTS_TAB, Place, SHADER_TAB, TakeCommand, Taken, ViewChange,
     },
-    scene::{Part, Scene, comparison::Layout},
+    scene::{Object, Part, Scene, comparison::Layout},
 };
 
 use crate::window::panels::{Bench, Seen};
@@ -145,6 +145,34 @@ fn one_button_holds_all_menus() {
     bench.size = vec2(640.0, 844.0);
     bench.settle();
     assert!(bench.find("Menu").is_none() && bench.find("File").is_some());
+}
+
+#[test]
+fn the_bar_ends_in_the_window_and_folds_the_choice_of_shading_into_the_menu() {
+    for (size, scale) in
+        [([640.0, 360.0], 150), ([640.0, 360.0], 200), ([360.0, 640.0], 150), ([360.0, 360.0], 200)]
+    {
+        let here = format!("{size:?} at {scale} %");
+        let mut bench = bench(size, scale);
+        bench.apply(Action::Edit(Edit::set(Part::Scene, Scene::shading_model, "derivative")));
+        bench.apply(Action::AddObject("cube".to_owned()));
+        bench.apply(Action::Edit(Edit::set(Part::Object(1), Object::reflection_model, "minnaert")));
+        let right = bench.ctx.content_rect().right() - 7.0;
+        let over =
+            bench.tree.iter().filter(|s| s.rect.bottom() < bench.area.rect.top() && s.rect.right() > right);
+        let over: Vec<_> = over.filter(|s| !s.label.is_empty()).collect();
+        assert!(over.is_empty(), "{here}: {over:?}");
+        let folds = bench.find("Shading: Derivative").is_none();
+        assert_eq!(folds, right < 200.0, "{here}");
+        if folds {
+            bench.click("Menu");
+            bench.click("Shading ⏵");
+            let entry = bench.tree.iter().find(|s| s.role == Role::RadioButton && s.label == "Phong");
+            let entry = entry.expect("an entry").rect.center();
+            bench.click_at(entry, PointerButton::Primary);
+            assert_eq!(bench.session.document.shading_model, "phong", "{here}");
+        }
+    }
 }
 
 #[test]
