@@ -294,7 +294,7 @@ impl GpuRenderer {
         if self.on_demand || !self.is_trying() {
             return Ok(());
         }
-        let physical_size = UVec2::new(self.width.div_ceil(SMALLER), self.height.div_ceil(SMALLER));
+        let physical_size = UVec2::from(self.size().map(|side| side.div_ceil(SMALLER)));
         self.set_viewport(Some(Viewport { physical_size, ..default() }));
         let frames = Cell::new(0);
         let tried = self.run_until(|_, ready| ready > 0 || frames.replace(frames.get() + 1) == MOST_SMALL);
