@@ -24,8 +24,8 @@ use crate::{
 /// JSON with comments and trailing commas.
 const OPTIONS: ParseOptions = ParseOptions { allow_comments: true, allow_trailing_commas: true, ..STRICT };
 /// The keys of a declaration.
-const MODEL_KEYS: &str =
-    "name author source summary equation laws anisotropic transmits lobe lobes curves parameters groups";
+const MODEL_KEYS: &str = "name author source summary equation laws anisotropic transmits boundary lobe lobes \
+                          curves parameters groups";
 /// The keys of a part of the equation.
 const PART_KEYS: &[&str] = &["term", "text"];
 /// The most brackets of a declaration, and so its deepest nesting.
@@ -44,6 +44,8 @@ pub(super) struct Said {
     pub anisotropic: bool,
     /// True if light passes through.
     pub transmits: bool,
+    /// True for the boundary of a body with another refractive index.
+    pub boundary: bool,
     /// The built-in model whose lobe the model uses.
     pub lobe: Option<&'static str>,
     /// The directions in which the model reflects most.
@@ -120,6 +122,7 @@ impl Reader<'_> {
             laws: self.laws(&fields),
             anisotropic: self.flag(&fields, "anisotropic", false, "it must be true or false"),
             transmits: self.flag(&fields, "transmits", false, "it must be true or false"),
+            boundary: self.flag(&fields, "boundary", false, "it must be true or false"),
             parameters,
             groups: self.groups(&fields, parameters),
             lobe,

@@ -137,6 +137,9 @@ pub fn duplicate(
     if d.transmits {
         let _ = writeln!(out, "    \"transmits\": true,");
     }
+    if d.boundary {
+        let _ = writeln!(out, "    \"boundary\": true,");
+    }
     if let Some(lobe) = entry.lobe_of() {
         let _ =
             writeln!(out, "    // The shader reads the albedo of the lobe, or the curves, of this model.");

@@ -36,6 +36,7 @@ impl Declaration {
             anisotropic: false,
             matte: false,
             transmits: false,
+            boundary: false,
             sharp: false,
             measured: false,
             solid: false,
@@ -79,6 +80,9 @@ impl Declaration {
 
         /// Makes it a model that light passes through: it has a transmitted term.
         transmitting() { transmits: true }
+
+        /// Makes it a model of the boundary of a body with another refractive index.
+        boundary() { boundary: true }
 
         /// Makes it a model that also reflects or transmits without spreading.
         sharp() { sharp: true }

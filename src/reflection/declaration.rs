@@ -35,6 +35,10 @@ pub struct Declaration {
     pub matte: bool,
     /// True for a model of the whole sphere of directions (a BSDF), which light passes through.
     pub transmits: bool,
+    /// True for a model of the boundary of a body, behind which the
+    /// [refractive index](super::ReflectionModel::refractive_index) is another one. Others that transmit are sheets, alike
+    /// on both sides.
+    pub boundary: bool,
     /// True for a model with directions in which light does not spread; see
     /// [`sharp`](super::ReflectionModel::sharp).
     pub sharp: bool,
@@ -129,7 +133,7 @@ texts! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Laws {
-    /// `f_r(l, v) = f_r(v, l)` (Helmholtz).
+    /// `f_r(l, v) = f_r(v, l)` (Helmholtz), and of light that passes `f_t(l, v)/n_v² = f_t(v, l)/n_l²`.
     pub reciprocal: bool,
     /// `E(μ) ≤ 1`: no more light leaves than arrives.
     pub energy_conserving: bool,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     ModelEntry,
-    laws::{Case, Effort, Extreme, Findings, SAMPLES, SAMPLING_TOLERANCE},
+    laws::{Case, Effort, Extreme, Findings, RECIPROCITY_TOLERANCE, SAMPLES, SAMPLING_TOLERANCE},
 };
 use crate::parameter::Values;
 
@@ -81,6 +81,8 @@ pub struct LawVerdict {
     pub at: Vec<String>,
 }
 
+/// The name of reciprocity of light that passes, which models claim with that of light that is reflected.
+const IN_TRANSMISSION: &str = "reciprocal in transmission";
 /// The verdict on what some values that are not finite may spoil.
 const NOT_JUDGED: &str = "cannot be judged: some values are NaN or infinite";
 
@@ -112,6 +114,12 @@ impl LawReport {
             size: number(extreme.size),
             at: place(model, extreme.case.as_ref()),
         };
+        let passing = &findings.transmission;
+        let through = passing.case.is_some().then(|| {
+            let (claimed, kept) = (model.declaration.laws.reciprocal, passing.size <= RECIPROCITY_TOLERANCE);
+            let measure = "largest relative difference of f_t(l, v)/n_v² and f_t(v, l)/n_l²";
+            verdict(((IN_TRANSMISSION, claimed), (IN_TRANSMISSION, kept)), (measure, passing))
+        });
         Self {
             model: model.declaration.id.to_owned(),
             measured: model.declaration.measured,
@@ -124,6 +132,7 @@ impl LawReport {
                 .zip(kept)
                 .zip(evidence)
                 .map(|(law, found)| verdict(law, found))
+                .chain(through)
                 .collect(),
             sampling: Sampling {
                 fits: findings.sampling.size <= SAMPLING_TOLERANCE,
@@ -160,6 +169,8 @@ impl LawReport {
             (false, false) if self.given => "not claimed for all parameters, and broken with these",
             (true, true) => "claimed and kept",
             (true, false) => "claimed and BROKEN",
+            // Claimed by the claim for light that is reflected, which may be broken.
+            (false, true) if law.law == IN_TRANSMISSION => "not claimed, but no violation found",
             (false, true) => "not claimed, but no violation found: claim it?",
             (false, false) => "not claimed and broken",
         }

@@ -126,6 +126,42 @@ pub fn reciprocity_error(there: Terms, back: Terms, l: Vec3, v: Vec3, frame: &Fr
     (there - back).abs().max_element() / scale
 }
 
+/// The difference of a BTDF from behind the surface to a viewer in front with light and viewer exchanged, relative to the
+/// larger value: `f_t(l, v)/n_v² = f_t(v, l)/n_l²` (E. Veach 1997; B. Walter and others 2007). `back` is `f_t(v, l)/n_l²`.
+/// As in [`reciprocity_error`], dark values and grazing directions do not count.
+#[must_use]
+pub fn transmission_error(there: Terms, back: Vec3, l: Vec3, v: Vec3, frame: &Frame) -> f32 {
+    if frame.n.dot(l) > -0.01 || frame.n.dot(v) < 0.01 {
+        return 0.0;
+    }
+    let there = brdf_of(there, l, v, frame);
+    let scale = there.abs().max(back.abs()).max_element().max(1e-3);
+    (there - back).abs().max_element() / scale
+}
+
+/// A pair of directions with light and viewer exchanged and both mirrored in the surface: the exchange as it is seen
+/// by a viewer in front. A sheet is alike on both sides.
+#[must_use]
+pub fn from_behind(l: Vec3, v: Vec3, frame: &Frame) -> (Vec3, Vec3) {
+    let mirrored = |d: Vec3| d - 2.0 * frame.n.dot(d) * frame.n;
+    (mirrored(v), mirrored(l))
+}
+
+/// `f_t(v, l)/n_l²` of a model that transmits, for light `l` from behind and a viewer `v` in front. `None` of a solid, whose
+/// light follows its mesh, and of a boundary that does not say what is behind it.
+#[must_use]
+pub fn exchanged(model: &ModelEntry, surface: &dyn Surface, l: Vec3, v: Vec3, frame: &Frame) -> Option<Vec3> {
+    let d = model.declaration;
+    if !d.transmits || d.solid || surface.interior().is_some() {
+        return None;
+    }
+    if d.boundary {
+        return surface.refractive_index().map(|n| surface.behind(v, l, frame) / (n * n));
+    }
+    let (light, viewer) = from_behind(l, v, frame);
+    Some(brdf_of(surface.response(light, viewer, frame), light, viewer, frame))
+}
+
 /// The smallest number in a response.
 #[must_use]
 pub fn smallest(terms: &Terms) -> f32 {
@@ -261,6 +297,9 @@ impl Default for Effort {
 pub struct Findings {
     /// The largest relative difference after exchanging light and view.
     pub reciprocity: Extreme,
+    /// The largest relative difference of light that passes after exchanging light and view; without a
+    /// [case](Extreme::case) for models that let none through.
+    pub transmission: Extreme,
     /// The largest directional albedo.
     pub albedo: Extreme,
     /// The smallest number in a response.
@@ -318,6 +357,7 @@ pub fn examine<E>(
             }
         }
         compare(&values, effort.pairs, &mut random, &mut findings, &mut ask)?;
+        exchange(model, &values, effort.pairs, &mut random, &mut findings, &mut ask)?;
         integrate(model, &values, &mut random, &mut findings, &mut ask)?;
     }
     Ok(findings)
@@ -411,6 +451,46 @@ fn compare<E>(
             let case = || Case { values: values.clone(), l: Some(l), v };
             findings.reciprocity.note(error, error > findings.reciprocity.size, case);
         }
+    }
+    Ok(())
+}
+
+/// Compares light that passes with the exchange of light and view. Sheets are asked for both; what is behind a boundary only
+/// the CPU knows, which then has both.
+fn exchange<E>(
+    model: &ModelEntry,
+    values: &Values,
+    pairs: usize,
+    random: &mut Random,
+    findings: &mut Findings,
+    ask: &mut impl FnMut(&Values, &[(Vec3, Vec3)]) -> Result<Vec<Terms>, E>,
+) -> Result<(), E> {
+    let frame = Frame::LOCAL;
+    if !model.declaration.transmits {
+        return Ok(());
+    }
+    let surface = model.instantiate(values, Encoding::Srgb);
+    if exchanged(model, &*surface, -Vec3::Z, Vec3::Z, &frame).is_none() {
+        return Ok(());
+    }
+    let through: Vec<_> = (0..pairs).map(|_| (-random.above(&frame), random.above(&frame))).collect();
+    let mut answers = Vec::new();
+    if !model.declaration.boundary {
+        let both = through.iter().flat_map(|(l, v)| [(*l, *v), from_behind(*l, *v, &frame)]);
+        answers = ask(values, &both.collect::<Vec<_>>())?;
+    }
+    for (i, (l, v)) in through.into_iter().enumerate() {
+        let found = match answers.chunks_exact(2).nth(i) {
+            Some(pair) => {
+                let (light, viewer) = from_behind(l, v, &frame);
+                Some((pair[0], brdf_of(pair[1], light, viewer, &frame)))
+            }
+            None => exchanged(model, &*surface, l, v, &frame).map(|b| (surface.response(l, v, &frame), b)),
+        };
+        let Some((there, back)) = found.filter(|(t, b)| is_finite(t) && b.is_finite()) else { continue };
+        let error = transmission_error(there, back, l, v, &frame);
+        let case = || Case { values: values.clone(), l: Some(l), v };
+        findings.transmission.note(error, error > findings.transmission.size, case);
     }
     Ok(())
 }

@@ -78,6 +78,7 @@ impl ReflectionModel for RoughDielectric {
         .ambient_by_albedo()
         .anisotropic()
         .transmitting()
+        .boundary()
         .sharp();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {

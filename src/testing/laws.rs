@@ -13,7 +13,8 @@ use crate::{
         ModelEntry, Surface, brdf,
         laws::{
             self, COARSE, FINE, LARGEST_ALBEDO, NEARLY_ALL, NEGATIVE_TOLERANCE, RECIPROCITY_TOLERANCE,
-            Random, SAMPLING_TOLERANCE, is_finite, least, reciprocity_error, smallest,
+            Random, SAMPLING_TOLERANCE, exchanged, is_finite, least, reciprocity_error, smallest,
+            transmission_error,
         },
     },
 };
@@ -108,7 +109,7 @@ pub fn non_negative(model: &ModelEntry) -> Outcome {
     }
 }
 
-/// Checks that light paths are reversible if declared, and that some are not otherwise.
+/// Checks that light paths are reversible if declared, through the surface too, and that some are not otherwise.
 ///
 /// # Errors
 /// Returns an error if the law does not hold as declared.
@@ -119,6 +120,10 @@ pub fn reciprocal(model: &ModelEntry) -> Outcome {
             let (l, v) = (random.above(frame), random.above(frame));
             let (there, back) = (surface.response(l, v, frame), surface.response(v, l, frame));
             most = most.max(reciprocity_error(there, back, l, v, frame));
+            // From behind too, where light passes.
+            if let Some(back) = exchanged(model, surface, -l, v, frame) {
+                most = most.max(transmission_error(surface.response(-l, v, frame), back, -l, v, frame));
+            }
         }
         most
     })?;

@@ -66,25 +66,26 @@ impl Slabs {
     }
 
     /// The distances at which the ray enters the boxes of the four children, and true for those that it meets within a
-    /// range. Written out for each axis: with rows by number, indices were checked.
+    /// range; a child that does not exist may be among them. Written out for each axis: with rows by number, indices were
+    /// checked.
     #[inline]
     fn enter(&self, node: &[Row; NODE_ROWS], range: &Range<f32>) -> (Vec4, BVec4A) {
         let [low_x, low_y, low_z, high_x, high_y, high_z, _] = node;
-        let x = between(*low_x, *high_x, self.origin.x, self.inverse.x);
-        let y = between(*low_y, *high_y, self.origin.y, self.inverse.y);
-        let z = between(*low_z, *high_z, self.origin.z, self.inverse.z);
+        let x = between(low_x, high_x, self.origin.x, self.inverse.x);
+        let y = between(low_y, high_y, self.origin.y, self.inverse.y);
+        let z = between(low_z, high_z, self.origin.z, self.inverse.z);
         let near = x.0.max(y.0).max(z.0.max(Vec4::splat(range.start)));
         let far = x.1.min(y.1).min(z.1.min(Vec4::splat(range.end)));
         (near, near.cmple(far))
     }
 }
 
-/// The distances of the nearer and of the farther planes along one axis.
+/// The distances of the nearer and of the farther planes along one axis. Rows that are exchanged by the sign of the
+/// direction were copied through memory.
 #[inline]
-fn between(low: Row, high: Row, origin: f32, inverse: f32) -> (Vec4, Vec4) {
-    let (near, far) = if inverse < 0.0 { (high, low) } else { (low, high) };
-    let along = |planes: Row| (floats(planes) - origin) * inverse;
-    (along(near), along(far))
+fn between(low: &Row, high: &Row, origin: f32, inverse: f32) -> (Vec4, Vec4) {
+    let [low, high] = [low, high].map(|planes| (floats(*planes) - origin) * inverse);
+    (low.min(high), low.max(high))
 }
 
 /// A ray, prepared for triangles: the axis along which it runs most is third.
@@ -152,10 +153,16 @@ impl Stack {
 
     /// Adds the children that a ray meets, the farthest first.
     #[inline]
-    fn push(&mut self, children: Row, enters: Vec4, meets: u32) {
-        let first = self.count;
-        for i in (0..4).filter(|i| meets & (1 << i) != 0 && children[*i] != NO_CHILD) {
+    fn push(&mut self, children: &Row, enters: Vec4, mut meets: u32) {
+        let (first, enters) = (self.count, enters.to_array());
+        // Most rays meet one child or two.
+        while meets != 0 {
+            let i = (meets.trailing_zeros() & 3) as usize;
+            meets &= meets - 1;
             let new = Waiting { child: children[i], enters: enters[i] };
+            if new.child == NO_CHILD {
+                continue;
+            }
             let mut at = self.count;
             while at > first && self.waiting[at - 1].enters < new.enters {
                 self.waiting[at] = self.waiting[at - 1];
@@ -185,12 +192,12 @@ impl Hierarchy {
                 let first = NODES + NODE_ROWS * child as usize;
                 let Some(node) = self.rows[first..].first_chunk() else { continue };
                 let (enters, meets) = slabs.enter(node, &range);
-                stack.push(node[CHILDREN], enters, meets.bitmask());
+                stack.push(&node[CHILDREN], enters, meets.bitmask());
                 continue;
             }
             let first = child & ((1 << COUNT_SHIFT) - 1);
-            for triangle in first..=first + (child >> COUNT_SHIFT & 7) {
-                let met = shear.meet(&self.triangle(triangle), sides);
+            for triangle in first..first + (child >> COUNT_SHIFT & 7) + 1 {
+                let met = shear.meet(self.triangle(triangle), sides);
                 if let Some((distance, weights, leaves)) = met.filter(|(d, ..)| range.contains(d)) {
                     range.end = distance;
                     best = Some(Hit { distance, weights, triangle, leaves });

@@ -523,6 +523,7 @@ fn every_built_in_model_as_a_file_has_the_same_knobs_and_the_same_numbers() {
         let spread = theirs.equation.iter().filter(|part| !part.along_path);
         assert!(ours.equation.iter().eq(spread), "{id}: {:?}", ours.equation);
         assert_eq!((ours.transmits, ours.sharp, ours.solid), (theirs.transmits, theirs.sharp, false), "{id}");
+        assert_eq!(ours.boundary, theirs.boundary, "{id}");
         assert_eq!(copy.entry.not_on_cpu(), None, "{id}");
         let mut told_apart = false;
         for set in 0..3 {

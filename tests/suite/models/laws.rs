@@ -3,10 +3,20 @@
 
 use glam::Vec3;
 use lights_camera_models::{
-    optics::{Frame, Terms, colour::Encoding, lobes::Lobes},
+    optics::{
+        Frame, Terms,
+        colour::Encoding,
+        interface::{Facets, Interface},
+        lobes::Lobes,
+    },
     parameter::{Parameter, Value, Values},
     parameters,
-    reflection::{self, ModelEntry, ReflectionModel, laws::Random},
+    progress::Progress,
+    reflection::{
+        self, ModelEntry, ReflectionModel,
+        law_report::LawReport,
+        laws::{Effort, RECIPROCITY_TOLERANCE, Random, examine_on_cpu},
+    },
     registry::{Register as _, Registry},
     shader::Source,
     testing::{self, laws::albedo},
@@ -91,6 +101,97 @@ fn light_that_a_sheet_lets_through_is_counted_too() {
         registry.model("thin_glass").expect("built in").instantiate(&Values::default(), Encoding::Srgb);
     let whole = albedo(&*pane, Vec3::new(0.6, 0.0, 0.8), &Frame::LOCAL, 48);
     assert!((whole - 1.0).abs() < 1e-5, "{whole}");
+}
+
+/// A model that claims reciprocity and lets light through, with this transmission for light from behind, and for a viewer
+/// there.
+macro_rules! passage {
+    ($name:ident, $declared:ident, $there:expr, $back:expr) => {
+        parameters! {
+            struct $name {}
+        }
+        impl ReflectionModel for $name {
+            const DECLARATION: reflection::Declaration = $declared;
+
+            fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
+                let (l, v) = (frame.to_local(l), frame.to_local(v));
+                if l.z >= 0.0 || v.z <= 0.0 {
+                    return Terms::default();
+                }
+                let there: fn(Vec3, Vec3) -> f32 = $there;
+                Terms::through(Vec3::splat(-std::f32::consts::PI * l.z * there(l, v)))
+            }
+
+            fn behind(&self, l: Vec3, v: Vec3, frame: &Frame) -> Vec3 {
+                let back: fn(Vec3, Vec3) -> f32 = $back;
+                Vec3::splat(back(frame.to_local(l), frame.to_local(v)))
+            }
+
+            fn refractive_index(&self) -> Option<f32> {
+                Some(1.5)
+            }
+
+            fn lobes(&self) -> Lobes {
+                Lobes::cosine()
+            }
+        }
+    };
+}
+
+const CURTAIN: reflection::Declaration =
+    reflection::Declaration::new("passage", "Passage", Source::new("reflection/passage.wgsl", ""))
+        .transmitting()
+        .reciprocal();
+const WATER: reflection::Declaration = CURTAIN.boundary();
+
+/// Ground glass of index 1.5.
+fn through_ground_glass(l: Vec3, v: Vec3) -> f32 {
+    Interface::new(Facets::Ggx, glam::Vec2::splat(0.4), 1.5).transmitted(l, v)
+}
+
+passage!(Even, CURTAIN, |l, v| 0.1 * (v.z - l.z), |_, _| 0.0);
+passage!(Askew, CURTAIN, |_, v| 0.2 * v.z, |_, _| 0.0);
+passage!(Ground, WATER, through_ground_glass, through_ground_glass);
+// The wrong twin: flux, which is not scaled, instead of radiance.
+passage!(OfFlux, WATER, through_ground_glass, |l, v| through_ground_glass(l, v) / 2.25);
+
+#[test]
+fn light_that_passes_may_go_backwards_too_or_that_is_found() {
+    let effort = Effort { sets: 3, pairs: 300 };
+    let examined = |model: &ModelEntry| {
+        let found = examine_on_cpu(model, &Values::default(), effort, &Progress::NONE).expect("to the end");
+        assert!(found.reciprocity.size <= RECIPROCITY_TOLERANCE, "{found:?}");
+        let report = LawReport::new(model, &Values::default(), &found);
+        (found, report)
+    };
+    for (model, keeps) in [
+        (ModelEntry::of::<Even>(), true),
+        (ModelEntry::of::<Askew>(), false),
+        (ModelEntry::of::<Ground>(), true),
+        (ModelEntry::of::<OfFlux>(), false),
+    ] {
+        let (found, report) = examined(&model);
+        assert!(found.transmission.case.is_some());
+        assert_eq!(found.transmission.size <= RECIPROCITY_TOLERANCE, keeps, "{:?}", found.transmission);
+        let named = report.laws.iter().find(|law| law.law == "reciprocal in transmission").expect("a law");
+        assert_eq!((named.claimed, named.kept, named.at.is_empty()), (true, keeps, false));
+        assert_eq!(report.broken().contains(&"reciprocal in transmission"), !keeps);
+        assert_eq!(testing::laws::reciprocal(&model).is_ok(), keeps, "{report}");
+    }
+    let registry = Registry::builtin();
+    for (id, judged) in [
+        ("thin_glass", true),
+        ("diffuse_transmission", true),
+        ("rough_dielectric", true),
+        // Light follows the mesh of a solid, and none passes Lambert's.
+        ("glass", false),
+        ("lambert", false),
+    ] {
+        let (found, report) = examined(registry.model(id).expect("built in"));
+        assert_eq!(found.transmission.case.is_some(), judged, "{id}");
+        assert_eq!(report.laws.len(), if judged { 4 } else { 3 }, "{id}");
+        assert!(!report.broken().contains(&"reciprocal in transmission"), "{id}: {report}");
+    }
 }
 
 #[test]
