@@ -48,6 +48,15 @@ pub fn directions(azimuth: f64, largest: f64) -> Vec<(Vec3, Vec3)> {
     pairs
 }
 
+/// The pairs of directions at which a surface was measured, instead of those between: interpolation would count as a difference, and
+/// so would entries that are missing.
+fn measured(surface: &dyn Surface, all: Vec<(Vec3, Vec3)>) -> Vec<(Vec3, Vec3)> {
+    let least = LARGEST_ANGLE.to_radians().cos() as f32;
+    let near = all.iter().filter_map(|(l, v)| surface.measured_near(*l, *v));
+    let own: Vec<_> = near.filter(|(l, v)| l.z >= least && v.z >= least).collect();
+    if own.is_empty() { all } else { own }
+}
+
 /// The lobes of the objects' materials.
 pub(super) struct Lobe {
     /// Each with its pairs of directions and the wanted numbers of the metric.
@@ -83,6 +92,7 @@ impl Lobe {
             let azimuths = if pair.anisotropic { &AZIMUTHS[..] } else { &AZIMUTHS[..1] };
             let all: Vec<_> =
                 azimuths.iter().flat_map(|azimuth| directions(*azimuth, LARGEST_ANGLE)).collect();
+            let all = if pair.is_measured { measured(&*pair.wanted, all) } else { all };
             let mut wanted = vec![0.0; 3 * all.len()];
             numbers(&*pair.wanted, &all, (metric, a.terms, !pair.is_measured), &mut wanted);
             (pair, all, wanted)
