@@ -243,7 +243,7 @@ class Scene:
         -------
         found, scene
             What was found (``values``, ``unchanged``, those of them ``without_effect``, those ``ambiguous``, of which other
-            values, changed together, give the same surface, the error ``before`` and ``after``, its ``unit``, the number of
+            values, changed together, come as near, the error ``before`` and ``after``, its ``unit``, the number of
             ``evaluations``, and what ``ended`` the search: ``search`` itself, or the limit of ``evaluations`` or of
             ``time``), and the scene with these values.
         """

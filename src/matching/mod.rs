@@ -155,7 +155,7 @@ pub struct Match {
     pub kept: Vec<&'static str>,
     /// Those of the unchanged parameters of which no value that was tried made a difference.
     pub without_effect: Vec<&'static str>,
-    /// The free parameters of which other values, changed together, give the same surface, but for a hundredth of what each changes.
+    /// The free parameters of which other values, changed together, come as near, but for a hundredth of what each changes.
     pub ambiguous: Vec<&'static str>,
     /// Number of times that the views were compared.
     pub evaluations: usize,
@@ -172,9 +172,9 @@ impl Match {
     /// none.
     #[must_use]
     pub fn ambiguity(&self, label: impl Fn(&'static str) -> &'static str) -> Option<String> {
-        let names: Vec<_> = self.ambiguous.iter().map(|name| label(name)).collect();
+        let names: Vec<&str> = self.ambiguous.iter().copied().map(label).collect();
         let names = (!names.is_empty()).then(|| listed(&names, "and"))?;
-        Some(format!("other values of {names}, changed together, give the same surface"))
+        Some(format!("other values of {names}, changed together, come as near"))
     }
 }
 

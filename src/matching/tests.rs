@@ -219,9 +219,9 @@ fn beside_a_measurement_that_turns_two_azimuths_do() {
     };
     let [one, four] = ["phong", "ward"].map(|model| count("phong", model));
     assert_eq!(four, 4 * one);
-    // Rounding may leave out a pair at the largest angle.
+    // Rounding at the ends of bins leaves out a few others.
     let [one, two] = ["phong", "ward"].map(|model| count("measured_merl", model));
-    assert!(one > 1000 && two.abs_diff(2 * one) < 60, "{one} {two}");
+    assert!(one > 1000 && (18 * one..=22 * one).contains(&(10 * two)), "{one} {two}");
 }
 
 fn by(scene: &Scene, metric: Metric, parameters: &[&str]) -> Match {

@@ -288,7 +288,7 @@ fn what_a_file_tells_only_together_comes_back_together_and_is_said() {
     ambiguous.sort_unstable();
     assert_eq!(ambiguous, ["k_s", "specular_colour"], "{found:?}");
     let note = found.ambiguity(|name| name).expect("it is said");
-    assert!(note.contains("k_s") && note.ends_with(", changed together, give the same surface"), "{note}");
+    assert!(note.contains("k_s") && note.ends_with(", changed together, come as near"), "{note}");
     let own = |name: &str| numbers(&found, MODEL, name);
     assert!((own("alpha")[0] - 60.0).abs() <= 1.0, "{found:?}");
     // The product is determined, and the body, as far as the steps of a colour go.
