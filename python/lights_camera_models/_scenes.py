@@ -242,9 +242,10 @@ class Scene:
         Returns
         -------
         found, scene
-            What was found (``values``, ``unchanged``, those of them ``without_effect``, the error ``before`` and
-            ``after``, its ``unit``, the number of ``evaluations``, and what ``ended`` the search: ``search`` itself, or the
-            limit of ``evaluations`` or of ``time``), and the scene with these values.
+            What was found (``values``, ``unchanged``, those of them ``without_effect``, those ``ambiguous``, of which other
+            values, changed together, come as near, the error ``before`` and ``after``, its ``unit``, the number of
+            ``evaluations``, and what ``ended`` the search: ``search`` itself, or the limit of ``evaluations`` or of
+            ``time``), and the scene with these values.
         """
         names = None if free is None else [word("a free parameter", name) for name in free]
         found, scene = self._core.matched(word("view", view), word("on", on), names, word("metric", metric))

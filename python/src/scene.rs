@@ -222,6 +222,7 @@ impl Scene {
         let said = serde_json::json!({
             "view": LETTERS[number], "on": what.id(), "metric": measure.metric().map(Metric::id), "unit": measure.unit(), "before": found.before, "after": found.after,
             "values": values, "unchanged": found.kept, "without_effect": found.without_effect,
+            "ambiguous": found.ambiguous,
             "evaluations": found.evaluations, "ended": found.ended.id(),
         });
         let mut scene = self.scene.clone();

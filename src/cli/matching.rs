@@ -275,7 +275,7 @@ fn in_words(found: &Match, before: &[Value], view: usize, measure: Measure) -> S
 
 /// The parameters without effect, the number of evaluations, and what ended the search.
 fn about_the_search(found: &Match) -> String {
-    let mut text = String::new();
+    let mut text = found.ambiguity(|name| name).map_or_else(String::new, |note| note + "\n");
     if !found.without_effect.is_empty() {
         text += &format!("without effect in all that was tried: {}\n", listed(&found.without_effect, "and"));
     }
@@ -299,6 +299,7 @@ fn as_json(found: &Match, view: usize, measure: Measure) -> Json {
         "values": values,
         "unchanged": found.kept,
         "without_effect": found.without_effect,
+        "ambiguous": found.ambiguous,
         "evaluations": found.evaluations,
         "ended": found.ended.id(),
     })

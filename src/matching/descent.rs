@@ -139,6 +139,25 @@ impl Slope {
     }
 }
 
+/// For each of some columns of length 1 the part of it, squared, that no sum of the others reaches, inverted: how much less is known of its number
+/// since the others vary too, the variance inflation factor (D. Belsley, E. Kuh, R. Welsch 1980, *Regression Diagnostics*).
+pub(super) fn inflation(columns: &[Vec<f64>]) -> Vec<f64> {
+    /// Keeps the equations solvable where columns do the same: the largest factors are about its inverse.
+    const LEAST: f64 = 1e-9;
+    let row = |i: usize| {
+        let mut row: Vec<f64> = columns[..=i].iter().map(|other| dot(&columns[i], other)).collect();
+        row[i] += LEAST;
+        row
+    };
+    let matrix: Vec<Vec<f64>> = (0..columns.len()).map(row).collect();
+    let factor = |i: usize| {
+        let mut unit = vec![0.0; columns.len()];
+        unit[i] = 1.0;
+        solve(matrix.clone(), unit)[i]
+    };
+    (0..columns.len()).map(factor).collect()
+}
+
 /// Solves symmetric equations by A.-L. Cholesky's method. `matrix` is the lower half.
 fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     let size = right.len();
@@ -223,6 +242,17 @@ mod tests {
         // 4 x + 2 y = 8, 2 x + 3 y = 8.
         let solved = solve(vec![vec![4.0], vec![2.0, 3.0]], vec![8.0, 8.0]);
         assert!((solved[0] - 1.0).abs() < 1e-12 && (solved[1] - 2.0).abs() < 1e-12, "{solved:?}");
+    }
+
+    #[test]
+    fn columns_that_others_make_up_are_told_from_those_that_stand_alone() {
+        let half = 0.5f64.sqrt();
+        let columns = [vec![1.0, 0.0, 0.0], vec![0.0, 1.0, 0.0], vec![half, half, 0.0], vec![0.0, 0.6, 0.8]];
+        let found = inflation(&columns);
+        assert!(found[..3].iter().all(|factor| *factor > 1e8), "{found:?}");
+        // Of the last, 0.8² is its own.
+        assert!((found[3] - 1.0 / 0.64).abs() < 1e-6, "{found:?}");
+        assert!(inflation(&[]).is_empty());
     }
 
     #[test]

@@ -17,7 +17,7 @@ use crate::{
 /// Maximum angle of directions from the normal, in degrees.
 const LARGEST_ANGLE: f64 = 80.0;
 /// Azimuths of the half vector for anisotropic surfaces, in degrees.
-const AZIMUTHS: [f64; 4] = [0.0, 45.0, 90.0, 135.0];
+static AZIMUTHS: [f64; 4] = [0.0, 45.0, 90.0, 135.0];
 
 /// Pairs of directions to the light and to the viewer, dense around the mirror direction, parametrised by the
 /// half vector and the difference between light and half vector: S. Rusinkiewicz (1998), *A New Change of
@@ -46,6 +46,23 @@ pub fn directions(azimuth: f64, largest: f64) -> Vec<(Vec3, Vec3)> {
         }
     }
     pairs
+}
+
+/// The azimuths of half vectors that are compared. What is the same at every azimuth needs no model at more than two: a model with two
+/// widths that fits along and across the tangent has equal ones.
+fn azimuths(pair: &Pair) -> impl Iterator<Item = f64> + use<> {
+    let count = if pair.anisotropic { AZIMUTHS.len() } else { 1 };
+    let step = if pair.turns { 2 } else { 1 };
+    AZIMUTHS[..count].iter().copied().step_by(step)
+}
+
+/// The pairs of directions at which a surface was measured, instead of those between: interpolation would count as a difference, and
+/// so would entries that are missing.
+fn measured(surface: &dyn Surface, all: Vec<(Vec3, Vec3)>) -> Vec<(Vec3, Vec3)> {
+    let least = LARGEST_ANGLE.to_radians().cos() as f32;
+    let near = all.iter().filter_map(|(l, v)| surface.measured_near(*l, *v));
+    let own: Vec<_> = near.filter(|(l, v)| l.z >= least && v.z >= least).collect();
+    if own.is_empty() { all } else { own }
 }
 
 /// The lobes of the objects' materials.
@@ -80,9 +97,9 @@ impl Lobe {
     /// The lobes of the visible objects.
     pub(super) fn new([a, b]: [&Side; 2], metric: Metric, registry: &Registry) -> Self {
         let lobe = |pair: Pair| {
-            let azimuths = if pair.anisotropic { &AZIMUTHS[..] } else { &AZIMUTHS[..1] };
-            let all: Vec<_> =
-                azimuths.iter().flat_map(|azimuth| directions(*azimuth, LARGEST_ANGLE)).collect();
+            let azimuths = azimuths(&pair);
+            let all: Vec<_> = azimuths.flat_map(|azimuth| directions(azimuth, LARGEST_ANGLE)).collect();
+            let all = if pair.is_measured { measured(&*pair.wanted, all) } else { all };
             let mut wanted = vec![0.0; 3 * all.len()];
             numbers(&*pair.wanted, &all, (metric, a.terms, !pair.is_measured), &mut wanted);
             (pair, all, wanted)

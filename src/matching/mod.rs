@@ -155,6 +155,8 @@ pub struct Match {
     pub kept: Vec<&'static str>,
     /// Those of the unchanged parameters of which no value that was tried made a difference.
     pub without_effect: Vec<&'static str>,
+    /// The free parameters of which other values, changed together, come as near, but for a hundredth of what each changes.
+    pub ambiguous: Vec<&'static str>,
     /// Number of times that the views were compared.
     pub evaluations: usize,
     /// What ended the search.
@@ -163,6 +165,17 @@ pub struct Match {
     pub before: f64,
     /// The error with the matched values.
     pub after: f64,
+}
+
+impl Match {
+    /// A sentence about the [ambiguous](Self::ambiguous) parameters, by their names or labels, without a full stop; `None` if there are
+    /// none.
+    #[must_use]
+    pub fn ambiguity(&self, label: impl Fn(&'static str) -> &'static str) -> Option<String> {
+        let names: Vec<&str> = self.ambiguous.iter().copied().map(label).collect();
+        let names = (!names.is_empty()).then(|| listed(&names, "and"))?;
+        Some(format!("other values of {names}, changed together, come as near"))
+    }
 }
 
 /// The reason why a match failed.
@@ -354,10 +367,10 @@ pub fn match_view(request: &Request, registry: &Registry, progress: &Progress) -
     };
     // An endless function is detected only when it runs.
     can_run()?;
-    let Found { values, before, after, without_effect, evaluations, ended } = found?;
+    let Found { values, before, after, without_effect, ambiguous, evaluations, ended } = found?;
     let given = |name: &str| values.iter().any(|(known, _)| *known == name);
     let kept = free.iter().map(|free| free.parameter.name).filter(|name| !given(name)).collect();
-    Ok(Match { values, kept, without_effect, evaluations, ended, before, after })
+    Ok(Match { values, kept, without_effect, ambiguous, evaluations, ended, before, after })
 }
 
 fn search(

@@ -50,6 +50,11 @@ const LONGEST: Duration = Duration::from_secs(600);
 /// A parameter keeps its value, and digits are dropped, if the error grows by at most this fraction of
 /// itself, or of the initial error.
 const GIVEN_UP: [f64; 2] = [1e-3, 1e-6];
+/// Factor of [`descent::inflation`] from which a parameter is ambiguous: a hundredth of what it changes is left when the others
+/// undo it.
+const AMBIGUOUS: f64 = 1e4;
+/// Part of the effect of the parameter that changes most, below which the effect of another is rounding.
+const FELT: f64 = 1e-4;
 /// Errors below this count as zero: the models calculate in 32 bits.
 const NONE: f64 = 1e-6;
 
@@ -64,6 +69,9 @@ pub(super) trait Target {
     /// The differences with these parameter values; other parameters are unchanged.
     fn differences(&mut self, values: &Given, to: &mut [f64]);
 }
+
+/// Coordinates, differences and their derivatives.
+type Slopes = (Vec<f64>, Vec<f64>, Vec<Vec<f64>>);
 
 /// A free parameter.
 pub(super) struct Free {
@@ -83,6 +91,8 @@ pub(super) struct Found {
     pub(super) after: f64,
     /// Parameters of which no value that was tried made a difference.
     pub(super) without_effect: Vec<&'static str>,
+    /// Parameters that others can replace: see [`Search::ambiguous`].
+    pub(super) ambiguous: Vec<&'static str>,
     pub(super) evaluations: usize,
     pub(super) ended: Ended,
 }
@@ -165,19 +175,54 @@ impl<'a, T: Target> Search<'a, T> {
         }
         let (error, best) = std::mem::take(&mut self.best);
         let Some(best) = best.filter(|_| error < before) else {
-            return Ok(self.found(Vec::new(), before, before));
+            return Ok(self.found(Vec::new(), Vec::new(), [before; 2]));
         };
         self.last = true;
         let good = (1.0 + GIVEN_UP[0]) * error + GIVEN_UP[1] * before;
         let (best, after) = self.simplified(best, good, error).map_err(|Stop| Cancelled)?;
+        let ambiguous = self.ambiguous(&best).map_err(|Stop| Cancelled)?;
         let values = self.values(&best);
-        Ok(self.found(values, before, after))
+        Ok(self.found(values, ambiguous, [before, after]))
     }
 
-    fn found(self, values: Given, before: f64, after: f64) -> Found {
+    fn found(self, values: Given, ambiguous: Vec<&'static str>, [before, after]: [f64; 2]) -> Found {
         let without = self.free.iter().zip(&self.effect).filter(|(_, effect)| **effect == (true, false));
         let without_effect = without.map(|(free, _)| free.parameter.name).collect();
-        Found { values, before, after, without_effect, evaluations: self.evaluations, ended: self.ended }
+        let (evaluations, ended) = (self.evaluations, self.ended);
+        Found { values, before, after, without_effect, ambiguous, evaluations, ended }
+    }
+
+    /// The parameters of which other values give the same, if others of them change too, such as a weight and the colour
+    /// that it scales: what each of their numbers changes, the other numbers undo, but for a hundredth.
+    fn ambiguous(&mut self, best: &Point) -> Result<Vec<&'static str>, Stop> {
+        let owners = self.owners();
+        let mut point = best.clone();
+        for ((number, now), (owner, _)) in point.numbers.iter_mut().zip(self.present()).zip(&owners) {
+            if !best.on[*owner] {
+                *number = now;
+            }
+        }
+        let all: Vec<usize> = (0..self.free.len()).collect();
+        let (_, _, columns) = self.slopes(&point, &all)?;
+        let lengths: Vec<f64> = columns.iter().map(|c| c.iter().map(|d| d * d).sum::<f64>().sqrt()).collect();
+        let longest = lengths.iter().copied().fold(0.0, f64::max);
+        let felt: Vec<usize> = (0..columns.len()).filter(|i| lengths[*i] > FELT * longest).collect();
+        let unit = |i: &usize| columns[*i].iter().map(|d| d / lengths[*i]).collect();
+        let factors = descent::inflation(&felt.iter().map(unit).collect::<Vec<Vec<f64>>>());
+        let ambiguous = felt.iter().zip(factors).filter(|(_, factor)| *factor > AMBIGUOUS);
+        let mut names: Vec<_> = ambiguous.map(|(i, _)| self.free[owners[*i].0].parameter.name).collect();
+        names.dedup();
+        Ok(names)
+    }
+
+    /// The coordinates of a point, the differences there, and their derivatives by each number of some parameters.
+    fn slopes(&mut self, point: &Point, parameters: &[usize]) -> Result<Slopes, Stop> {
+        let mut track = Track::new(self, point, parameters);
+        let at = track.coordinates();
+        let mut here = vec![0.0; track.count()];
+        let mut columns = vec![here.clone(); at.len()];
+        track.derivatives(&at, &mut here, &mut columns)?;
+        Ok((at, here, columns))
     }
 
     /// The axes of all parameters.
@@ -378,11 +423,7 @@ impl<'a, T: Target> Search<'a, T> {
     fn promises(&mut self, subset: &Subset) -> Result<Vec<usize>, Stop> {
         let all: Vec<usize> = (0..self.free.len()).collect();
         let owners = self.owners();
-        let mut track = Track::new(self, &subset.point, &all);
-        let at = track.coordinates();
-        let mut here = vec![0.0; track.count()];
-        let mut columns = vec![here.clone(); at.len()];
-        track.derivatives(&at, &mut here, &mut columns)?;
+        let (at, here, columns) = self.slopes(&subset.point, &all)?;
         let slope = descent::Slope::of(&columns, &here);
         let ranges = vec![(0.0, 1.0); at.len()];
         let promise = |more: usize| {
@@ -740,6 +781,37 @@ mod tests {
             assert!(found.after < 1e-4 * found.before && found.before > 1e-3, "{found:?}");
             assert!(bell.asked < 500, "{}", bell.asked);
         }
+    }
+
+    /// A line whose slope is the product of two parameters, beside one of another shape.
+    struct Product;
+
+    impl Target for Product {
+        fn count(&self) -> usize {
+            20
+        }
+
+        fn differences(&mut self, values: &Given, to: &mut [f64]) {
+            let get = |name: &str, now: f64| {
+                values.iter().find(|(n, _)| *n == name).map_or(now, |(_, value)| value.numbers()[0])
+            };
+            let (k_a, k_d, k_s) = (get("k_a", 0.1), get("k_d", 0.8), get("k_s", 0.9));
+            for (i, to) in to.iter_mut().enumerate() {
+                let x = i as f64 / 20.0;
+                *to = (k_d * k_s - 0.36) * x + (k_a - 0.5) * x * x;
+            }
+        }
+    }
+
+    #[test]
+    fn parameters_that_count_by_their_product_are_ambiguous_and_others_are_not() {
+        let all =
+            [free(&K_A, Value::Number(0.1)), free(&K_D, Value::Number(0.8)), free(&K_S, Value::Number(0.9))];
+        let found = Search::new(&mut Product, &all, 2000, &Progress::NONE).run().expect("not cancelled");
+        assert!(found.after < 1e-4, "{found:?}");
+        assert_eq!(found.ambiguous, ["k_d", "k_s"], "{found:?}");
+        let found = Search::new(&mut Product, &all[..2], 2000, &Progress::NONE).run().expect("not cancelled");
+        assert_eq!(found.ambiguous, [""; 0], "{found:?}");
     }
 
     #[test]

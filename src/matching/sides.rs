@@ -62,6 +62,8 @@ pub(super) struct Pair {
     encoding: Encoding,
     /// True if rotation about the normal changes either of them.
     pub(super) anisotropic: bool,
+    /// True if view A has a measurement that is the same at every azimuth.
+    pub(super) turns: bool,
     /// True if view A has a measurement. It has no ambient term, so that of the model does not count.
     pub(super) is_measured: bool,
 }
@@ -87,6 +89,7 @@ impl Pair {
                 own: of_b.material.clone(),
                 encoding: b.scene.display.encoding,
                 anisotropic: model_a.declaration.anisotropic || model.declaration.anisotropic,
+                turns: model_a.declaration.measured && !model_a.declaration.anisotropic,
                 is_measured: model_a.declaration.measured,
             });
             seen.push(legal);

@@ -209,6 +209,21 @@ fn beside_a_measurement_every_parameter_is_free() {
     assert_eq!(modelled.len(), measured.len());
 }
 
+#[test]
+fn beside_a_measurement_that_turns_two_azimuths_do() {
+    let registry = Registry::builtin();
+    let count = |a: &str, b: &str| {
+        let scene = scene((a, &[]), (b, &[]));
+        let [a, b] = [0, 1].map(|view| Side::seen(&scene, view, &registry).expect("both exist"));
+        Lobe::new([&a, &b], Metric::Cosine, &registry).count()
+    };
+    let [one, four] = ["phong", "ward"].map(|model| count("phong", model));
+    assert_eq!(four, 4 * one);
+    // Rounding at the ends of bins leaves out a few others.
+    let [one, two] = ["phong", "ward"].map(|model| count("measured_merl", model));
+    assert!(one > 1000 && (18 * one..=22 * one).contains(&(10 * two)), "{one} {two}");
+}
+
 fn by(scene: &Scene, metric: Metric, parameters: &[&str]) -> Match {
     let measure = Measure { what: What::Lobe, metric };
     let request = Request { scene, view: 1, measure, parameters };

@@ -13,7 +13,7 @@
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
-use glam::{Vec3, Vec4};
+use glam::{Quat, Vec3, Vec4};
 
 use super::{
     Frame, Terms,
@@ -135,6 +135,26 @@ impl<'a> Grid<'a> {
         self.between(angles, |i, j, k| self.cell(i, j, k).truncate())
     }
 
+    /// The pair of directions in the local frame in the middle of the bin of another, where its entry is the value; `None` if that
+    /// entry was not measured. The azimuth of the half vector stays.
+    #[must_use]
+    pub fn nearest(&self, l: Vec3, v: Vec3) -> Option<(Vec3, Vec3)> {
+        let [theta_h, theta_d, phi_d] = angles(l, v, Vec3::Z);
+        let [n_h, n_d, n_phi] = self.counts;
+        let bin = |t: f32, count: usize| ((t * count as f32) as usize).min(count - 1);
+        let place =
+            [bin((theta_h / FRAC_PI_2).sqrt(), n_h), bin(theta_d / FRAC_PI_2, n_d), bin(phi_d / PI, n_phi)];
+        if self.cell(place[0], place[1], place[2]).w == 0.0 {
+            return None;
+        }
+        let middle = directions(middle(self.counts, place));
+        let half = l + v;
+        let around = Quat::from_rotation_z(half.y.atan2(half.x));
+        let [a, b] = [around * middle.0, around * middle.1];
+        // By reciprocity the entry is that of both; the light stays the light.
+        Some(if l.dot(a) < l.dot(b) { (b, a) } else { (a, b) })
+    }
+
     /// The standard uncertainty at three angles, interpolated like the value; `None` if the table has none.
     #[must_use]
     pub fn uncertainty(&self, angles: [f32; 3]) -> Option<f32> {
@@ -188,11 +208,14 @@ fn continued(entries: &mut [Option<Vec3>], count: usize, step: usize) {
 /// The middles of the bins: θ_h, θ_d and φ_d in radians, φ_d fastest.
 pub fn middles(counts: [usize; 3]) -> impl Iterator<Item = [f32; 3]> {
     let [n_h, n_d, n_phi] = counts;
-    let middle = |i: usize, count: usize| (i as f32 + 0.5) / count as f32;
-    (0..n_h * n_d * n_phi).map(move |i| {
-        let (h, d, phi) = (i / (n_d * n_phi), i / n_phi % n_d, i % n_phi);
-        [FRAC_PI_2 * middle(h, n_h).powi(2), FRAC_PI_2 * middle(d, n_d), PI * middle(phi, n_phi)]
-    })
+    let place = move |i: usize| [i / (n_d * n_phi), i / n_phi % n_d, i % n_phi];
+    (0..n_h * n_d * n_phi).map(move |i| middle(counts, place(i)))
+}
+
+/// The middle of a bin: θ_h, θ_d and φ_d in radians.
+fn middle(counts: [usize; 3], place: [usize; 3]) -> [f32; 3] {
+    let [h, d, phi] = [0, 1, 2].map(|axis| (place[axis] as f32 + 0.5) / counts[axis] as f32);
+    [FRAC_PI_2 * h.powi(2), FRAC_PI_2 * d, PI * phi]
 }
 
 /// Directions to light and viewer in the local frame for three angles in radians.

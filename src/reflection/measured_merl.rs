@@ -72,4 +72,8 @@ impl ReflectionModel for MeasuredMerl {
     fn quantity(&self, symbol: &str, arguments: &[f32]) -> Option<Vec3> {
         self.grid()?.quantity(symbol, arguments)
     }
+
+    fn measured_near(&self, l: Vec3, v: Vec3) -> Option<(Vec3, Vec3)> {
+        self.grid()?.nearest(l, v)
+    }
 }

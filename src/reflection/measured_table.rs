@@ -74,6 +74,10 @@ impl ReflectionModel for MeasuredTable {
         self.grid()?.quantity(symbol, arguments)
     }
 
+    fn measured_near(&self, l: Vec3, v: Vec3) -> Option<(Vec3, Vec3)> {
+        self.grid()?.nearest(l, v)
+    }
+
     fn uncertainty(&self, l: Vec3, v: Vec3, frame: &Frame) -> Option<f32> {
         self.grid()?.uncertainty(angles(l, v, frame.n))
     }

@@ -149,6 +149,12 @@ pub trait ReflectionModel: ParameterSet + Clone {
         None
     }
 
+    /// The pair of directions in the local frame nearest to another for which a measurement has a value of its own, without
+    /// interpolation: there fits compare models with it. `None` if the nearest one was not measured.
+    fn measured_near(&self, l: Vec3, v: Vec3) -> Option<(Vec3, Vec3)> {
+        Some((l, v))
+    }
+
     /// A single factor of the lobe, as used by [`response`](Self::response), for plots. `None` at all angles
     /// for a factor that the model lacks.
     fn factor(&self, _factor: Factor) -> Option<Vec3> {

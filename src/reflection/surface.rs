@@ -84,6 +84,10 @@ pub trait Surface: Send + Sync {
     fn uncertainty(&self, _l: Vec3, _v: Vec3, _frame: &Frame) -> Option<f32> {
         None
     }
+    /// See [`ReflectionModel::measured_near`].
+    fn measured_near(&self, l: Vec3, v: Vec3) -> Option<(Vec3, Vec3)> {
+        Some((l, v))
+    }
     /// See [`ReflectionModel::factor`].
     fn factor(&self, _factor: Factor) -> Option<Vec3> {
         None
@@ -166,6 +170,7 @@ impl<M: ReflectionModel> Surface for M {
         fn lobes() -> Lobes;
         fn readouts() -> Vec<Readout>;
         fn uncertainty(l: Vec3, v: Vec3, frame: &Frame) -> Option<f32>;
+        fn measured_near(l: Vec3, v: Vec3) -> Option<(Vec3, Vec3)>;
         fn factor(factor: Factor) -> Option<Vec3>;
     }
 
@@ -217,6 +222,7 @@ impl<M: ReflectionModel> Surface for Instance<M> {
         fn lobes() -> Lobes;
         fn readouts() -> Vec<Readout>;
         fn uncertainty(l: Vec3, v: Vec3, frame: &Frame) -> Option<f32>;
+        fn measured_near(l: Vec3, v: Vec3) -> Option<(Vec3, Vec3)>;
         fn factor(factor: Factor) -> Option<Vec3>;
     }
 

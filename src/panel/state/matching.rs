@@ -129,6 +129,7 @@ impl Session {
     fn apply_match(&mut self, view: usize, measure: Measure, found: Match, registry: &Registry) {
         let letter = LETTERS.get(view).copied().unwrap_or("?");
         let label = |name: &&'static str| registry.material_parameter(name).map_or(*name, |p| p.label);
+        let ambiguity = found.ambiguity(|name| label(&name)).map_or_else(String::new, |note| sentence(&note));
         let values: Vec<_> =
             found.values.iter().map(|(name, value)| format!("{} {value}", label(name))).collect();
         let kept: Vec<_> = found.kept.iter().map(label).collect();
@@ -143,7 +144,7 @@ impl Session {
         self.look(registry);
         if self.document.done() != steps {
             let text = format!(
-                "View {letter} matched to view A on the {measure}: {}.{kept} Error: {} → {} ({}).{note}",
+                "View {letter} matched to view A on the {measure}: {}.{kept} Error: {} → {} ({}).{ambiguity}{note}",
                 listed(&values, "and"),
                 digits(found.before),
                 digits(found.after),

@@ -161,6 +161,35 @@ fn a_surface_that_is_no_mirror_image_of_itself_keeps_its_hand() {
 }
 
 #[test]
+fn the_nearest_directions_that_were_measured_have_the_values_of_the_file() {
+    let numbers = (FORMAT.read)(&of_brdf(metal)).expect("legal");
+    let grid = Grid::new(&numbers).expect("a table");
+    let mut seed = 4;
+    let (mut own, mut between, mut missing) = (0.0f32, 0.0f32, 0);
+    for _ in 0..20_000 {
+        let (l, v) = (any_direction(&mut seed), any_direction(&mut seed));
+        let error = |l: Vec3, v: Vec3| {
+            let expected = metal(l, v);
+            ((grid.value(angles(l, v, Vec3::Z)) - expected) / expected).abs().max_element()
+        };
+        let Some((a, b)) = grid.nearest(l, v) else {
+            missing += 1;
+            assert!(l.z.min(v.z) < 0.05, "{l} {v}");
+            continue;
+        };
+        // A bin is at most 2° wide, but for the azimuth about a half vector.
+        assert!((l - a).length() < 0.06 && (v - b).length() < 0.06, "{l} {a}, {v} {b}");
+        if l.z.min(v.z) > 0.26 && a.z.min(b.z) > 0.26 {
+            own = own.max(error(a, b));
+            between = between.max(error(l, v));
+        }
+    }
+    // What remains is the error of 16 bits.
+    assert!(own < 1.5e-3 && between > 2.0 * own, "{own} {between}");
+    assert!(missing > 0);
+}
+
+#[test]
 fn where_entries_are_missing_the_table_goes_on_and_says_so() {
     const END: f32 = 1.0;
     let value = |[_, theta_d, _]: [f32; 3]| match theta_d {

@@ -7,7 +7,7 @@ use std::{
 
 use glam::Vec3;
 use lights_camera_models::{
-    matching::{Request, What, each::match_each, match_view},
+    matching::{Match, Request, What, each::match_each, match_view, parameters},
     optics::{
         Frame, TermSelection,
         colour::{BACKGROUND, Encoding},
@@ -168,6 +168,136 @@ fn a_model_matched_with_a_file_written_from_it_finds_its_parameters_again() {
         assert!((value.numbers()[0] / 0.25 - 1.0).abs() < 0.01, "{name}: {found:?}");
     }
     assert!(found.after < 0.1 * found.before, "{found:?}");
+}
+
+/// What a model with all its numbers and colours free finds in a file written from itself. Choices are given.
+fn fitted_back(model: &str, written: &[(&'static str, Value)]) -> Match {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut all, mut chosen) = (Values::default(), Values::default());
+    for (name, value) in written {
+        all.set(*name, value.clone());
+        if matches!(value, Value::Choice(_)) {
+            chosen.set(*name, value.clone());
+        }
+    }
+    write(&place(&folder, "own.binary"), model, &all);
+    let mut scene = read(folder.path(), "own.binary").expect("legal");
+    let variant =
+        Variant { reflection_model: Some(model.to_owned()), material: chosen, ..Variant::default() };
+    scene.variants = vec![variant];
+    let registry = Registry::builtin();
+    let free: Vec<_> = parameters(&scene, 1, &registry).into_iter().map(|(p, _)| p.name).collect();
+    let request = Request { scene: &scene, view: 1, measure: What::Lobe.into(), parameters: &free };
+    match_view(&request, &registry, &Progress::NONE).expect("a match")
+}
+
+/// The numbers that a match found for a parameter; the default if it kept it.
+fn numbers(found: &Match, model: &str, name: &str) -> [f64; 3] {
+    let value = found.values.iter().find(|(known, _)| *known == name).map(|(_, value)| value.clone());
+    let registry = Registry::builtin();
+    let parameter = registry.model(model).and_then(|model| model.parameter(name)).expect("declared");
+    value.unwrap_or_else(|| parameter.default_value()).numbers()
+}
+
+/// The five models of docs/measured.md.
+#[test]
+fn five_models_come_back_from_their_files_with_their_parameters_within_a_hundredth() {
+    let text = |id: &'static str| Value::Choice(id.into());
+    let number = Value::Number;
+    let colour = Value::Colour;
+    let models: [(&str, &[(&'static str, Value)]); 5] = [
+        ("oren_nayar", &[("base_colour", colour([200, 110, 70])), ("sigma", number(25.0))]),
+        ("minnaert", &[("base_colour", colour([150, 140, 90])), ("limb_darkening", number(1.3))]),
+        (
+            "cook_torrance",
+            &[
+                ("base_colour", colour([150, 140, 90])),
+                ("ior", Value::Triple([1.6; 3])),
+                ("extinction", Value::Triple([0.0; 3])),
+                ("slope", number(0.2)),
+                ("specular_weight", number(0.5)),
+            ],
+        ),
+        (
+            "metallic_roughness",
+            &[
+                ("base_colour", colour([200, 150, 80])),
+                ("metallic", number(0.0)),
+                ("roughness", number(0.4)),
+                ("reflectance", number(0.6)),
+            ],
+        ),
+        (
+            "microfacet",
+            &[
+                ("fresnel", text("conductor")),
+                ("diffuse", text("none")),
+                ("ior", Value::Triple([2.9, 2.8, 2.6])),
+                ("extinction", Value::Triple([3.1, 2.9, 2.8])),
+                ("alpha_x", number(0.2)),
+                ("alpha_y", number(0.2)),
+            ],
+        ),
+    ];
+    for (model, written) in models {
+        let found = fitted_back(model, written);
+        for (name, value) in written.iter().filter(|(_, value)| !matches!(value, Value::Choice(_))) {
+            for (wanted, own) in value.numbers().into_iter().zip(numbers(&found, model, name)) {
+                // A small extinction reflects by its square.
+                let slack = if wanted == 0.0 { 0.05 } else { 0.01 * wanted };
+                assert!((own - wanted).abs() <= slack, "{model} {name}: {wanted} {own} {found:?}");
+            }
+        }
+        assert!(found.after < 0.003 * found.before, "{model}: {found:?}");
+        assert!(model == "cook_torrance" || found.ambiguous.is_empty(), "{model}: {found:?}");
+    }
+}
+
+/// Where nearly all light is reflected, index and extinction do nearly the same, and every error of the file counts.
+#[test]
+fn index_and_extinction_of_a_bright_metal_come_back_within_three_hundredths() {
+    let text = |id: &'static str| Value::Choice(id.into());
+    let written = [
+        ("fresnel", text("conductor")),
+        ("diffuse", text("none")),
+        ("ior", Value::Triple([0.27, 0.68, 1.32])),
+        ("extinction", Value::Triple([3.6, 2.6, 2.3])),
+        ("alpha_x", Value::Number(0.2)),
+        ("alpha_y", Value::Number(0.2)),
+    ];
+    let found = fitted_back("microfacet", &written);
+    for (name, value) in &written[2..] {
+        let pairs = value.numbers().into_iter().zip(numbers(&found, "microfacet", name));
+        // Between the entries of the table it would be 6 %.
+        let is_near = |(wanted, own): (f64, f64)| (own - wanted).abs() <= 0.03 * wanted;
+        assert!(pairs.clone().all(is_near), "{name}: {found:?}");
+    }
+}
+
+#[test]
+fn what_a_file_tells_only_together_comes_back_together_and_is_said() {
+    const MODEL: &str = "blinn_phong_normalised";
+    let written = [
+        ("base_colour", Value::Colour([90, 110, 160])),
+        ("specular_colour", Value::Colour([230, 220, 200])),
+        ("k_s", Value::Number(0.3)),
+        ("alpha", Value::Integer(60)),
+    ];
+    let found = fitted_back(MODEL, &written);
+    let mut ambiguous = found.ambiguous.clone();
+    ambiguous.sort_unstable();
+    assert_eq!(ambiguous, ["k_s", "specular_colour"], "{found:?}");
+    let note = found.ambiguity(|name| name).expect("it is said");
+    assert!(note.contains("k_s") && note.ends_with(", changed together, come as near"), "{note}");
+    let own = |name: &str| numbers(&found, MODEL, name);
+    assert!((own("alpha")[0] - 60.0).abs() <= 1.0, "{found:?}");
+    // The product is determined, and the body, as far as the steps of a colour go.
+    let decoded = |colour: [f64; 3]| Encoding::Srgb.decode(colour.map(|code| code as u8));
+    let product = own("k_s")[0] as f32 * decoded(own("specular_colour"));
+    let expected = 0.3 * Encoding::Srgb.decode([230, 220, 200]);
+    assert!((product / expected - 1.0).abs().max_element() < 0.01, "{product} {expected} {found:?}");
+    let body = own("base_colour").into_iter().zip([90.0, 110.0, 160.0]);
+    assert!(body.into_iter().all(|(own, wanted)| (own - wanted).abs() <= 2.0), "{found:?}");
 }
 
 #[test]
