@@ -1,11 +1,12 @@
 //! Pictures of the laboratory in a browser are those of the command line.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use super::laboratory::Laboratory;
 use crate::helpers::{
     browser::rgb,
-    support::{lcm, root},
+    skipped::skip,
+    support::{command_in, root, run},
 };
 
 /// The size of the page. Its picture is wider than 16:9, as the window shows what a scene's observer sees in narrower ones smaller.
@@ -20,11 +21,14 @@ const SCENES: [&str; 10] = [
     "gold_three_lights",
     "gouraud_misses_highlight",
     "lobe_shape",
-    "many_lights",
+    "photometric_lamps",
     "shapes_and_lights",
     "superellipsoids",
     "white_furnace",
 ];
+/// Where Chromium has its driver, which draws on the CPU. That of Mesa takes its samples of edges elsewhere.
+const DRIVERS: [&str; 4] =
+    ["/usr/lib/chromium", "/usr/lib/chromium-browser", "/usr/lib64/chromium-browser", "/opt/google/chrome"];
 /// The share of pixels that may differ by more than 2 levels.
 const BEYOND: f64 = 0.001;
 
@@ -39,6 +43,12 @@ fn beyond(one: &[u8], other: &[u8]) -> f64 {
 #[test]
 fn a_page_shows_the_pictures_of_the_command_line() {
     let Some(lab) = Laboratory::start(SIZE) else { return };
+    let drivers = DRIVERS.map(|folder| Path::new(folder).join("vk_swiftshader_icd.json"));
+    let Some(driver) = drivers.into_iter().find(|driver| driver.is_file()) else {
+        return skip(
+            "Chromium has its Vulkan driver in none of the usual folders (apt-get install chromium)",
+        );
+    };
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("picture.png");
     let height = SIZE[1] - BARS;
@@ -47,7 +57,10 @@ fn a_page_shows_the_pictures_of_the_command_line() {
         let (scene, out) = (scene.to_str().expect("Unicode"), file.to_str().expect("Unicode"));
         let size = format!("{width}x{height}");
         let arguments = ["render", scene, "-o", out, "--size", &size, "--renderer", "gpu", "-q"];
-        let run = lcm(&[&arguments[..], options].concat(), "");
+        let mut command = command_in(root(), [&arguments[..], options].concat());
+        // The newer and the older name of the variable.
+        command.env("VK_DRIVER_FILES", &driver).env("VK_ICD_FILENAMES", &driver);
+        let run = run(command, b"");
         assert_eq!(run.status, Some(0), "{}", run.err);
         rgb(&fs::read(&file).expect("a picture")).0
     };
