@@ -1,5 +1,5 @@
-//! The laboratory in a page, driven by keys. What it has done shows in the title, in the files that the browser keeps, and in
-//! what arrives on the clipboard.
+//! The laboratory in a page, driven by keys. What it has done shows in the title, in the files that the browser keeps,
+//! and in what arrives on the clipboard.
 
 use std::{
     env, fs,
