@@ -69,7 +69,7 @@ pub(super) fn copy_menu(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let menu = ui.menu_button("Copy as…", |ui| {
         for form in FORMS.iter().filter(|form| shaders::is_text(form)) {
             if ui.button(form.name).clicked() {
-                context.actions.extend(copied(form, object, session, registry));
+                context.actions.push(copied(form, object, session, registry));
                 ui.close();
             }
         }
@@ -78,14 +78,11 @@ pub(super) fn copy_menu(ui: &mut Ui, context: &mut PanelContext<'_>) {
 }
 
 /// The shader of an object for the clipboard, and the message about it.
-fn copied(form: &Form, object: usize, session: &Session, registry: &Registry) -> Vec<Action> {
+fn copied(form: &Form, object: usize, session: &Session, registry: &Registry) -> Action {
     let scene = &session.document;
     let request = Request { scene, registry, stem: "scene", size: SIZE, object, point: None };
     match shaders::text(form, &request) {
-        Ok(text) => vec![
-            Action::Do(Effect::CopyText(text)),
-            Action::Say(Severity::Info, format!("Copied: {}.", form.name)),
-        ],
-        Err(error) => vec![Action::Say(Severity::Error, format!("Not copied: {error}."))],
+        Ok(text) => Action::Copy(text, format!("Copied: {}.", form.name)),
+        Err(error) => Action::Say(Severity::Error, format!("Not copied: {error}.")),
     }
 }

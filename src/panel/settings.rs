@@ -11,7 +11,7 @@ use super::prelude::*;
 pub use super::state::Settings;
 use crate::{
     files::{self, FileError, tidy},
-    program,
+    platform, program,
 };
 
 /// Environment variable that overrides the folder of the settings.
@@ -30,7 +30,7 @@ const MAX_BYTES: u64 = 1 << 20;
 pub fn folder() -> Option<PathBuf> {
     let shared = match std::env::var_os(FOLDER_VARIABLE) {
         Some(folder) if !folder.is_empty() => Some(PathBuf::from(folder)),
-        _ => directories::ProjectDirs::from("", "", program::LAB).map(|d| d.config_dir().to_owned()),
+        _ => platform::settings_folder(program::LAB),
     };
     shared.map(program::own)
 }
@@ -98,7 +98,7 @@ pub(super) fn write(path: &Path, value: &impl Serialize) -> Result<(), FileError
 pub fn save(folder: &Path, settings: &Settings) -> Result<(), String> {
     let path = folder.join(FILE);
     let write = || -> Result<(), FileError> {
-        crate::platform::fs::create_dir_all(folder)?;
+        platform::fs::create_dir_all(folder)?;
         let mut settings = settings.clone();
         match read::<Settings>(&path) {
             Ok(Some(found)) => {

@@ -11,4 +11,8 @@ pub enum Notice {
     Warning(String),
     /// A file that was written, but could not be kept after all, and why.
     Unkept(PathBuf, String),
+    /// A text that is on the clipboard now.
+    Copied(String),
+    /// A text that was not copied to the clipboard, and why.
+    Uncopied(String, String),
 }

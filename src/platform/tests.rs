@@ -294,6 +294,19 @@ fn what_another_tab_writes_arrives_and_neither_overwrites_the_other() {
 }
 
 #[test]
+fn a_page_says_what_was_copied_and_what_was_not() {
+    let said = |what: &str, subject: &str, why: &str| tabs::happened(what, subject, why.into());
+    assert_eq!(said("copied", "a link", ""), Some(Notice::Copied("a link".to_owned())));
+    let why = "the page is not in front".to_owned();
+    let uncopied = Some(Notice::Uncopied("a link".to_owned(), why.clone()));
+    assert_eq!(said("uncopied", "a link", &format!("{why}.")), uncopied);
+    let size = "Copied the picture: 728×547 pixels.".to_owned();
+    assert_eq!(said("copied picture", "728×547", ""), Some(Notice::Info(size)));
+    let picture = format!("The picture was not copied: {why}. Save it instead.");
+    assert_eq!(said("uncopied picture", &format!("{why}."), ""), Some(Notice::Warning(picture)));
+}
+
+#[test]
 fn what_the_browser_has_no_room_for_is_not_written() {
     let _alone = lock(&ALONE);
     page::ROOM.set(3.0);

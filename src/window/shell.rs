@@ -98,6 +98,8 @@ fn notices(mut session: ResMut<Session>) {
             Notice::Info(text) => session.say(Severity::Info, text),
             Notice::Warning(text) => session.say(Severity::Warning, text),
             Notice::Unkept(path, why) => session.not_kept(&path, &why),
+            Notice::Copied(text) => session.copied(&text),
+            Notice::Uncopied(text, why) => session.not_copied(&text, &why),
         }
     }
 }

@@ -15,4 +15,5 @@ mod library;
 mod models;
 mod renderers;
 mod scenes;
+mod web;
 mod window;

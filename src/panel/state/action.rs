@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::{
     Alike, Arrangement, CodeCommand, CompareCommand, Effect, LessonCommand, MatchCommand, MaterialCommand,
-    PlotCommand, Session, Severity, TakeCommand, ViewChange,
+    Note, PlotCommand, Session, Severity, TakeCommand, ViewChange,
 };
 use crate::{
     document::{Edit, Selection},
@@ -111,6 +111,8 @@ pub enum Action {
     Code(CodeCommand),
     /// A command for exports.
     Export(ExportCommand),
+    /// Copy a text, and say this once it is copied.
+    Copy(String, String),
     /// Copy a link.
     CopyLink(LinkTo),
     /// A command for the views of a comparison.
@@ -319,6 +321,7 @@ impl Session {
             Action::Material(command) => self.material(command, registry),
             Action::Code(command) => self.code(command, registry),
             Action::Export(command) => self.export(command),
+            Action::Copy(text, said) => self.copy(text, Note::new(Severity::Info, said)),
             Action::CopyLink(to) => self.copy_link(to, registry),
             Action::Say(severity, text) => self.say(severity, text),
             Action::Dismiss(index) => self.messages.dismiss(index),

@@ -6,7 +6,7 @@ use super::{Action, Effect, ExportCommand, Note, Pick, Session, Severity};
 use crate::{
     export::{Form, form},
     files::{self, Shown as _},
-    platform::fs,
+    platform::{self, fs},
     scene::variant::LETTERS,
     sweep::Format,
 };
@@ -95,9 +95,10 @@ impl Session {
                 let text = format!("Saved the picture to {}.{}", path.shown(), opens(elsewhere));
                 self.note_file(text, &path);
             }
-            PictureEnd::Copied([width, height]) => {
+            PictureEnd::Copied([width, height]) if platform::COPIES_AT_ONCE => {
                 self.say(Severity::Info, format!("Copied the picture: {width}×{height} pixels."));
             }
+            PictureEnd::Copied(_) => {}
             PictureEnd::Cancelled => {
                 self.say(Severity::Info, "The picture was cancelled; nothing was written.");
             }

@@ -1,6 +1,6 @@
 //! Links to the scene and to the step of a lesson, for the clipboard.
 
-use super::{Effect, LessonSource, LinkTo, Note, Session, Severity};
+use super::{LessonSource, LinkTo, Note, Session, Severity};
 use crate::{platform, registry::Registry, scene::link};
 
 impl Session {
@@ -28,8 +28,7 @@ impl Session {
         if to == LinkTo::Scene {
             note = self.with_view(note, "link");
         }
-        self.request(Effect::CopyText(page.unwrap_or_default() + &end));
-        self.note(note);
+        self.copy(page.unwrap_or_default() + &end, note);
     }
 
     /// The end of an address that opens the step of the open lesson.
@@ -49,7 +48,7 @@ impl Session {
 mod tests {
     use super::*;
     use crate::{
-        panel::state::{Action, LessonCommand},
+        panel::state::{Action, Effect, LessonCommand},
         parameter::Value,
         scene::{
             Scene,

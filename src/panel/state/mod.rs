@@ -69,6 +69,7 @@ mod aside;
 mod author;
 mod carry;
 mod carry_view;
+mod clipboard;
 mod code;
 mod code_command;
 mod compare;
@@ -171,6 +172,8 @@ with_defaults! {
         /// saved.
         pub wanted_dialog: Option<Effect> = None,
         seen: Seen = Seen::default(),
+        /// The texts that are on their way to the clipboard, and what is said once they are there.
+        copying: Vec<(String, Note)> = Vec::new(),
         /// The effects that the action has requested so far.
         requested: Vec<Effect> = Vec::new(),
     }

@@ -27,6 +27,8 @@ pub const SHARES_FILES: bool = false;
 pub const HAS_PROGRAMS: bool = false;
 /// True if the program goes on after a panic, and after its window is closed.
 pub const OUTLIVES_WINDOW: bool = false;
+/// True if what is copied is on the clipboard at once. Otherwise, the notices tell.
+pub const COPIES_AT_ONCE: bool = false;
 /// True if a call can wait for the GPU.
 pub const WAITS_FOR_GPU: bool = false;
 
@@ -62,6 +64,12 @@ pub fn temporary_folder() -> PathBuf {
 /// The folder of a program for what it keeps for its user.
 #[must_use]
 pub fn data_folder(_name: &str) -> Option<PathBuf> {
+    Some(PathBuf::from(fs::DATA))
+}
+
+/// The folder of a program for its settings.
+#[must_use]
+pub fn settings_folder(_name: &str) -> Option<PathBuf> {
     Some(PathBuf::from(fs::DATA))
 }
 

@@ -115,10 +115,31 @@ function take(name, options = {}) {
     });
 }
 
+// What a page leaves behind in its tab for the next one there.
+const LEFT = "lab-left";
+
+addEventListener("pagehide", ({ persisted }) => {
+    try {
+        if (!persisted) sessionStorage.setItem(LEFT, NUMBER);
+    } catch (why) {
+        console.warn(`The next page will not know of this one: ${why.message ?? why}`);
+    }
+});
+
+/** Waits until the page that was left for this one has given back its locks: it is no other tab. */
+async function outlivePredecessor() {
+    const left = sessionStorage.getItem(LEFT);
+    if (left === null) return;
+    sessionStorage.removeItem(LEFT);
+    const free = await take(`tab:${left}`, { signal: AbortSignal.timeout(10_000) }).catch(() => null);
+    free?.();
+}
+
 // One tab starts after the other, so that each sees what the others have.
 let begun = () => {};
 let tabs = [];
 try {
+    await outlivePredecessor();
     begun = (await take("start", { signal: AbortSignal.timeout(10_000) }).catch(() => null)) ?? begun;
     const locks = (await navigator.locks.query()).held.map((lock) => lock.name);
     tabs = locks.filter((name) => name.startsWith("tab:")).map((name) => name.slice("tab:".length));
@@ -398,13 +419,28 @@ export function after(milliseconds, call) {
     setTimeout(call, milliseconds);
 }
 
+// egui copies texts, and tells nobody whether it could.
+const writeText = navigator.clipboard?.writeText;
+if (writeText) {
+    navigator.clipboard.writeText = async function (text) {
+        try {
+            await writeText.call(this, text);
+            happened("copied", text);
+        } catch (why) {
+            happened("uncopied", text, new TextEncoder().encode(why.message ?? why));
+            throw why;
+        }
+    };
+}
+
 export async function copyPicture(rgba, width, height) {
     const canvas = new OffscreenCanvas(width, height);
     canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(rgba), width, height), 0, 0);
     const picture = canvas.convertToBlob({ type: "image/png" });
     try {
         await navigator.clipboard.write([new ClipboardItem({ "image/png": picture })]);
+        happened("copied picture", `${width}×${height}`);
     } catch (why) {
-        happened("uncopied", why.message ?? `${why}`);
+        happened("uncopied picture", why.message ?? `${why}`);
     }
 }

@@ -1,4 +1,4 @@
-//! What the page reports: what other tabs of the site do, and what has failed.
+//! What the page reports: what other tabs of the site do, what has been copied, and what has failed.
 //!
 //! All tabs share the files that the browser keeps. What one writes, the others hear, as a desktop tells of files that
 //! another program changes. If two write a file before they hear of each other, that of the first stays, and that of the
@@ -27,8 +27,15 @@ pub(super) fn happened(what: &str, subject: &str, bytes: Vec<u8>) -> Option<Noti
             );
             return Some(Notice::Warning(text));
         }
+        "copied" => return Some(Notice::Copied(subject.to_owned())),
         "uncopied" => {
-            return Some(Notice::Warning(format!("The picture was not copied: {subject}. Save it instead.")));
+            let why = String::from_utf8_lossy(&bytes);
+            return Some(Notice::Uncopied(subject.to_owned(), why.trim_end_matches('.').to_owned()));
+        }
+        "copied picture" => return Some(Notice::Info(format!("Copied the picture: {subject} pixels."))),
+        "uncopied picture" => {
+            let why = subject.trim_end_matches('.');
+            return Some(Notice::Warning(format!("The picture was not copied: {why}. Save it instead.")));
         }
         "fatal" => {
             let text = format!(

@@ -113,7 +113,7 @@ pub fn fatal_trials() -> Vec<String> {
     page::fatal_trials()
 }
 
-/// Copies a picture of RGBA pixels to the clipboard. Why it was not is among the [`notices`].
+/// Copies a picture of RGBA pixels to the clipboard. Whether it was is among the [`notices`].
 ///
 /// # Errors
 /// Returns none.

@@ -29,6 +29,8 @@ pub const SHARES_FILES: bool = true;
 pub const HAS_PROGRAMS: bool = true;
 /// True if the program goes on after a panic, and after its window is closed.
 pub const OUTLIVES_WINDOW: bool = true;
+/// True if what is copied is on the clipboard at once. Otherwise, the notices tell.
+pub const COPIES_AT_ONCE: bool = true;
 /// True if a call can wait for the GPU.
 pub const WAITS_FOR_GPU: bool = true;
 
@@ -54,6 +56,12 @@ pub fn temporary_folder() -> PathBuf {
 #[must_use]
 pub fn data_folder(name: &str) -> Option<PathBuf> {
     Some(directories::ProjectDirs::from("", "", name)?.data_dir().to_owned())
+}
+
+/// The folder of a program for its settings.
+#[must_use]
+pub fn settings_folder(name: &str) -> Option<PathBuf> {
+    Some(directories::ProjectDirs::from("", "", name)?.config_dir().to_owned())
 }
 
 /// The operating system tells of changed files.

@@ -43,6 +43,16 @@ fn one_module_alone_asks_where_the_program_runs() {
 }
 
 #[test]
+fn one_module_alone_asks_for_the_folders_of_the_operating_system() {
+    // There are none in a browser, where what is kept in them would be lost.
+    let asking = |all: &Files| {
+        let of_system = all.iter().filter(|(_, text)| text.contains("ProjectDirs"));
+        of_system.map(|(path, _)| path.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(asking(&source()), ["platform/desktop/mod.rs"]);
+}
+
+#[test]
 fn a_desktop_and_a_browser_have_one_interface() {
     let all = source();
     let desktop = interface(&all, "platform/desktop/");

@@ -133,6 +133,59 @@ impl Browser {
         self.ask("POST", "/url", &json!({ "url": format!("file://{address}") }));
     }
 
+    /// Opens a page.
+    pub fn go(&self, address: &str) {
+        self.ask("POST", "/url", &json!({ "url": address }));
+    }
+
+    /// Lets pages take as long as tests do.
+    pub fn be_patient(&self) {
+        let patience = PATIENCE.as_millis() as u64;
+        self.ask("POST", "/timeouts", &json!({ "script": patience, "pageLoad": patience }));
+    }
+
+    /// Presses keys together, as a user does: one after the other.
+    pub fn press(&self, keys: &[char]) {
+        let key = |sort: &'static str| move |key: &char| json!({ "type": sort, "value": key.to_string() });
+        let down = keys.iter().map(key("keyDown"));
+        let hold = std::iter::once(json!({ "type": "pause", "duration": 50 }));
+        let steps: Vec<_> = down.chain(hold).chain(keys.iter().rev().map(key("keyUp"))).collect();
+        self.act(&json!({ "type": "key", "id": "keys", "actions": steps }));
+    }
+
+    /// Clicks a place in the page.
+    pub fn click(&self, x: u32, y: u32) {
+        let pause = json!({ "type": "pause", "duration": 150 });
+        let steps = json!([
+            { "type": "pointerMove", "duration": 0, "x": x, "y": y, "origin": "viewport" },
+            pause,
+            { "type": "pointerDown", "button": 0 },
+            pause,
+            { "type": "pointerUp", "button": 0 },
+        ]);
+        let parameters = json!({ "pointerType": "mouse" });
+        self.act(&json!({ "type": "pointer", "id": "mouse", "parameters": parameters, "actions": steps }));
+    }
+
+    fn act(&self, source: &Value) {
+        self.ask("POST", "/actions", &json!({ "actions": [source] }));
+    }
+
+    /// The tab in front.
+    pub fn tab(&self) -> Value {
+        self.ask("GET", "/window", &Value::Null)
+    }
+
+    /// Opens another tab behind it.
+    pub fn new_tab(&self) -> Value {
+        self.ask("POST", "/window/new", &json!({ "type": "tab" }))["handle"].take()
+    }
+
+    /// Brings a tab to the front.
+    pub fn show_tab(&self, tab: &Value) {
+        self.ask("POST", "/window", &json!({ "handle": tab }));
+    }
+
     /// Waits until the picture shows all settings, or the page has reported that it cannot.
     pub fn settle(&self) {
         let state = "return document.body?.dataset.state ?? null";
