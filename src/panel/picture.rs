@@ -82,7 +82,9 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let texts: Vec<_> = texts.into_iter().filter(Rect::is_positive).collect();
         presentation::message(ui, whole, &pictures, &texts, session);
     }
-    let mut area = PictureArea { rect, frame, written, ..PictureArea::default() };
+    // As large as in other legends.
+    let letters = if presenting { CAPTION * whole.height() } else { theme::SMALL };
+    let mut area = PictureArea { rect, frame, written, letters, ..PictureArea::default() };
     if !arrangement.is_single() {
         (area.cells, area.map) = (arrangement.cells, arrangement.map);
     }
@@ -90,12 +92,10 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     context.picture = (area, places);
 }
 
-/// Size of the letters of the legend that a difference map contains, in pixels of the map, which is so many pixels high:
-/// as large as in other legends.
+/// Size of the letters of the legend that a difference map contains, in pixels of the map, which is so many pixels high.
 #[must_use]
-pub fn letters_of_map(area: &PictureArea, height: f32, presenting: bool) -> Option<f32> {
-    let map = area.map?;
-    Some(if presenting { CAPTION * height } else { theme::SMALL * height / map.height() })
+pub fn letters_of_map(area: &PictureArea, height: f32) -> Option<f32> {
+    Some(area.letters * height / area.map?.height())
 }
 
 /// The overlays of a picture, as far as they are painted.

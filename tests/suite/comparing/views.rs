@@ -329,13 +329,14 @@ fn the_legend_of_a_map_is_as_large_as_other_text() {
         bench.apply(Action::View(ViewChange::Scale(scale)));
         let zoom = bench.area.zoom;
         let height = zoom * bench.area.map.expect("there is a map").height();
-        let letters = letters_of_map(&bench.area, height, false).expect("a legend");
+        let letters = letters_of_map(&bench.area, height).expect("a legend");
         assert!((letters - 11.5 * zoom).abs() < 0.1, "{scale} %: {letters}");
     }
     bench.apply(Action::View(ViewChange::Presenting(true)));
     let height = bench.area.zoom * bench.area.map.expect("there is a map").height();
-    let letters = letters_of_map(&bench.area, height, true).expect("a legend");
-    assert!(letters > 0.03 * height, "{letters} of {height}");
+    let letters = letters_of_map(&bench.area, height).expect("a legend");
+    // The map is only a part of the screen, and its legend is read from afar as well.
+    assert!(letters > 0.03 * 720.0, "{letters} of 720, in a map of {height}");
 }
 
 #[test]
