@@ -126,7 +126,7 @@ impl Stage {
         let (spot, below) =
             (PlatePlace::Corner(Align2::LEFT_TOP, 0.0), whole.with_min_y(whole.top() + above));
         let most = whole.width() - 2.0 * padding.x;
-        let words = Lines::of(ui, parts.clone(), CAPTION * whole.height(), Palette::here(ui).text, most);
+        let words = Lines::even(ui, &parts, CAPTION * whole.height(), Palette::here(ui).text, most);
         let caption = Align2::LEFT_BOTTOM.anchor_size(whole.left_bottom(), words.size + 2.0 * padding);
         let room = below.with_max_y(caption.top());
         let mut ui = ui.new_child(UiBuilder::new().id_salt("trial").max_rect(whole).invisible());
@@ -203,7 +203,7 @@ impl Stage {
         let padding = padding(self.whole);
         ui.painter().rect_filled(self.caption, CornerRadius { ne: 8, ..CornerRadius::ZERO }, palette.panel);
         let width = self.whole.width() - 2.0 * padding.x;
-        let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width).closed();
+        let words = Lines::even(ui, &self.parts, CAPTION * height, palette.text, width).closed();
         words.paint(ui, self.caption.min + padding, palette.text);
         if !self.equation.is_empty() {
             ui.painter().rect_filled(self.plate, 8.0, palette.panel);

@@ -511,6 +511,49 @@ fn badges_cover_at_most_a_quarter_of_a_small_picture() {
 }
 
 #[test]
+fn badges_cover_little_of_the_objects_in_views_over_each_other() {
+    let clipped = |share: u32| Clipping::new(vec![share; Clipping::GRID[0] * Clipping::GRID[1]]);
+    for layout in [Layout::Wipe, Layout::Difference] {
+        let mut bench = shipped("compare_phong_blinn_phong.json");
+        bench.apply(Action::View(ViewChange::Scale(150)));
+        bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+        bench.apply(Action::Compare(CompareCommand::Activate(0)));
+        bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
+        bench.session.facts.clipping = [clipped(20), clipped(50), None, None];
+        bench.settle();
+        let badges: Vec<_> = (bench.tree.iter())
+            .filter(|s| ["A · ", "B · "].iter().any(|letter| s.label.starts_with(letter)))
+            .map(|s| s.rect)
+            .collect();
+        assert!(badges.len() > 1, "{layout:?}");
+        let lens = Lens::of(&bench.session, bench.area.cells[0].rect);
+        let ball = &bench.session.document.objects[0];
+        let right = bench.session.facts.camera * glam::Vec3::X;
+        let at = lens.project(ball.position).expect("before the camera");
+        let radius = lens.project(ball.position + 0.5 * ball.size * right).expect("as well").distance(at);
+        let steps = (-20i16..=20).flat_map(|x| (-20i16..=20).map(move |y| vec2(x.into(), y.into()) / 20.0));
+        let inside: Vec<_> =
+            steps.filter(|step| step.length() < 1.0).map(|step| at + radius * step).collect();
+        let covered = inside.iter().filter(|p| badges.iter().any(|badge| badge.contains(**p))).count();
+        let share = covered as f32 / inside.len() as f32;
+        assert!(share < 0.12, "{layout:?}: {share}: {badges:?}");
+    }
+}
+
+#[test]
+fn a_header_says_the_terms_that_differ_where_there_is_no_room_for_all() {
+    let mut bench = shipped("compare_phong_blinn_phong.json");
+    bench.apply(Action::Compare(CompareCommand::Activate(1)));
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
+    bench.apply(Action::Expose(3.0));
+    bench.settle();
+    let texts = bench.texts();
+    for words in ["diffuse term alone", "all terms"] {
+        assert!(texts.iter().any(|text| text == words), "{words} of {texts:?}");
+    }
+}
+
+#[test]
 fn a_view_differs_only_in_what_differs_now() {
     let mut bench = bench();
     bench.key(Key::B, CTRL);
