@@ -17,7 +17,7 @@ const MODEL: u8 = 1;
 const SHADING: u8 = 2;
 const DIFFERS: u8 = 3;
 const DISPLAY: u8 = DIFFERS + MOST + 1;
-const SAME: u8 = DISPLAY + 1;
+const SAME: u8 = DISPLAY + 5;
 /// Maximum number of parameters with ranks of their own.
 const MOST: u8 = 120;
 
@@ -73,25 +73,26 @@ pub(super) fn parts_of(
         say(SHADING, format!("{names} shading"));
     }
     parts.extend(values(&seen, said, registry));
-    let mut say = |text: String| parts.push(Part::new(DISPLAY, text).continued());
+    // Each has a rank of its own, so that one of them is said where there is no room for all.
+    let mut say = |place: u8, text: String| parts.push(Part::new(DISPLAY + place, text).continued());
     if said.over.terms.is_some() {
-        say(terms_alone(terms).map_or_else(|| "all terms".to_owned(), |part| part.text));
+        say(0, terms_alone(terms).map_or_else(|| "all terms".to_owned(), |part| part.text));
     }
     if said.over.tone_mapping.is_some() {
         let none = seen.display.tone_mapping == ToneMapping::None;
-        say(if none { "no tone mapping" } else { seen.display.tone_mapping.name() }.to_owned());
+        say(1, if none { "no tone mapping" } else { seen.display.tone_mapping.name() }.to_owned());
     }
     if said.over.exposure.is_some() {
-        say(exposure(seen.display.exposure));
+        say(2, exposure(seen.display.exposure));
     }
     if said.over.encoding.is_some() {
         let naive = seen.display.encoding == Encoding::Off;
-        say(if naive { "gamma-naive" } else { "gamma-correct" }.to_owned());
+        say(3, if naive { "gamma-naive" } else { "gamma-correct" }.to_owned());
     }
     if said.over.tessellation.is_some()
         && let Some(counts) = tessellation(&seen, registry)
     {
-        say(format!("tessellation {counts}"));
+        say(4, format!("tessellation {counts}"));
     }
     if parts.is_empty() {
         parts.push(Part::new(0, if view == 0 { models() } else { "as A".to_owned() }));

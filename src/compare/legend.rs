@@ -88,7 +88,18 @@ pub(super) struct Lettered<'a> {
 impl<'a> Lettered<'a> {
     /// Lays out a legend at a scale, with so many gaps above the bar and below its numbers; a title that is too wide is
     /// broken into lines. `None` without room.
-    pub(super) fn new(scale: f32, [across, down]: [u32; 2], legend: &'a Legend, gaps: u32) -> Option<Self> {
+    pub(super) fn new(scale: f32, room: [u32; 2], legend: &'a Legend, gaps: u32) -> Option<Self> {
+        Self::in_lines(scale, room, legend, gaps, 1)
+    }
+
+    /// The same with a title that is broken into so many lines of about the same width.
+    fn in_lines(
+        scale: f32,
+        [across, down]: [u32; 2],
+        legend: &'a Legend,
+        gaps: u32,
+        lines: u32,
+    ) -> Option<Self> {
         let Legend { title, scale: numbers, colours } = legend;
         let (px, style) = (LETTERS_PX * scale, Lettering::Regular);
         let [margin, gap, bar] = [10.0, 4.0, 14.0].map(|v| (v * scale).round());
@@ -113,9 +124,13 @@ impl<'a> Lettered<'a> {
             Plate::new(&spacing, title, &numbers, &texts)
         };
         let least = all(0, 0).size[0] as u32 - 2 * margin as u32;
-        let width = style.width(px, title).max(least).min(room);
+        // Words are not broken, so lines are of different widths.
+        let longest = title.split(' ').map(|word| style.width(px, word)).max().unwrap_or(0);
+        let even = style.width(px, title) / lines + if lines > 1 { longest / 2 } else { 0 };
+        let width = even.max(least).min(room);
         let title = style.lines(px, title, width, 3);
-        let is_wide = title.iter().any(|text| style.width(px, text) > width);
+        let is_wide = title.iter().any(|text| style.width(px, text) > width)
+            || lines > 1 && title.iter().any(|text| text.ends_with('…'));
         let plate = all(width, title.len());
         let (size, margin) = (plate.size.map(|v| v as u32), margin as u32);
         let fits = width > 0 && width >= least && !is_wide && size[1] + 2 * margin <= down;
@@ -171,8 +186,11 @@ pub fn legend_alone(
     canvas.rgb8
 }
 
-/// Factors by which letters of a given size become smaller where the legend would hide objects.
-const SMALLER: [f32; 5] = [1.0, 0.85, 0.7, 0.6, 0.5];
+/// Factors by which letters of a given size become smaller where the legend would hide objects even with its title in
+/// several lines: not by much, since they are to be read.
+const SMALLER: [f32; 3] = [1.0, 0.85, 0.7];
+/// The numbers of lines of a title, the best first.
+const LINES: [u32; 3] = [1, 2, 3];
 
 /// Draws the legend in a lower corner where it does not cover the largest difference, if there is room. In letters of
 /// `px` pixels, if there is room for them; they become smaller where the legend would hide objects with these outlines.
@@ -187,7 +205,9 @@ pub(super) fn draw(
     let (size, usual) = (canvas.size, canvas.scale());
     let scaled = |scale: f32| Lettered::new(scale, size, &legend, 1);
     let wanted = px.into_iter().flat_map(|px| SMALLER.map(|part| part * px / LETTERS_PX));
-    let mut plates: Vec<_> = wanted.filter_map(scaled).collect();
+    let wanted = wanted.flat_map(|scale| LINES.map(|lines| (scale, lines)));
+    let mut plates: Vec<_> =
+        wanted.filter_map(|(scale, lines)| Lettered::in_lines(scale, size, &legend, 1, lines)).collect();
     if plates.is_empty() {
         plates.extend(scaled(usual));
     }
@@ -200,9 +220,9 @@ pub(super) fn draw(
     let mut all =
         plates.iter().flat_map(|plate| [false, true].map(|at_right| (plate, place(plate, at_right))));
     let free = all.find(|(_, place)| !hides_mark(*place) && !cuts(*place));
-    // Where all places hide something, the smallest letters hide least.
+    // Where all places hide something, the smallest plate hides least.
     let otherwise = || {
-        let plate = plates.last()?;
+        let plate = plates.iter().min_by_key(|plate| plate.size[0] * plate.size[1])?;
         Some((plate, place(plate, hides_mark(place(plate, false)))))
     };
     let Some((plate, place)) = free.or_else(otherwise) else { return };
@@ -279,6 +299,15 @@ mod tests {
         assert!(whole.last().is_some_and(|x| *x > 380), "it would hide the box: {whole:?}");
         assert!(beside.len() > 100 && beside.iter().all(|x| *x < 380), "{beside:?}");
         assert!(drawn(639, Some(30)).iter().all(|x| *x > 40), "it hides the mark");
+    }
+
+    #[test]
+    fn a_legend_beside_an_object_breaks_its_title_before_its_letters_become_small() {
+        let legend = legend_of(&Comparison::default(), 1.0);
+        let of = |lines| Lettered::in_lines(2.0, [640, 360], &legend, 1, lines).expect("there is room");
+        let [one, two] = [1, 2].map(of);
+        assert_eq!((one.px, two.px), (32.0, 32.0));
+        assert!(two.title.len() > 1 && two.size[0] < one.size[0], "{:?}: {:?}", two.title, two.size);
     }
 
     #[test]

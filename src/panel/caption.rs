@@ -125,12 +125,24 @@ pub(super) struct Lines {
     pub(super) size: Vec2,
     /// True if parts were left out.
     pub(super) cut: bool,
+    /// The number of parts that are left.
+    kept: usize,
 }
 
 impl Lines {
     /// Lays out parts of a caption within a width, broken between parts.
     pub(super) fn of(ui: &Ui, parts: Vec<Part>, size: f32, colour: Color32, width: f32) -> Self {
         Self::within(ui, parts, size, colour, width, LINES)
+    }
+
+    /// The same on a slide: in narrower lines where they are no more, so that no word hangs alone in the last one.
+    pub(super) fn even(ui: &Ui, parts: &[Part], size: f32, colour: Color32, width: f32) -> Self {
+        let within = |width: f32| Self::of(ui, parts.to_vec(), size, colour, width);
+        let wide = within(width);
+        let mut narrower = (6..12u8).map(|part| within(width * f32::from(part) / 12.0));
+        let is_as_low =
+            |lines: &Self| lines.kept == wide.kept && !lines.is_elided() && lines.size.y <= wide.size.y + 0.5;
+        narrower.find(is_as_low).unwrap_or(wide)
     }
 
     /// Lays out parts within `most` lines, leaving out optional parts where necessary.
@@ -148,7 +160,7 @@ impl Lines {
             let last = parts.iter().rposition(|p| p.rank > 0 && parts.iter().all(|q| q.rank <= p.rank));
             match last {
                 Some(i) if lines.1 > most => drop(parts.remove(i)),
-                _ => return Self { cut: parts.len() < all, ..lines.0 },
+                _ => return Self { cut: parts.len() < all, kept: parts.len(), ..lines.0 },
             }
         }
     }
@@ -186,7 +198,7 @@ impl Lines {
             at.x = end;
             most = most.max(end);
         }
-        (Self { runs, size: vec2(most, at.y + height), cut: false }, rows)
+        (Self { runs, size: vec2(most, at.y + height), cut: false, kept: parts.len() }, rows)
     }
 
     /// True if a part is cut within, since it is longer than a line.

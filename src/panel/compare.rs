@@ -22,12 +22,18 @@ use super::{
     caption::{Lines, compiling},
     keys, knob, matching,
     prelude::*,
+    presentation::CAPTION,
     state::{Cell, MatchCommand},
 };
 use crate::{
     caption::{Part, line, view_parts},
     scene::comparison::Layout,
 };
+
+/// Height of a header in a presentation, as a fraction of the screen, and the size of its letters as one of its height:
+/// they are as large as those of captions, whatever the size of everything is.
+const PRESENTED: f32 = 0.055;
+const PRESENTED_LETTERS: f32 = CAPTION / PRESENTED;
 
 /// A layout in the window.
 fn arranging(layout: Layout) -> &'static Arranging {
@@ -63,7 +69,7 @@ pub fn arrange(session: &Session, whole: Rect, footer: f32, band: f32) -> Arrang
     let bar = Rect::from_min_max(pos2(whole.left(), whole.bottom() - rows * ROW), whole.max);
     let picture = Rect::from_min_max(whole.min, pos2(whole.right(), bar.top() - footer));
     // Readable from the back row.
-    let high = if session.view.presenting { (0.055 * whole.height()).max(HEADER) } else { HEADER };
+    let high = if session.view.presenting { PRESENTED * whole.height() } else { HEADER };
     let arranged = |high: f32| {
         let mut all = Arrangement { bar: (rows > 0.0).then_some(bar), ..Arrangement::new(picture) };
         let views = comparison.views(variants);
@@ -91,13 +97,14 @@ pub fn show(ui: &mut Ui, arrangement: &Arrangement, context: &mut PanelContext<'
     let palette = Palette::here(ui);
     let several = arrangement.cells.len() > 1;
     let headers = arrangement.headers.iter();
-    let said: Vec<_> = headers.map(|(view, _)| in_parts(session, *view, context.registry())).collect();
+    let mut said: Vec<_> = headers.map(|(view, _)| in_parts(session, *view, context.registry())).collect();
+    rank_by_difference(&mut said);
     for (i, (view, rect)) in arrangement.headers.iter().enumerate() {
         places.push(*rect);
         header(ui, (*view, *rect), (&said, i), several, context);
     }
     let comparison = &session.document.comparison;
-    if several && comparison.layout.is_beside() {
+    if several && comparison.layout.is_beside() && !session.view.presenting {
         for cell in arrangement.cells.iter().filter(|cell| cell.view == session.active()) {
             let stroke = Stroke::new(1.5, palette.accent);
             ui.painter().rect_stroke(cell.rect, 0.0, stroke, StrokeKind::Inside);
@@ -191,13 +198,14 @@ fn title(ui: &mut Ui, (view, header): (usize, Rect), (said, at): (&[Vec<Part>], 
     let ink = if hidden { palette.weak } else { palette.text };
     let presenting = session.view.presenting;
     let scale = if presenting { header.height() / HEADER } else { 1.0 };
-    let rows = if scale == 1.0 && header.height() > HEADER { 2 } else { 1 };
-    let size = scale * TextStyle::Body.resolve(ui.style()).size;
+    let rows = if !presenting && header.height() > HEADER { 2 } else { 1 };
+    let body = TextStyle::Body.resolve(ui.style()).size;
+    let size = if presenting { PRESENTED_LETTERS * header.height() } else { body };
     let centre = pos2(ui.max_rect().left() + 10.0 * scale, header.center().y);
     let badge = Rect::from_center_size(centre, vec2(20.0, 20.0) * scale);
     let (fill, on) = if lit { (palette.accent, palette.panel) } else { (palette.field, ink) };
     ui.painter().rect(badge, 4.0, fill, Stroke::new(1.0, palette.line), StrokeKind::Inside);
-    let font = FontId::new(size, theme::semibold());
+    let font = FontId::new(scale * body, theme::semibold());
     let letter = LETTERS[view.min(MAX_VARIANTS)];
     ui.painter().text(badge.center(), Align2::CENTER_CENTER, letter, font, on);
     let room = (ui.max_rect().width() - 30.0 * scale).max(0.0);
@@ -210,11 +218,12 @@ fn title(ui: &mut Ui, (view, header): (usize, Rect), (said, at): (&[Vec<Part>], 
         let is_low = lines.size.y < (0.55 + 1.35 * rows as f32) * size;
         (is_low && lines.size.x <= room && !lines.is_elided()).then_some(lines)
     };
-    let rank = |dotted: bool| rank_that_fits(said, |parts, all| lines(parts, all, dotted).is_some());
+    let ranks = |dotted: bool| ranks_that_fit(said, |parts, all| lines(parts, all, dotted).is_some());
     // A fact beside the first one is worth more than dots, for which there is no room then.
-    let (ranks, dots_too) = ([true, false].map(rank), !presenting && rows == 1);
-    let dotted = dots_too && (ranks[0] == ranks[1] || said.iter().any(|all| up_to(all, ranks[0]).len() > 1));
-    let parts = up_to(&said[at], ranks[usize::from(!dotted)]);
+    let (ranks, dots_too) = ([true, false].map(ranks), !presenting && rows == 1);
+    let dotted =
+        dots_too && (ranks[0] == ranks[1] || said.iter().any(|all| of_ranks(all, &ranks[0]).len() > 1));
+    let parts = of_ranks(&said[at], &ranks[usize::from(!dotted)]);
     let cut = dotted && parts.len() < said[at].len();
     if let Some(lines) = lines(parts.clone(), &said[at], dotted) {
         let place = Align2::LEFT_CENTER.anchor_size(left, lines.size);
@@ -257,17 +266,51 @@ fn cut_title(ui: &Ui, text: &str, (size, ink): (f32, Color32), (room, rows): (f3
     whole.unwrap_or_else(|| set(last))
 }
 
-/// The rank up to which the parts of every header fit, so that all headers say the same things; each keeps its first part.
-fn rank_that_fits(said: &[Vec<Part>], fits: impl Fn(Vec<Part>, &[Part]) -> bool) -> u8 {
-    let least = said.iter().filter_map(|parts| Some(parts.first()?.rank)).max().unwrap_or_default();
-    let ranks: BTreeSet<_> = said.iter().flatten().map(|part| part.rank).filter(|r| *r > least).collect();
-    let whole = |rank: &u8| said.iter().all(|parts| fits(up_to(parts, *rank), parts));
-    ranks.into_iter().rev().find(whole).unwrap_or(least)
+/// Puts what all headers say alike behind what differs, except names and models: where there is no room, it is dropped
+/// first.
+fn rank_by_difference(said: &mut [Vec<Part>]) {
+    let first = said.iter().flatten().map(|part| part.rank).filter(|rank| *rank > 0).min().unwrap_or(0);
+    let of = |parts: &[Part], rank: u8| {
+        parts.iter().filter(|p| p.rank == rank).map(Part::words).collect::<Vec<_>>()
+    };
+    let is_same =
+        |rank: u8| rank > first && said.windows(2).all(|pair| of(&pair[0], rank) == of(&pair[1], rank));
+    let ranks: BTreeSet<_> = said.iter().flatten().map(|part| part.rank).collect();
+    let mut order: Vec<_> = ranks.into_iter().map(|rank| (is_same(rank), rank)).collect();
+    order.sort_unstable();
+    let place = |rank: u8| order.iter().position(|(_, known)| *known == rank).unwrap_or_default();
+    for parts in said.iter_mut() {
+        parts.sort_by_key(|part| place(part.rank));
+        // Parts of rank 0 are never dropped.
+        for (i, part) in parts.iter_mut().filter(|part| part.rank > 0).enumerate() {
+            part.continues = i > 0;
+            part.rank = u8::try_from(place(part.rank) + 1).unwrap_or(u8::MAX);
+        }
+    }
 }
 
-/// The parts up to a rank, none of which may be dropped.
-fn up_to(parts: &[Part], rank: u8) -> Vec<Part> {
-    let within = parts.iter().filter(|part| part.rank <= rank);
+/// The ranks of which the parts of every header fit, the first ones first, so that all headers say the same things; each
+/// keeps its first part.
+fn ranks_that_fit(said: &[Vec<Part>], fits: impl Fn(Vec<Part>, &[Part]) -> bool) -> BTreeSet<u8> {
+    let least = said.iter().filter_map(|parts| Some(parts.first()?.rank)).max().unwrap_or_default();
+    let ranks: BTreeSet<_> = said.iter().flatten().map(|part| part.rank).collect();
+    let all_fit = |ranks: &BTreeSet<u8>| said.iter().all(|parts| fits(of_ranks(parts, ranks), parts));
+    if all_fit(&ranks) {
+        return ranks;
+    }
+    let (mut kept, more): (BTreeSet<_>, BTreeSet<_>) = ranks.into_iter().partition(|rank| *rank <= least);
+    for rank in more {
+        kept.insert(rank);
+        if !all_fit(&kept) {
+            kept.remove(&rank);
+        }
+    }
+    kept
+}
+
+/// The parts with these ranks, none of which may be dropped.
+fn of_ranks(parts: &[Part], ranks: &BTreeSet<u8>) -> Vec<Part> {
+    let within = parts.iter().filter(|part| ranks.contains(&part.rank));
     within.map(|part| Part { rank: 0, ..part.clone() }).collect()
 }
 
@@ -319,6 +362,23 @@ fn menu(ui: &mut Ui, view: usize, context: &mut PanelContext<'_>) {
 mod tests {
     use super::*;
     use crate::scene::{Comparison, Scene, Variant};
+
+    #[test]
+    fn headers_drop_first_what_they_say_alike_and_use_all_of_the_room() {
+        let part = |rank: u8, text: &str| Part { continues: rank > 1, ..Part::new(rank, text) };
+        let mut said = ["Phong 15 1.0 all 0", "Blinn 60 1.0 diffuse +3"]
+            .map(|words| words.split(' ').zip(1..).map(|(word, rank)| part(rank, word)).collect::<Vec<_>>());
+        rank_by_difference(&mut said);
+        assert_eq!(line(&said[0]), "Phong, 15, all, 0, 1.0", "that of both is last");
+        let within = |room: usize| {
+            let ranks = ranks_that_fit(&said, |parts, _| line(&parts).len() <= room);
+            [0, 1].map(|i| line(&of_ranks(&said[i], &ranks)))
+        };
+        assert_eq!(within(40)[1], "Blinn, 60, diffuse, +3, 1.0");
+        assert_eq!(within(18)[1], "Blinn, 60, diffuse");
+        assert_eq!(within(16), ["Phong, 15, 0", "Blinn, 60, +3"].map(str::to_owned), "a later one has room");
+        assert_eq!(within(2)[1], "Blinn", "the first part stays");
+    }
 
     #[test]
     fn the_bar_leaves_a_low_window_half_of_its_height() {

@@ -40,6 +40,9 @@ const WIDE_PLATE: f32 = 330.0;
 /// end of the plate where the editor shows the error.
 const PLATE: f32 = 0.25;
 
+/// Maximum fraction of the objects in a picture that badges cover while they have shorter words.
+const OBJECTS: f32 = 0.1;
+
 /// Maximum size of letters over one of several pictures of a presentation, as a fraction of its height.
 const LETTER_SIZE: f32 = 0.1;
 
@@ -82,7 +85,9 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let texts: Vec<_> = texts.into_iter().filter(Rect::is_positive).collect();
         presentation::message(ui, whole, &pictures, &texts, session);
     }
-    let mut area = PictureArea { rect, frame, written, ..PictureArea::default() };
+    // As large as in other legends.
+    let letters = if presenting { CAPTION * whole.height() } else { theme::SMALL };
+    let mut area = PictureArea { rect, frame, written, letters, ..PictureArea::default() };
     if !arrangement.is_single() {
         (area.cells, area.map) = (arrangement.cells, arrangement.map);
     }
@@ -90,12 +95,10 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     context.picture = (area, places);
 }
 
-/// Size of the letters of the legend that a difference map contains, in pixels of the map, which is so many pixels high:
-/// as large as in other legends.
+/// Size of the letters of the legend that a difference map contains, in pixels of the map, which is so many pixels high.
 #[must_use]
-pub fn letters_of_map(area: &PictureArea, height: f32, presenting: bool) -> Option<f32> {
-    let map = area.map?;
-    Some(if presenting { CAPTION * height } else { theme::SMALL * height / map.height() })
+pub fn letters_of_map(area: &PictureArea, height: f32) -> Option<f32> {
+    Some(area.letters * height / area.map?.height())
 }
 
 /// The overlays of a picture, as far as they are painted.
@@ -136,9 +139,12 @@ impl<'a> Overlaid<'_, 'a> {
             self.channel(ui, &mut placer, view);
             let signs = badges_of(view, whole, ui, session, registry);
             let signs = signs.into_iter().chain(of_disk(session)).collect();
-            let most = if stage.is_some() { f32::INFINITY } else { PLATE * rect.area() };
-            self.badges(ui, &mut placer, signs, most);
-            self.sizes = Needed::of(&placer.sizes, placer.room.width());
+            let badges = match stage {
+                Some(_) => (signs, false),
+                None => yielding(ui, &placer, signs, (session, rect, 1.0)),
+            };
+            self.badges(ui, &mut placer, badges);
+            self.sizes = Needed::of([&placer.sizes; 2].map(Vec::as_slice), placer.room.width());
             hint(ui, rect, session);
         });
         if stage.is_none() {
@@ -236,6 +242,8 @@ impl<'a> Overlaid<'_, 'a> {
         ui.style_mut().text_styles.insert(TextStyle::Body, body);
         let mut disk = of_disk(session);
         let mut shared: Option<Placer> = None;
+        // Sizes of plates below each other, and in rows.
+        let (mut below, mut beside) = (Vec::new(), Vec::new());
         // The plates of a difference are those of both views.
         let shown: Vec<_> = cells.iter().filter(|c| c.part.is_positive() || layout.is_map()).collect();
         let told = stale_cell(shown.iter().copied(), session, registry).map(|cell| cell.view);
@@ -245,14 +253,25 @@ impl<'a> Overlaid<'_, 'a> {
                 ui.painter().rect_filled(above, 0.0, palette.panel);
                 spot.placer(cell.rect)
             });
+            if layout.is_beside() {
+                (below, beside) = Default::default();
+            }
+            let known = placer.sizes.len();
             if told == Some(cell.view) {
                 self.stale(ui, cell.rect, &mut placer);
             }
             self.channel(ui, &mut placer, cell.view);
+            for sizes in [&mut below, &mut beside] {
+                sizes.extend_from_slice(&placer.sizes[known..]);
+            }
             let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
             signs.extend(disk.take());
-            self.badges(ui, &mut placer, signs, f32::INFINITY);
-            self.sizes = self.sizes.or(Needed::of(&placer.sizes, cell.rect.width()));
+            let few = in_few_rows(ui, cell.rect, &signs, &beside);
+            below.extend(sizes_of_badges(ui, cell.rect, &signs, false));
+            beside.extend(sizes_of_badges(ui, cell.rect, &few.0, few.1));
+            let badges = if matches!(spot, PlatePlace::Band(_)) { few } else { (signs, false) };
+            self.badges(ui, &mut placer, badges);
+            self.sizes = self.sizes.or(Needed::of([&below, &beside].map(Vec::as_slice), cell.rect.width()));
             shared = Some(placer);
         }
     }
@@ -295,7 +314,8 @@ impl<'a> Overlaid<'_, 'a> {
             let beside = cell.part.is_positive() && cell.part.width() >= NARROWEST * scale;
             let room = if beside { cell.part } else { cell.rect };
             let mut placer = Placer::column(room, from.0, placer.below());
-            self.badges(ui, &mut placer, signs, PLATE * cell.rect.area() / sharing);
+            let badges = yielding(ui, &placer, signs, (session, cell.rect, sharing));
+            self.badges(ui, &mut placer, badges);
             next = Some(placer.below());
         }
     }
@@ -353,14 +373,12 @@ impl<'a> Overlaid<'_, 'a> {
         place
     }
 
-    /// Paints badges, one after the other; in fewer words or gathered where they would cover more than `most` square
-    /// points.
-    fn badges(&mut self, ui: &mut Ui, placer: &mut Placer, all: Vec<Sign>, most: f32) {
+    /// Paints badges, one after the other, in their shortest words if `short`.
+    fn badges(&mut self, ui: &mut Ui, placer: &mut Placer, (all, short): (Vec<Sign>, bool)) {
         let palette = Palette::here(ui);
         let scale = theme::scale_here(ui);
         let font = theme::bold(ui);
         let rect = placer.room;
-        let (all, short) = yielding(ui, rect, all, most);
         for (badge, actions) in all {
             let put = |size| placer.place(size);
             let text = words(ui, rect, &badge, short);
@@ -515,24 +533,60 @@ fn words<'b>(ui: &Ui, rect: Rect, badge: &'b Badge, short: bool) -> &'b String {
     texts.find(|text| !short && theme::width_in(ui, text, &font) <= room).unwrap_or(shortest)
 }
 
-/// Badges that cover at most `most` square points, as far as that is possible, and true if they have their shortest words.
-/// If those cover too much, one badge is left, which says under the pointer what all say.
-fn yielding(ui: &Ui, rect: Rect, all: Vec<Sign>, most: f32) -> (Vec<Sign>, bool) {
+/// The sizes of badges, in their shortest words if `short`.
+fn sizes_of_badges(ui: &Ui, rect: Rect, all: &[Sign], short: bool) -> Vec<Vec2> {
     let left = BADGE_SIGN * theme::scale_here(ui);
-    let covered = |short: bool| -> f32 {
-        let area = |(badge, _): &Sign| {
-            let size = lay_out_plate(ui, rect, words(ui, rect, badge, short), theme::bold(ui), left).1;
-            size.x * size.y
-        };
-        all.iter().map(area).sum()
-    };
-    if covered(false) <= most {
+    let size =
+        |(badge, _): &Sign| lay_out_plate(ui, rect, words(ui, rect, badge, short), theme::bold(ui), left).1;
+    all.iter().map(size).collect()
+}
+
+/// Badges that cover no more of a picture and of the objects in it than they may, as far as that is possible, and true if
+/// they have their shortest words. If those cover too much, one badge is left, which says under the pointer what all say.
+/// So many views share the picture.
+fn yielding(
+    ui: &Ui,
+    placer: &Placer,
+    all: Vec<Sign>,
+    (session, picture, views): (&Session, Rect, f32),
+) -> (Vec<Sign>, bool) {
+    if all.is_empty() {
         return (all, false);
     }
-    if all.len() < 2 || covered(true) <= most {
+    let discs = presentation::discs(session, picture);
+    let fits = |short: bool| {
+        let mut placer = placer.clone();
+        let sizes = sizes_of_badges(ui, placer.room, &all, short);
+        let plates: Vec<_> = sizes.into_iter().map(|size| placer.place(size)).collect();
+        let area: f32 = plates.iter().map(Rect::area).sum();
+        area <= PLATE * picture.area() / views
+            && presentation::covered(&discs, picture, &plates) <= OBJECTS / views
+    };
+    if fits(false) {
+        return (all, false);
+    }
+    if all.len() < 2 || fits(true) {
         return (all, true);
     }
     (vec![gathered(&all)], true)
+}
+
+/// Badges that take as few rows above a picture as possible after plates of these sizes, and true if they have their shortest
+/// words.
+fn in_few_rows(ui: &Ui, rect: Rect, all: &[Sign], before: &[Vec2]) -> (Vec<Sign>, bool) {
+    if all.len() < 2 {
+        return (all.to_vec(), false);
+    }
+    let high = |signs: &[Sign], short: bool| {
+        let sizes = sizes_of_badges(ui, rect, signs, short);
+        presentation::height_of_rows(before.iter().copied().chain(sizes), rect.width())
+    };
+    let one = vec![gathered(all)];
+    let least = high(&one, true) + 0.5;
+    match [false, true].into_iter().find(|short| high(all, *short) <= least) {
+        Some(short) => (all.to_vec(), short),
+        None => (one, true),
+    }
 }
 
 /// One badge for several, without their actions.

@@ -2,7 +2,8 @@
 
 use glam::{Mat3, Mat4, Quat, Vec3};
 
-use super::{Field, Scene, field::Kind, part::part, rows::Row};
+use super::{Field, Object, Scene, field::Kind, part::part, rows::Row};
+use crate::shape;
 
 /// Passes the declaration to a macro: [`part!`], or that of the component.
 macro_rules! observer {
@@ -87,6 +88,20 @@ fn outer_edge(aside: f32, depth: f32, radius: f32) -> f32 {
     (a * d + r * (a * a + d * d - r * r).sqrt()) / (d * d - r * r)
 }
 
+/// The largest tangents across and up of an object's outermost points, where `seen` takes points around its position to the
+/// camera's coordinates; infinite if they are not known or beside the eye.
+fn extent(object: &Object, seen: impl Fn(Vec3) -> Vec3) -> [f32; 2] {
+    let Some(points) = shape::outermost(&object.object_type, &object.shape) else {
+        return [f32::INFINITY; 2];
+    };
+    let own = object.room_from_object();
+    points.iter().fold([0.0f32; 2], |[across, high], p| {
+        let at = seen(own.transform_vector3(*p));
+        let tangent = |side: f32| if -at.z > NEAR { side.abs() / -at.z } else { f32::INFINITY };
+        [across.max(tangent(at.x)), high.max(tangent(at.y))]
+    })
+}
+
 /// The field of view of pictures in a window, which can have any shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewAngle {
@@ -130,29 +145,34 @@ impl Scene {
         self.comparison.layout.is_beside() && !self.variants.is_empty()
     }
 
-    /// The ratio of width to height that views beside each other keep at least for an object of a size at a position;
+    /// The ratio of width to height that views beside each other keep at least for an object at a position;
     /// `None` for other views.
-    pub(crate) fn widened_by(&self, position: Vec3, size: f32) -> Option<f32> {
-        self.is_beside().then(|| self.width_around(std::iter::once((position, size))).clamp(1.0, WIDE))
+    pub(crate) fn widened_by(&self, position: Vec3, object: &Object) -> Option<f32> {
+        self.is_beside().then(|| self.width_around(std::iter::once((position, object))).clamp(1.0, WIDE))
     }
 
     fn width_of_objects(&self) -> f32 {
         let objects = self.objects.iter().filter(|object| object.visible);
-        self.width_around(objects.map(|object| (object.position, object.size)))
+        self.width_around(objects.map(|object| (object.position, object)))
     }
 
-    /// The ratio of width to height of a picture that shows objects at positions with sizes from side to side, with a
+    /// The ratio of width to height of a picture that shows objects at positions from side to side, with a
     /// margin: those that a wide picture shows from top to bottom. Floors and backdrops reach beyond it, and do not count.
-    fn width_around(&self, objects: impl Iterator<Item = (Vec3, f32)>) -> f32 {
+    fn width_around<'o>(&self, objects: impl Iterator<Item = (Vec3, &'o Object)>) -> f32 {
         let to_eye = orientation(self.observer.direction).transpose();
         let up = (0.5 * self.observer.field_of_view.to_radians()).tan();
-        let of_object = |(position, size): (Vec3, f32)| {
+        let of_object = |(position, object): (Vec3, &Object)| {
             let seen = to_eye * (position - self.observer.position);
-            let (depth, radius) = (-seen.z, 0.5 * size);
+            let (depth, radius) = (-seen.z, 0.5 * object.size);
             if depth <= radius + NEAR || seen.x.abs() > WIDE * up * depth {
                 return 0.0;
             }
-            if outer_edge(seen.y, depth, radius) <= up { outer_edge(seen.x, depth, radius) } else { 0.0 }
+            if outer_edge(seen.y, depth, radius) <= up {
+                return outer_edge(seen.x, depth, radius);
+            }
+            // Something flat, like a teapot, is lower than the sphere around it.
+            let [across, high] = extent(object, |p| seen + to_eye * p);
+            if high <= up && across <= WIDE * up { across } else { 0.0 }
         };
         MARGIN * objects.map(of_object).fold(0.0, f32::max) / up
     }
@@ -284,6 +304,34 @@ mod tests {
         assert_eq!(keeps(vec![object(5.0, 10.0)]), 1.0, "around the eye");
         assert_eq!(keeps(vec![Object { visible: false, ..object(7.0, 1.0) }]), 1.0, "hidden");
         assert_eq!(keeps(vec![object(7.5, 2.0)]), WIDE, "no more than a wide picture");
+    }
+
+    #[test]
+    fn a_flat_object_in_a_sphere_higher_than_the_picture_is_whole_at_the_sides() {
+        let registry = Registry::builtin();
+        let example =
+            crate::scene::examples::EXAMPLES.iter().find(|e| e.file == "portrait.json").expect("shipped");
+        let mut scene = example.scene(&registry).expect("it is valid");
+        scene.comparison.layout = Layout::SideBySide;
+        scene.variants = vec![crate::scene::Variant::default(); 2];
+        let Observer { position, direction, field_of_view } = scene.observer;
+        let teapot = &scene.objects[0];
+        let to_eye = orientation(direction).transpose();
+        let up = (0.5 * field_of_view.to_radians()).tan();
+        let seen = to_eye * (teapot.position - position);
+        assert!(outer_edge(seen.y, -seen.z, 0.5 * teapot.size) > up, "nothing is tested");
+        let mesh = registry.shape("teapot").expect("built in").mesh(&teapot.shape, 16);
+        let own = teapot.room_from_object();
+        // The views of a presentation of three in a window of 1920 × 1080 pixels.
+        let view = scene.observer.fitting([640, 704], scene.view_angle());
+        let [across, _] = half_tangents([640, 704], view.field_of_view.to_radians());
+        for p in mesh.positions {
+            let at = to_eye * (own.transform_point3(p) - position);
+            assert!(f64::from(at.x.abs() / -at.z) < 0.97 * across, "{p} is cut");
+        }
+        assert!(scene.view_angle().keeps < 1.5, "no more than it needs");
+        scene.objects[0].rotation = Vec3::new(0.0, 0.0, 90.0);
+        assert_eq!(scene.view_angle().keeps, 1.0, "upright, it is higher than the picture");
     }
 
     #[test]

@@ -2,12 +2,13 @@
 
 use std::{
     collections::HashMap,
-    sync::{Arc, Mutex},
+    f32::consts::PI,
+    sync::{Arc, LazyLock, Mutex},
 };
 
 use glam::Vec3;
 
-use super::{Declaration, ObjectType, PolygonMesh};
+use super::{Declaration, ObjectType, PolygonMesh, Take, register_builtin};
 use crate::{
     caught::lock,
     declared::entry,
@@ -19,6 +20,8 @@ use crate::{
 const COARSE: u32 = 8;
 /// Maximum number of parameter sets with stored bounds: more than a scene has objects.
 const KEPT: usize = 1 << 14;
+/// Number of directions for the outermost points of a shape.
+const WAYS: u16 = 64;
 
 /// A registered object type, in the form used by the rest of the program.
 #[derive(Clone)]
@@ -32,6 +35,8 @@ pub struct ShapeEntry {
     mesh: fn(&Values, u32) -> PolygonMesh,
     /// Bounds by parameters: they are requested for many objects in every frame.
     bounds: Arc<Mutex<HashMap<Vec<u32>, Bounds>>>,
+    /// Outermost points by parameters.
+    outermost: Arc<Mutex<HashMap<Vec<u32>, Arc<[Vec3]>>>>,
 }
 
 /// The identity of a mesh: objects with equal keys share one.
@@ -61,6 +66,7 @@ impl ShapeEntry {
             component: TypeComponent::of::<T>(),
             mesh: |values, tessellation| T::from_values(values, Encoding::Srgb).mesh(tessellation),
             bounds: Arc::default(),
+            outermost: Arc::default(),
         }
     }
 
@@ -104,6 +110,17 @@ impl ShapeEntry {
         })
     }
 
+    /// The points of an object of size 1 around its position that lie furthest out, in directions all around.
+    #[must_use]
+    pub fn outermost(&self, parameters: &Values) -> Arc<[Vec3]> {
+        let mut known = lock(&self.outermost);
+        if known.len() >= KEPT {
+            known.clear();
+        }
+        let of_mesh = || furthest(&self.mesh(parameters, COARSE).positions);
+        Arc::clone(known.entry(self.words(parameters)).or_insert_with(of_mesh))
+    }
+
     /// The bits of the parameters as passed to the type; for files, the version of their numbers.
     fn words(&self, parameters: &Values) -> Vec<u32> {
         let mut words = words(self.parameters, parameters, Encoding::Srgb);
@@ -117,6 +134,35 @@ impl ShapeEntry {
 }
 
 entry!(ShapeEntry);
+
+/// The points that lie furthest out in directions spread evenly around the origin.
+fn furthest(points: &[Vec3]) -> Arc<[Vec3]> {
+    let way = |i: u16| {
+        let y = 1.0 - (2.0 * f32::from(i) + 1.0) / f32::from(WAYS);
+        let (sin, cos) = (PI * (3.0 - 5.0f32.sqrt()) * f32::from(i)).sin_cos();
+        let around = (1.0 - y * y).sqrt();
+        Vec3::new(around * cos, y, around * sin)
+    };
+    let last = |way: Vec3| points.iter().copied().max_by(|a, b| a.dot(way).total_cmp(&b.dot(way)));
+    (0..WAYS).map(way).filter_map(last).collect()
+}
+
+/// The outermost points of an object of size 1 of a built-in type, for places that know no registry.
+pub(crate) fn outermost(object_type: &str, parameters: &Values) -> Option<Arc<[Vec3]>> {
+    struct All(Vec<ShapeEntry>);
+    impl Take for All {
+        fn take<T: ObjectType>(&mut self) {
+            self.0.push(ShapeEntry::of::<T>());
+        }
+    }
+    static BUILT_IN: LazyLock<Vec<ShapeEntry>> = LazyLock::new(|| {
+        let mut all = All(Vec::new());
+        register_builtin(&mut all);
+        all.0
+    });
+    let entry = BUILT_IN.iter().find(|entry| entry.declaration.id == object_type)?;
+    Some(entry.outermost(parameters))
+}
 
 #[cfg(test)]
 mod tests {
@@ -146,5 +192,19 @@ mod tests {
             assert!((bounds.half - Vec3::new(0.5, 0.5, radius)).abs().max_element() < 1e-6, "{bounds:?}");
             assert!((bounds.radius - 0.5).abs() < 1e-6, "{bounds:?}");
         }
+    }
+
+    #[test]
+    fn the_outermost_points_reach_about_as_far_as_the_shape() {
+        let none = Values::default();
+        for id in ["sphere", "cube", "torus", "teapot"] {
+            let points = outermost(id, &none).expect(id);
+            assert!(points.len() <= usize::from(WAYS), "{id}");
+            let reach = points.iter().fold(Vec3::ZERO, |reach, p| reach.max(p.abs()));
+            assert!((0.45..0.501).contains(&reach.max_element()), "{id}: {reach}");
+        }
+        let flat = outermost("torus", &none).expect("a torus");
+        assert!(flat.iter().all(|p| p.z.abs() < 0.2), "a torus is flat: {flat:?}");
+        assert_eq!(outermost("a guest's", &none), None);
     }
 }

@@ -25,6 +25,7 @@ mod torus;
 mod vertices;
 
 pub use cube::Cube;
+pub(crate) use entry::outermost;
 pub use entry::{Bounds, MeshKey, ShapeEntry};
 pub(crate) use fields::fields;
 pub use hierarchy::Hierarchy;

@@ -67,7 +67,7 @@ impl Question {
         let compiles = [0, session.compared_with()].into_iter().any(|view| session.compiles(view));
         let rest = a.drawing.rests() && b.drawing.rests() && !compiles;
         let textures = [a.texture()?.clone(), b.texture()?.clone()];
-        let letters = |area| letters_of_map(area, a.view.size.y as f32, session.view.presenting);
+        let letters = |area| letters_of_map(area, a.view.size.y as f32);
         rest.then(|| Self {
             // The edge of a wipe does not affect the statistics.
             comparison: Comparison { split: 0.0, ..session.document.comparison },

@@ -154,7 +154,7 @@ impl Footer {
             let more = equation.len() - shown(block);
             if more > 0 {
                 let text = format!("… and {}", plural(more, "more definition"));
-                let font = FontId::proportional(CAPTION * height);
+                let font = FontId::proportional(self.scale * CAPTION * height);
                 let alone = self.equations.len() == 1;
                 let room = if alone { whole.width() - padding.x - at.x } else { self.captions.1 };
                 let galley = theme::elided(ui, &text, font, palette.text, room);

@@ -22,19 +22,17 @@ pub(in crate::panel) struct Needed {
 }
 
 impl Needed {
-    /// The room for plates of these sizes, in rows of this width.
-    pub(in crate::panel) fn of(sizes: &[Vec2], width: f32) -> Self {
-        if sizes.is_empty() {
+    /// The room for plates that have these sizes below each other, and these in rows of this width.
+    pub(in crate::panel) fn of([below, beside]: [&[Vec2]; 2], width: f32) -> Self {
+        if below.is_empty() {
             return Self::default();
         }
         let room = Rect::from_min_size(Pos2::ZERO, vec2(width, 0.0));
-        let (mut column, mut rows) = (Placer::column(room, Align2::LEFT_TOP, 0.0), Placer::rows(room));
-        for size in sizes {
-            column.place(*size);
-            rows.place(*size);
-        }
-        let widest = sizes.iter().map(|size| size.x).fold(0.0, f32::max);
-        Self { column: vec2(widest, column.below() - GAP), rows: rows.below() }
+        let mut column = Placer::column(room, Align2::LEFT_TOP, 0.0);
+        below.iter().for_each(|size| _ = column.place(*size));
+        let widest = below.iter().map(|size| size.x).fold(0.0, f32::max);
+        let rows = height_of_rows(beside.iter().copied(), width);
+        Self { column: vec2(widest, column.below() - GAP), rows }
     }
 
     /// The room for either.
@@ -60,6 +58,13 @@ impl Needed {
             ui.ctx().request_repaint();
         }
     }
+}
+
+/// The height of rows of this width with plates of these sizes.
+pub(in crate::panel) fn height_of_rows(sizes: impl Iterator<Item = Vec2>, width: f32) -> f32 {
+    let mut rows = Placer::rows(Rect::from_min_size(Pos2::ZERO, vec2(width, 0.0)));
+    sizes.for_each(|size| _ = rows.place(size));
+    rows.below()
 }
 
 /// The room that plates took so far, and what they were about.

@@ -22,7 +22,7 @@ use super::{
 use crate::reflection::{ModelEntry, Term};
 
 pub use footer::Footer;
-pub(super) use free::{Needed, PlatePlace, message};
+pub(super) use free::{Needed, PlatePlace, height_of_rows, message};
 
 mod footer;
 mod free;
@@ -43,6 +43,8 @@ const BESIDE: [(f32, bool); 6] =
     [(0.34, false), (0.42, false), (0.34, true), (0.5, false), (0.42, true), (0.5, true)];
 /// Fraction of the objects that may be hidden.
 const HIDDEN: f32 = 0.005;
+/// Radius of the discs that stand for objects, as a multiple of half their size: an allowance for corners.
+const ALLOWANCE: f32 = 1.2;
 
 /// Leaves the presentation on Escape, unless something else handles the key.
 pub fn on_escape(ctx: &Context, session: &Session, area: &PictureArea) -> Option<Action> {
@@ -124,7 +126,7 @@ impl Stage {
         let (spot, below) =
             (PlatePlace::Corner(Align2::LEFT_TOP, 0.0), whole.with_min_y(whole.top() + above));
         let most = whole.width() - 2.0 * padding.x;
-        let words = Lines::of(ui, parts.clone(), CAPTION * whole.height(), Palette::here(ui).text, most);
+        let words = Lines::even(ui, &parts, CAPTION * whole.height(), Palette::here(ui).text, most);
         let caption = Align2::LEFT_BOTTOM.anchor_size(whole.left_bottom(), words.size + 2.0 * padding);
         let room = below.with_max_y(caption.top());
         let mut ui = ui.new_child(UiBuilder::new().id_salt("trial").max_rect(whole).invisible());
@@ -201,7 +203,7 @@ impl Stage {
         let padding = padding(self.whole);
         ui.painter().rect_filled(self.caption, CornerRadius { ne: 8, ..CornerRadius::ZERO }, palette.panel);
         let width = self.whole.width() - 2.0 * padding.x;
-        let words = Lines::of(ui, self.parts.clone(), CAPTION * height, palette.text, width).closed();
+        let words = Lines::even(ui, &self.parts, CAPTION * height, palette.text, width).closed();
         words.paint(ui, self.caption.min + padding, palette.text);
         if !self.equation.is_empty() {
             ui.painter().rect_filled(self.plate, 8.0, palette.panel);
@@ -312,12 +314,11 @@ fn partitions(heights: &[f32]) -> impl Iterator<Item = Vec<Range<usize>>> {
 }
 
 /// The objects as seen by the camera: discs, without those far outside the picture.
-fn discs(session: &Session, rect: Rect) -> Vec<(Pos2, f32)> {
+pub(super) fn discs(session: &Session, rect: Rect) -> Vec<(Pos2, f32)> {
     let lens = Lens::of(session, rect);
     let right = session.facts.camera * glam::Vec3::X;
     let disc = |o: &crate::scene::Object| {
-        // Half the size, with an allowance for corners.
-        let radius = 0.6 * o.size;
+        let radius = 0.5 * ALLOWANCE * o.size;
         let at = lens.project(o.position)?;
         Some((at, lens.project(o.position + radius * right)?.distance(at)))
     };
@@ -331,6 +332,25 @@ fn hidden(discs: &[(Pos2, f32)], plates: &[Rect]) -> f32 {
     discs.iter().map(share).sum::<f32>() / discs.iter().map(|d| d.1 * d.1).sum::<f32>().max(1.0)
 }
 
+/// The share of the objects in a picture, given as discs, that rectangles cover, by their areas.
+pub(super) fn covered(discs: &[(Pos2, f32)], picture: Rect, plates: &[Rect]) -> f32 {
+    // Many are small.
+    let steps = if discs.len() > 32 { 1 } else { 9 };
+    let middle = |i: usize| (2 * i + 1) as f32 / steps as f32 - 1.0;
+    let grid = (0..steps * steps).map(|i| vec2(middle(i % steps), middle(i / steps)));
+    let grid: Vec<_> = grid.filter(|offset| offset.length() < 1.0).collect();
+    let (mut all, mut hidden) = (0.0f32, 0.0f32);
+    for (at, radius) in discs {
+        let places = grid.iter().map(|offset| *at + *offset * (*radius / ALLOWANCE));
+        for place in places.filter(|place| picture.contains(*place)) {
+            let area = radius * radius;
+            all += area;
+            hidden += if plates.iter().any(|plate| plate.contains(place)) { area } else { 0.0 };
+        }
+    }
+    hidden / all.max(1.0)
+}
+
 /// Start time of the presentation, in seconds.
 fn since(ui: &Ui) -> f64 {
     let id = Id::new("presentation since");
@@ -339,4 +359,21 @@ fn since(ui: &Ui) -> f64 {
     let since = known.map_or(now, |(since, _)| since);
     ui.data_mut(|d| d.insert_temp(id, (since, pass)));
     since
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_plates_cover_of_objects_is_a_share_of_their_area_in_the_picture() {
+        let picture = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0));
+        let ball = [(pos2(200.0, 150.0), 120.0)];
+        let share = |plate: Rect| covered(&ball, picture, &[plate]);
+        assert!(share(picture) > 0.99 && share(picture.with_max_y(40.0)) < 0.01);
+        assert!((share(picture.with_max_x(200.0)) - 0.5).abs() < 0.1);
+        assert_eq!(covered(&[], picture, &[picture]), 0.0, "there is no object");
+        let many = vec![(pos2(50.0, 50.0), 10.0); 40];
+        assert!(covered(&many, picture, &[picture]) > 0.99);
+    }
 }

@@ -17,6 +17,8 @@ with_defaults! {
         pub cells: Vec<Cell> = Vec::new(),
         /// Rectangle of the difference map.
         pub map: Option<egui::Rect> = None,
+        /// Size of the letters of the map's legend, in points of the panels.
+        pub letters: f32 = 11.5,
         /// Points of the window per point of the panels.
         pub zoom: f32 = 1.0,
         /// True if the pointer is over the picture and no panel, menu or dialog is in between. Anything that moves the

@@ -516,6 +516,114 @@ fn badges_legends_banner_and_hint_of_a_presentation_hide_no_object() {
 }
 
 #[test]
+fn three_views_of_a_presentation_show_a_teapot_whole() {
+    for (size, scale) in [((1920.0, 1080.0), 100), ((1280.0, 720.0), 100), ((1280.0, 720.0), 200)] {
+        let mut bench = shipped("portrait.json", scale);
+        bench.size = size.into();
+        (0..2).for_each(|_| bench.apply(Action::Compare(CompareCommand::Add)));
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let teapot = bench.session.document.objects[0].clone();
+        let mesh = bench.registry.shape("teapot").expect("built in").mesh(&teapot.shape, 16);
+        assert_eq!(bench.area.cells.len(), 3);
+        for cell in &bench.area.cells {
+            let lens = Lens::of(&bench.session, cell.rect);
+            for p in &mesh.positions {
+                let p = teapot.room_from_object().transform_point3(*p);
+                let at = lens.project(p).expect("before the camera");
+                assert!(cell.rect.contains(at), "{size:?}, {scale} %: {at:?} is outside of {:?}", cell.rect);
+            }
+        }
+    }
+}
+
+#[test]
+fn headers_of_a_presentation_are_as_large_as_captions_at_every_scale_and_no_view_has_a_frame() {
+    let mut sizes = Vec::new();
+    for scale in [100, 150, 200] {
+        let mut bench = shipped("compare_phong_blinn_phong.json", scale);
+        let framed = |bench: &mut Bench| {
+            let cell = bench.area.cells[0].rect;
+            let frames =
+                |shape: &Shape| matches!(shape, Shape::Rect(r) if r.rect == cell && r.stroke.width > 0.0);
+            bench.shapes().iter().any(frames)
+        };
+        bench.apply(Action::Compare(CompareCommand::Activate(0)));
+        assert!(framed(&mut bench), "with panels it shows which view is active");
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        assert!(!framed(&mut bench), "{scale} %");
+        let (top, zoom) = (bench.area.cells[0].rect.top(), bench.area.zoom);
+        let header = bench.shapes().into_iter().find_map(|shape| match shape {
+            Shape::Text(text) if text.pos.y < top && text.galley.text().contains("Phong") => {
+                Some(text.galley)
+            }
+            _ => None,
+        });
+        let letters = header.expect("a header").job.sections[0].format.font_id.size;
+        sizes.push((zoom * letters).round());
+    }
+    assert_eq!(sizes, [26.0; 3], "as the caption: 0.036 of the height");
+}
+
+#[test]
+fn badges_above_a_view_of_a_presentation_stand_in_one_row() {
+    let mut rows = 0;
+    for views in [2, 3] {
+        let mut bench = shipped("compare_phong_blinn_phong.json", 100);
+        (2..views).for_each(|_| bench.apply(Action::Compare(CompareCommand::Add)));
+        bench.apply(Action::Compare(CompareCommand::Activate(1)));
+        bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
+        bench.session.facts.clipping[1] = Clipping::new(vec![50; Clipping::GRID[0] * Clipping::GRID[1]]);
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        bench.settle();
+        let cell = bench.area.cells[1].rect;
+        let badges: Vec<_> = bench.tree.iter().filter(|s| s.label.starts_with("B · ")).collect();
+        for words in ["Only the diffuse term", "Clipped: "] {
+            assert!(badges.iter().any(|badge| badge.label.contains(words)), "{views} views: {words}");
+        }
+        // In a corner that is free they may stand below each other.
+        if badges.iter().all(|badge| cell.contains_rect(badge.rect)) {
+            continue;
+        }
+        rows += 1;
+        let tops: Vec<_> = badges.iter().map(|badge| badge.rect.top()).collect();
+        assert!(tops.iter().all(|top| (top - tops[0]).abs() < 0.5), "{views} views: one row: {tops:?}");
+        // The header and one row.
+        assert!(cell.top() < 0.15 * 720.0, "{views} views: {cell:?}");
+    }
+    assert!(rows > 0, "nothing is tested");
+}
+
+#[test]
+fn no_word_hangs_alone_in_the_last_line_of_a_caption() {
+    let mut broken = 0;
+    for width in (700..1900).step_by(80) {
+        let mut bench = shipped("portrait.json", 100);
+        bench.size = vec2(width as f32, 1080.0);
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        let ground = lights_camera_models::panel::theme::DARK.panel;
+        let plate = bench.shapes().into_iter().find_map(|shape| match shape {
+            Shape::Rect(r) if r.fill == ground && r.rect.left() == 0.0 && r.rect.bottom() > 1079.0 => {
+                Some(r.rect)
+            }
+            _ => None,
+        });
+        let plate = plate.expect("the caption has a ground");
+        if plate.height() < 0.09 * 1080.0 {
+            continue;
+        }
+        let inside: Vec<_> =
+            bench.texts_in_sight().into_iter().filter(|(_, at)| plate.contains_rect(*at)).collect();
+        let end = |upper: bool| {
+            let line = inside.iter().filter(|(_, at)| (at.center().y < plate.center().y) == upper);
+            line.map(|(_, at)| at.right()).fold(0.0, f32::max)
+        };
+        assert!(end(false) > 0.4 * end(true), "{width}: {inside:?}");
+        broken += 1;
+    }
+    assert!(broken > 0, "nothing is tested");
+}
+
+#[test]
 fn plates_of_a_presentation_are_in_their_places_in_the_first_frame_that_shows_them() {
     let places = |bench: &Bench| {
         let cells: Vec<_> = bench.area.cells.iter().map(|cell| cell.rect).collect();
@@ -675,6 +783,17 @@ fn an_equation_of_one_view_alone_has_its_letter_and_says_if_definitions_are_miss
             assert!(texts.iter().filter(|text| *text == "B:").count() == 2, "{model}, {size:?}");
             let says = texts.iter().any(|text| text.starts_with(&format!("… and {missing} more definition")));
             assert_eq!(says, missing > 0, "{model}, {size:?}: {missing} of {} are missing", all.len());
+            for shape in bench.shapes() {
+                if let Shape::Text(text) = shape
+                    && text.galley.text().starts_with("… and ")
+                {
+                    let letters = text.galley.job.sections[0].format.font_id.size;
+                    assert!(
+                        letters < 0.03 * size.1,
+                        "{model}, {size:?}: as small as the equation: {letters}"
+                    );
+                }
+            }
             cut += missing;
         }
     }

@@ -200,7 +200,7 @@ impl<'s> Around<'s> {
     fn opening(&self, p: Vec3, widens: bool) -> [f32; 2] {
         let [across, up] = self.stand.opening;
         let widens = widens && self.original.visible;
-        let keeps = widens.then(|| self.stand.scene.widened_by(p, self.original.size)).flatten();
+        let keeps = widens.then(|| self.stand.scene.widened_by(p, self.original)).flatten();
         [across.max(keeps.map_or(0.0, |keeps| keeps * up)), up]
     }
 
