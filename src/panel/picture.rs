@@ -156,7 +156,11 @@ impl<'a> Overlaid<'_, 'a> {
         let session = self.context.session();
         let in_map = !session.document.variants.is_empty() && session.document.comparison.layout.is_map();
         let has_wires = session.channel_of(view).is_some_and(DebugChannel::has_wires);
-        if in_map && if session.shown_for_map().is_some() { view != 0 } else { has_wires } {
+        let hides = match session.shown_for_map() {
+            Some(_) => view != 0,
+            None => in_map && has_wires,
+        };
+        if hides {
             return;
         }
         if let Some(place) = channels::legend(ui, placer, view, self.context) {
