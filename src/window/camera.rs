@@ -318,6 +318,10 @@ mod tests {
         assert!(framing(2.0, [f32::to_radians(150.0), 1.0]) > 2.0, "outside of it");
     }
 
+    fn focus_selection(mut camera: CameraControl, session: Res<Session>, registry: Res<Registry>) {
+        camera.focus(&session, &registry);
+    }
+
     #[test]
     fn what_is_focused_beside_another_object_is_framed_in_narrow_views() {
         use crate::scene::{Object, Variant, comparison::Layout};
@@ -345,12 +349,7 @@ mod tests {
                 Projection::Perspective(lens),
             ))
             .id();
-        app.add_systems(
-            Update,
-            |mut camera: CameraControl, session: Res<Session>, registry: Res<Registry>| {
-                camera.focus(&session, &registry);
-            },
-        );
+        app.add_systems(Update, focus_selection);
         app.update();
         let place = app.world().get::<Transform>(camera).expect("it has a place").translation;
         let across = place.distance(Vec3::new(8.0, 5.0, 5.0)) * (0.5 * fov).tan() * aspect;

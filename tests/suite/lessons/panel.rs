@@ -834,7 +834,7 @@ fn after_a_wrong_answer_the_others_are_in_sight_and_in_a_presentation_the_verdic
     go(&mut bench, LessonCommand::Answer(0));
     let both = ["One third", "Wrong. Try another answer.", "The law uses the cosine"];
     for (presenting, seen) in
-        [(false, [&both[..], &["One half.", "All of it."]].concat()), (true, both.into())]
+        [(false, [&both[..], &["One half.", "All of it."][..]].concat()), (true, both.into())]
     {
         bench.apply(Action::View(ViewChange::Presenting(presenting)));
         (0..30).for_each(|_| drop(bench.frame(Vec::new())));

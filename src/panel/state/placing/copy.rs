@@ -106,7 +106,7 @@ impl Stand<'_> {
             .or_else(|| free().filter(|p| around.hidden(*p) <= LITTLE_HIDDEN))
             .or_else(|| around.beside())
             .or_else(free)
-            .or_else(|| around.least_hidden(&[sides.clone(), others.clone()].concat()))
+            .or_else(|| around.least_hidden(&[sides.as_slice(), others.as_slice()].concat()))
             .or_else(|| {
                 self.search(original.position, 0.55 * original.size, |p| self.free(p, around.block.radius))
             })
