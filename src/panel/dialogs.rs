@@ -348,6 +348,9 @@ impl Dialogs {
             let file = dialog.selected_entry().map(|entry| entry.file_name().to_owned());
             let parts = (places.top, places.bottom);
             aids::name_parts(ctx, layer, parts, (&*dialog.config_mut(), file.as_deref()));
+            if let Some(name) = &file {
+                aids::shorten_name(ctx, layer, places.bottom, name);
+            }
             // The dialog keeps a folder selected after it has shown what is in it.
             let shown = dialog.storage_mut().last_visited_dir.clone();
             let selected =

@@ -156,11 +156,17 @@ impl<'a> Overlaid<'_, 'a> {
         }
     }
 
-    /// Paints the legend of a view's debug channel, if there is one. A difference has no lines and dots to explain.
+    /// Paints the legend of a view's debug channel, if there is one. A difference has no lines and dots to explain; in place
+    /// of a missing one, there is the picture of view A.
     fn channel(&mut self, ui: &mut Ui, placer: &mut Placer, view: usize) {
         let session = self.context.session();
         let in_map = !session.document.variants.is_empty() && session.document.comparison.layout.is_map();
-        if in_map && session.channel_of(view).is_some_and(DebugChannel::has_wires) {
+        let has_wires = session.channel_of(view).is_some_and(DebugChannel::has_wires);
+        let hides = match session.shown_for_map() {
+            Some(_) => view != 0,
+            None => in_map && has_wires,
+        };
+        if hides {
             return;
         }
         if let Some(place) = channels::legend(ui, placer, view, self.context) {
@@ -199,7 +205,7 @@ impl<'a> Overlaid<'_, 'a> {
         let cells = &arrangement.cells;
         let layout = session.document.comparison.layout;
         // A difference has no wireframe.
-        for cell in cells.iter().filter(|_| !layout.is_map()) {
+        for cell in in_sight(cells, session) {
             wires::paint(ui, cell.rect, cell.part, cell.view, session, registry);
             let painter = ui.painter_at(cell.part);
             clipping::paint(&painter, cell.rect, cell.view, session, ui.pixels_per_point());
@@ -636,6 +642,15 @@ fn plate(ui: &Ui, rect: Rect, put: impl FnOnce(Vec2) -> Rect, text: &str, font: 
 /// The badge for a scene file that has changed on disk.
 fn of_disk(session: &Session) -> Option<Sign> {
     session.disk_badge().map(|badge| (badge, Vec::new()))
+}
+
+/// The views whose pictures are seen; without a difference map, that is the one shown in its place, whole.
+fn in_sight(cells: &[Cell], session: &Session) -> Vec<Cell> {
+    if !session.document.comparison.layout.is_map() {
+        return cells.to_vec();
+    }
+    let alone = cells.iter().filter(|cell| cell.view == 0 && session.shown_for_map().is_some());
+    alone.map(|cell| Cell { part: cell.rect, ..*cell }).collect()
 }
 
 /// The badges in the place of a difference map that is missing: why, and what is shown until then.

@@ -454,7 +454,7 @@ mod tests {
                     })
                     .collect();
                 let texts: Vec<_> = pieces.iter().map(|(text, ..)| &**text).collect();
-                assert_eq!(texts, ["e", "-", "x", "2"]);
+                assert_eq!(texts, ["e", "−", "x", "2"]);
                 assert!(
                     pieces.windows(2).all(|pair| pair[0].1 < pair[1].1),
                     "from left to right: {pieces:?}"

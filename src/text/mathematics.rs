@@ -129,10 +129,10 @@ impl Atom {
     }
 }
 
-/// Splits an equation into atoms.
+/// Splits an equation into atoms. A hyphen is read as a minus.
 #[must_use]
 pub fn parse(text: &str) -> Vec<Atom> {
-    let chars: Vec<char> = text.chars().collect();
+    let chars: Vec<char> = text.chars().map(|c| if c == '-' { '−' } else { c }).collect();
     let mut atoms = Vec::new();
     let mut i = 0;
     while i < chars.len() {
@@ -326,6 +326,12 @@ mod tests {
             sup: "p+1".to_owned()
         }));
         assert_eq!(atoms.last(), Some(&symbol("d", "", "2")));
+    }
+
+    #[test]
+    fn a_hyphen_is_a_minus() {
+        assert_eq!(parse("e^{-x^2}")[0], symbol("e", "", "−x^2"));
+        assert_eq!(parse("x^-2 - 1"), parse("x^−2 − 1"));
     }
 
     #[test]

@@ -157,10 +157,10 @@ fn feed_viewpoint(
     }
 }
 
-/// Distance at which an object of the given size takes about half of the smaller side of the picture, in metres; never
-/// inside the object.
-fn framing(size: f32, field_of_view: f32) -> f32 {
-    let tangent = (0.5 * field_of_view.to_radians()).tan();
+/// Distance at which an object of the given size takes about half of the smaller side of a picture, in metres; never
+/// inside the object. The picture has the vertical field of view in radians, and the ratio of width to height.
+fn framing(size: f32, [field_of_view, aspect]: [f32; 2]) -> f32 {
+    let tangent = (0.5 * field_of_view).tan() * aspect.min(1.0);
     (0.91 * size / tangent).max(1.1 * size).max(2.2 * NEAREST)
 }
 
@@ -218,6 +218,8 @@ pub(super) struct CameraControl<'w, 's> {
         (&'static mut PanOrbitCamera, &'static mut Transform, &'static mut PictureCamera),
         With<WindowView>,
     >,
+    /// What the pictures show, which may be more than what the observer sees.
+    lenses: Query<'w, 's, &'static Projection, With<WindowView>>,
     waiting: Local<'s, Option<Waiting>>,
 }
 
@@ -260,9 +262,14 @@ impl CameraControl<'_, '_> {
             Selection::Room => Some((corner * 0.5, corner.max_element())),
         };
         let Some((target, size)) = found else { return };
+        let lens = self.lenses.iter().find_map(|lens| match lens {
+            Projection::Perspective(lens) => Some([lens.fov, lens.aspect_ratio]),
+            _ => None,
+        });
+        let lens = lens.unwrap_or([scene.observer.field_of_view.to_radians(), 1.0]);
         for (mut orbit, mut transform, mut picture) in &mut self.cameras {
             picture.follows_observer = false;
-            let distance = framing(size, scene.observer.field_of_view);
+            let distance = framing(size, lens);
             let backward = transform.rotation * Vec3::Z;
             let place = transform.with_translation(target + backward * distance);
             put_at(&mut orbit, &mut transform, place, target);
@@ -300,11 +307,53 @@ mod tests {
     #[test]
     fn what_is_focused_is_framed_with_every_field_of_view() {
         for (degrees, size) in [(10.0, 2.0), (45.0, 0.1), (45.0, 8.0), (90.0, 2.0)] {
-            let distance = framing(size, degrees);
-            let share = 0.5 * size / (distance * (0.5f32 * f32::to_radians(degrees)).tan());
-            assert!((0.4..0.6).contains(&share), "{degrees}°: {share}");
+            for aspect in [0.4, 1.0, 1.8] {
+                let vertical = f32::to_radians(degrees);
+                let distance = framing(size, [vertical, aspect]);
+                let up = distance * (0.5 * vertical).tan();
+                let share = 0.5 * size / (up * aspect).min(up);
+                assert!((0.4..0.6).contains(&share), "{degrees}°, {aspect}: {share}");
+            }
         }
-        assert!(framing(2.0, 150.0) > 2.0, "outside of it");
+        assert!(framing(2.0, [f32::to_radians(150.0), 1.0]) > 2.0, "outside of it");
+    }
+
+    fn focus_selection(mut camera: CameraControl, session: Res<Session>, registry: Res<Registry>) {
+        camera.focus(&session, &registry);
+    }
+
+    #[test]
+    fn what_is_focused_beside_another_object_is_framed_in_narrow_views() {
+        use crate::scene::{Object, Variant, comparison::Layout};
+        // A copy, for which views beside each other have become wider.
+        let object = |x: f32| Object { position: Vec3::new(x, 5.0, 5.0), size: 3.0, ..Object::default() };
+        let mut scene = Scene { objects: [5.0, 8.0].map(object).into(), ..Scene::default() };
+        scene.comparison.layout = Layout::SideBySide;
+        scene.variants.push(Variant::default());
+        let aspect = 0.7;
+        let fov = scene.view_angle().vertical(aspect);
+        let mut session = Session::new(scene.clone());
+        session.selection = Selection::Object(1);
+        let mut app = App::new();
+        app.insert_resource(CurrentScene(scene))
+            .insert_resource(session)
+            .insert_resource(Registry::builtin());
+        let lens = PerspectiveProjection { fov, aspect_ratio: aspect, ..default() };
+        let camera = app
+            .world_mut()
+            .spawn((
+                WindowView,
+                PanOrbitCamera::default(),
+                PictureCamera { follows_observer: true, fits_width: true },
+                Transform::default(),
+                Projection::Perspective(lens),
+            ))
+            .id();
+        app.add_systems(Update, focus_selection);
+        app.update();
+        let place = app.world().get::<Transform>(camera).expect("it has a place").translation;
+        let across = place.distance(Vec3::new(8.0, 5.0, 5.0)) * (0.5 * fov).tan() * aspect;
+        assert!((0.4..0.6).contains(&(1.5 / across)), "{}", 1.5 / across);
     }
 
     #[test]

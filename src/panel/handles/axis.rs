@@ -19,6 +19,8 @@ use crate::{
     scene::Object,
 };
 
+/// Cosine of the angle in the picture below which two arrows are taken for each other.
+const ALIKE: f32 = 0.94;
 /// Minimum projected length of an arrow, in points: an axis seen end on cannot be dragged along.
 const SHORTEST: f32 = 30.0;
 /// Number of directions from an object, and of distances from it, in which arrows beside it are tried.
@@ -208,8 +210,20 @@ fn arrows(
         let placed = Placed::new(SORT.handle(axis), end, LETTER_RADIUS, point);
         all.push(Placed { lines: vec![line], ..placed });
     }
+    let mut all = told_apart(&all, origin, (at - lens.eye).normalize_or_zero());
     all.push(plane::disc(at, origin, arm, clear, &all));
     all
+}
+
+/// The arrows that are not taken for another: of two that point the same way in the picture, the one gives way whose axis
+/// is seen more nearly end on along the line of sight.
+fn told_apart(all: &[Placed], origin: Pos2, sight: Vec3) -> Vec<Placed> {
+    let along = |arrow: &Placed| sight[arrow.handle.which].abs();
+    let way = |arrow: &Placed| (arrow.end - origin).normalized();
+    let gives_way = |arrow: &Placed| {
+        all.iter().any(|other| along(other) < along(arrow) && way(other).dot(way(arrow)) > ALIKE)
+    };
+    all.iter().filter(|arrow| !gives_way(arrow)).cloned().collect()
 }
 
 #[cfg(test)]
@@ -236,6 +250,18 @@ mod tests {
         let middle = lens.project(position).expect("in view");
         let extent = HalfAxes::of(&target, middle, &lens).expect("in front of the camera");
         (all, rect, middle, extent)
+    }
+
+    #[test]
+    fn beside_the_middle_the_arrow_to_the_right_is_x() {
+        for position in [[7.2, 5.0, 3.9], [7.25, 5.0, 5.0], [8.5, 5.0, 3.0]].map(Vec3::from) {
+            for size in [[730.0, 655.0], [1040.0, 740.0]] {
+                let all = handles(position, size).0;
+                let axes: Vec<_> =
+                    all.iter().filter(|p| p.handle.sort.has_axis).map(|p| p.handle.which).collect();
+                assert_eq!(axes, [0, 1], "{position} in {size:?}");
+            }
+        }
     }
 
     #[test]

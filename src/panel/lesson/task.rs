@@ -10,6 +10,8 @@ use crate::{
 const BAR: f32 = 3.0;
 /// Width of the circle in front of an answer, in points.
 const CIRCLE: f32 = 24.0;
+/// Space above and below answers that are scrolled into sight, in points.
+const MARGIN: f32 = 6.0;
 
 /// Shows the task. `unmet` says why it is not done.
 pub(super) fn task(
@@ -81,8 +83,10 @@ fn predict(
     answers: &[AnswerChoice],
     actions: &mut Vec<Action>,
 ) {
+    let first = ui.cursor().top();
     paragraph(ui, question);
     ui.add_space(2.0);
+    let mut seen = None;
     let chosen = open.answer();
     let tried = open.answers.get(&open.step).map_or(&[][..], Vec::as_slice);
     let answered = just_answered(ui, open);
@@ -96,23 +100,53 @@ fn predict(
         if known && (chosen == Some(i) || choice.right) {
             feedback(ui, choice, open.is_done());
             if answered && chosen == Some(i) {
-                // The answer with its reason, which may lie below what is in sight.
-                let whole = Rect::from_x_y_ranges(ui.max_rect().x_range(), top..=ui.cursor().top());
-                ui.scroll_to_rect(whole, None);
+                seen = Some(top);
             }
         }
     }
+    // The question with all answers, or those from the chosen one on, which may lie below what is in sight.
+    if let Some(chosen) = seen {
+        let (end, room) = (ui.cursor().top(), ui.clip_rect().height() - 2.0 * MARGIN);
+        let top = if end - first <= room { first } else { chosen };
+        let whole = Rect::from_x_y_ranges(ui.max_rect().x_range(), top..=end.min(top + room));
+        ui.scroll_to_rect(whole.expand2(vec2(0.0, MARGIN)), None);
+    }
 }
 
-/// True in the first frame after an answer.
+/// What brings the chosen answer into sight when it changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Answered {
+    entries: u64,
+    answer: Option<usize>,
+    tries: usize,
+    /// Size of the type: a presentation has larger type, and begins with the answer in sight.
+    size: f32,
+}
+
+/// True in the first frames after an answer, and after the type has got another size: texts take a frame to find their
+/// places.
 fn just_answered(ui: &Ui, open: &OpenLesson) -> bool {
-    let (id, now) = (Id::new("answer of a lesson"), (open.entries, open.answer()));
-    let before = ui.data_mut(|data| {
-        let before: Option<(u64, Option<usize>)> = data.get_temp(id);
-        data.insert_temp(id, now);
-        before
+    const FRAMES: u8 = 3;
+    let id = Id::new("answer of a lesson");
+    let now = Answered {
+        entries: open.entries,
+        answer: open.answer(),
+        tries: open.tries.get(&open.step).copied().unwrap_or(0),
+        size: TextStyle::Body.resolve(ui.style()).size,
+    };
+    let left = ui.data_mut(|data| {
+        let left = match data.get_temp::<(Answered, u8)>(id) {
+            Some((before, left)) if before == now => left.saturating_sub(1),
+            Some((before, _)) if before.entries == now.entries => FRAMES,
+            _ => 0,
+        };
+        data.insert_temp(id, (now, left));
+        left
     });
-    before.is_some_and(|before| before.0 == now.0 && before.1 != now.1)
+    if left > 0 {
+        ui.ctx().request_repaint();
+    }
+    left > 0
 }
 
 /// The verdict on an answer and its reason, below the text of the answer.

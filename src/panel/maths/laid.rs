@@ -109,7 +109,7 @@ mod tests {
                 let atoms = parse("e^{-x^2}");
                 let laid = lay_out(ui, &atoms[0], 20.0, Color32::WHITE);
                 let texts: Vec<_> = laid.pieces.iter().map(|p| p.galley.text().to_owned()).collect();
-                assert_eq!(texts, ["e", "-", "x", "2"], "each in its place, and no mark among them");
+                assert_eq!(texts, ["e", "−", "x", "2"], "each in its place, and no mark among them");
                 let heights: Vec<_> = laid.pieces.iter().map(|p| p.galley.size().y).collect();
                 assert!(heights[0] > heights[2] && heights[2] > heights[3], "{heights:?}");
                 let end = laid.pieces[3].offset.x + laid.pieces[3].galley.size().x;

@@ -113,6 +113,9 @@ impl Session {
                     self.travels.copied(from, to);
                 }
                 self.select_new(Selection::Object(at));
+                if self.stand(registry).cuts_off(at) {
+                    self.say(Severity::Info, "The picture does not show all of the copy. C frames it.");
+                }
             }
             _ => self.say(Severity::Info, "Select a light or an object to duplicate it."),
         }

@@ -1,6 +1,9 @@
 //! The window with several views of one scene.
 
-use std::fs;
+use std::{
+    fs, thread,
+    time::{Duration, Instant},
+};
 
 use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Rect, Shape, Vec2, accesskit::Role, vec2};
 use lights_camera_models::{
@@ -642,16 +645,49 @@ fn a_difference_has_no_legend_of_dots_that_are_not_drawn_in_it() {
     for presenting in [false, true] {
         let mut bench = bench();
         bench.key(Key::B, CTRL);
-        bench.apply(Action::Compare(CompareCommand::Activate(0)));
-        bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::Vertices))));
+        let channel = |bench: &mut Bench, channel: DebugChannel| {
+            for view in [1, 0] {
+                bench.apply(Action::Compare(CompareCommand::Activate(view)));
+                bench.apply(Action::View(ViewChange::Channel(Some(channel))));
+            }
+        };
+        channel(&mut bench, DebugChannel::Vertices);
         bench.apply(Action::View(ViewChange::Presenting(presenting)));
         for layout in [Layout::SideBySide, Layout::Difference] {
             bench.apply(Action::Compare(CompareCommand::Layout(layout)));
+            bench.session.facts.comparison = Some(Numbers::default());
+            bench.settle();
             assert_eq!(bench.says("Channel: A · Vertices"), !layout.is_map(), "{layout:?}, {presenting}");
         }
         // Values of a channel are there.
-        bench.apply(Action::View(ViewChange::Channel(Some(DebugChannel::NDotV))));
+        channel(&mut bench, DebugChannel::NDotV);
+        bench.session.facts.comparison = Some(Numbers::default());
+        bench.settle();
         assert!(bench.says("Channel: A · N·V"), "{presenting}");
+    }
+}
+
+#[test]
+fn the_picture_in_place_of_a_difference_has_its_own_legend_and_dots_and_no_others() {
+    for presenting in [false, true] {
+        let mut bench = bench();
+        bench.key(Key::B, CTRL);
+        for (view, channel) in [(1, DebugChannel::Depth), (0, DebugChannel::Vertices)] {
+            bench.apply(Action::Compare(CompareCommand::Activate(view)));
+            bench.apply(Action::View(ViewChange::Channel(Some(channel))));
+        }
+        bench.apply(Action::View(ViewChange::Presenting(presenting)));
+        bench.apply(Action::Compare(CompareCommand::Layout(Layout::Difference)));
+        bench.settle();
+        assert!(bench.says("Channel: A · Vertices"), "{presenting}");
+        assert!(!bench.says("Channel: B"), "{presenting}: it shows A");
+        // They are calculated on another thread.
+        let dots = |shape: &Shape| matches!(shape, Shape::Mesh(mesh) if mesh.vertices.len() > 2000);
+        let until = Instant::now() + Duration::from_secs(30);
+        while !bench.shapes().iter().any(dots) {
+            assert!(Instant::now() < until, "{presenting}: no lines and dots");
+            thread::sleep(Duration::from_millis(20));
+        }
     }
 }
 

@@ -72,6 +72,26 @@ fn gouraud_shading_loses_the_highlight_as_the_tour_says() {
     assert!(brightest("gouraud") < 240, "it is lost");
 }
 
+#[test]
+fn the_glossary_names_all_light_types_object_types_and_terms() {
+    let text = fs::read_to_string(root().join("docs/README.md")).expect("there");
+    let row = |word: &str| {
+        let start = format!("| {word} |");
+        text.lines().find(|line| line.starts_with(&start)).unwrap_or_else(|| panic!("no {word}"))
+    };
+    let registry = Registry::builtin();
+    for light in registry.lights() {
+        assert!(row("light type").contains(light.declaration.id), "{}", light.declaration.id);
+    }
+    for shape in registry.shapes() {
+        assert!(row("object type").contains(shape.declaration.id), "{}", shape.declaration.id);
+    }
+    for term in ["ambient", "diffuse", "specular", "transmitted"] {
+        assert!(row("term").contains(term), "{term}");
+    }
+    assert!(!row("response").contains('_'), "it is set as mathematics");
+}
+
 /// Number of portraits side by side in the gallery.
 const GALLERY_COLUMNS: usize = 4;
 

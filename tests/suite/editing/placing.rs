@@ -19,6 +19,7 @@ use lights_camera_models::{
     registry::Registry,
     scene::{
         Light, Object, Scene, SceneSize,
+        comparison::Layout,
         load::{self, Defaults},
     },
 };
@@ -165,7 +166,6 @@ fn copies_stand_beside_the_original_at_the_same_depth() {
 fn copies_keep_the_depth_and_are_seen_where_there_is_little_room() {
     let registry = Registry::builtin();
     for (name, index) in [
-        ("portrait", 0),
         ("gouraud_misses_highlight", 1),
         ("shapes_and_lights", 1),
         ("shapes_and_lights", 2),
@@ -193,6 +193,35 @@ fn copies_keep_the_depth_and_are_seen_where_there_is_little_room() {
             assert!(apart > least, "{what}: before or behind the {}", other.object_type);
         }
     }
+}
+
+#[test]
+fn a_copy_for_which_the_picture_has_no_room_stands_beside_the_original_and_a_message_says_so() {
+    let registry = Registry::builtin();
+    for (name, single) in
+        [("compare_phong_blinn_phong", false), ("compare_phong_blinn_phong", true), ("portrait", true)]
+    {
+        let mut scene = shipped(name);
+        if single {
+            scene.comparison.layout = Layout::Single;
+        }
+        let mut session = Session::new(scene);
+        for nth in 0..2 {
+            session.messages.clear();
+            session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+            let what = format!("{name}, single {single}, copy {nth}");
+            touches_nothing(&what, &session, 1, &registry);
+            let objects = &session.document.objects;
+            let by = session.facts.camera.inverse() * (objects[1].position - objects[0].position);
+            assert!(by.y.abs() < 0.02 && by.z.abs() < 0.02, "{what}: {by}, as the camera sees it");
+            assert!(by.x.abs() < 1.15 * objects[0].size, "{what}: {by}");
+            let said = session.messages.iter().any(|note| note.text.contains("C frames it"));
+            assert!(said, "{what}: {:?}", session.messages);
+        }
+    }
+    let mut session = Session::default();
+    session.apply(Action::Duplicate(Selection::Object(0)), &registry);
+    assert!(session.messages.is_empty(), "{:?}", session.messages);
 }
 
 #[test]

@@ -824,6 +824,30 @@ fn the_reason_of_an_answer_is_scrolled_into_sight() {
     }
 }
 
+#[test]
+fn after_a_wrong_answer_the_others_are_in_sight_and_in_a_presentation_the_verdict() {
+    let first = LESSONS.iter().position(|lesson| lesson.id.starts_with("01")).expect("a lesson");
+    let mut bench = Bench::new(Session::default());
+    bench.size = vec2(1280.0, 720.0);
+    go(&mut bench, LessonCommand::Open(LessonSource::Shipped(first)));
+    go(&mut bench, LessonCommand::GoTo(2));
+    go(&mut bench, LessonCommand::Answer(0));
+    let both = ["One third", "Wrong. Try another answer.", "The law uses the cosine"];
+    for (presenting, seen) in
+        [(false, [&both[..], &["One half.", "All of it."][..]].concat()), (true, both.into())]
+    {
+        bench.apply(Action::View(ViewChange::Presenting(presenting)));
+        (0..30).for_each(|_| drop(bench.frame(Vec::new())));
+        let next = bench.find("Next").expect("a button").rect;
+        let texts = bench.texts_in_sight();
+        for start in seen {
+            let place = texts.iter().find(|(text, _)| text.starts_with(start)).map(|(_, place)| *place);
+            let place = place.unwrap_or_else(|| panic!("{presenting}: “{start}” is not in sight"));
+            assert!(place.top() > 40.0 && place.bottom() <= next.top(), "{presenting}: “{start}” at {place}");
+        }
+    }
+}
+
 // ── layout ──
 
 #[test]

@@ -474,7 +474,34 @@ fn the_icons_of_a_dialog_say_what_they_do() {
         bench.frame(vec![Event::PointerMoved(sign.center())]);
         bench.settle();
         assert!(bench.texts().iter().any(|text| text == words), "{icon}: {:?}", bench.texts());
+        let rows = bench.shapes().into_iter().find_map(|shape| match &shape {
+            Shape::Text(text) if text.galley.text() == words => Some(text.galley.rows.len()),
+            _ => None,
+        });
+        assert_eq!(rows, Some(1), "{words} is in one line");
     }
+}
+
+#[test]
+fn a_name_that_does_not_fit_below_the_list_has_both_of_its_ends() {
+    const NAME: &str = "a_room_with_many_lamps_as_it_was_lit_on_the_first_evening.json";
+    let (mut bench, folder) = open(ThemeChoice::Dark, 150);
+    bench.key(Key::Escape, Modifiers::NONE);
+    fs::copy(folder.path().join("shapes.json"), folder.path().join(NAME)).expect("copied");
+    bench.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL);
+    until(&mut bench, "the list", |b: &mut Bench| b.tree.iter().any(|s| s.label.contains("a_room")));
+    select(&mut bench, "a_room");
+    until(&mut bench, "the name", |b: &mut Bench| b.tree.iter().any(|s| s.label == NAME));
+    bench.settle();
+    let texts = bench.texts_in_sight();
+    let is_short = |text: &str| text.starts_with("a_room") && text.contains('…') && text.ends_with(".json");
+    let name = texts.iter().find(|(text, _)| is_short(text)).expect("shortened in the middle").1;
+    let label = texts.iter().find(|(text, _)| text == "File:").expect("below").1;
+    let bottom = PanelState::load(&bench.ctx, Id::new("open dialog").with("bottom_panel")).expect("shown");
+    assert!(
+        name.left() > label.right() && name.right() < bottom.outer_rect.right(),
+        "{name:?} is cut off after {label:?}"
+    );
 }
 
 #[test]

@@ -18,6 +18,8 @@ const SOLID: f32 = 0.85;
 const POINTS: i16 = 12;
 /// Cost of a covered part of a copy relative to that of a part that is cut off.
 const COVERED: f32 = 2.0;
+/// Maximum cost of a place in the picture that is better than one beside the original and partly outside.
+const LITTLE_HIDDEN: f32 = 0.35;
 /// Cost of a copy that is cut off by more than half.
 const MOSTLY_CUT: f32 = 1.0;
 /// Cost of a copy that is neither level with the original nor right above or below it.
@@ -72,7 +74,7 @@ struct Around<'s> {
     block: Block,
     /// The bounds of the original and of its neighbours.
     neighbours: Vec<Framed>,
-    /// What a copy stands in only if there is no other place, the original among it.
+    /// What a copy touches only if there is no other place, the original among it.
     solid: Vec<Block>,
     /// Floors and backdrops, on which a copy may stand, but not in them.
     ground: Vec<Block>,
@@ -81,21 +83,40 @@ struct Around<'s> {
 }
 
 impl Stand<'_> {
-    /// Position of a copy of the object with the given index: beside the original as seen by the camera, at the same
-    /// depth, wholly in the picture and over no other object; farther away at that depth if there is no such place, and
-    /// where the least of it is covered or cut off if the picture has none.
+    /// Position of a copy of the object with the given index, at the depth of the original: to its left or right as
+    /// seen by the camera, wholly in the picture and over no other object; elsewhere in the picture if there is no such
+    /// place; to the left or right of the original and partly outside the picture if that has none; and only if there
+    /// is no free place either, where the least of it is covered or cut off.
     pub(in crate::panel::state) fn copy(&self, index: usize) -> Vec3 {
         let Some(original) = self.scene.objects.get(index) else { return self.middle() };
         let around = Around::new(self, original, index);
-        let places: Vec<_> = around.along_axes().chain(around.all_over()).collect();
-        let clear = |widens: bool| places.iter().copied().find(|p| around.is_clear(*p, widens));
-        clear(false)
-            .or_else(|| clear(true))
-            .or_else(|| around.least_hidden(&places))
+        let [sides, ups] = [Vec3::X, Vec3::Y].map(|axis| around.along(axis, &NEXT_TO));
+        let others: Vec<_> = ups.into_iter().chain(around.all_over()).collect();
+        let clear = |places: &[Vec3]| {
+            let find = |widens: bool| places.iter().copied().find(|p| around.is_clear(*p, widens));
+            find(false).or_else(|| find(true))
+        };
+        let free = || {
+            let places = sides.iter().chain(&others).copied();
+            let free: Vec<_> = places.filter(|p| self.sees(*p, 0.0) && around.is_free(*p)).collect();
+            around.least_hidden(&free)
+        };
+        clear(&sides)
+            .or_else(|| clear(&others))
+            .or_else(|| free().filter(|p| around.hidden(*p) <= LITTLE_HIDDEN))
+            .or_else(|| around.beside())
+            .or_else(free)
+            .or_else(|| around.least_hidden(&[sides.as_slice(), others.as_slice()].concat()))
             .or_else(|| {
                 self.search(original.position, 0.55 * original.size, |p| self.free(p, around.block.radius))
             })
             .unwrap_or_else(|| self.lattice(original.position))
+    }
+
+    /// True if an object is partly or wholly outside every view.
+    pub(in crate::panel::state) fn cuts_off(&self, index: usize) -> bool {
+        let framed = self.taken.get(index).map(|block| self.framed(block));
+        framed.is_some_and(|framed| framed.is_none_or(|framed| !framed.is_within(self.opening)))
     }
 
     /// The bounds of a block in the picture; `None` if it is around the camera or behind it.
@@ -136,7 +157,7 @@ impl<'s> Around<'s> {
         let is_out = !stand.sees(original.position, 0.0);
         let own = stand.framed(&block);
         let (mut neighbours, mut ground): (Vec<_>, Vec<_>) = (own.into_iter().collect(), Vec::new());
-        let mut solid = vec![block.scaled(SOLID)];
+        let mut solid = vec![block];
         let (at, depth) = stand.flat(block.centre);
         let picture = Framed { low: -stand.widest(), high: stand.widest() };
         for (_, other) in stand.taken.iter().enumerate().filter(|(i, _)| *i != index) {
@@ -152,7 +173,7 @@ impl<'s> Around<'s> {
             // A room holds the camera or the original.
             let is_room = other.gap(stand.eye) <= 0.0 || other.gap(block.centre) <= 0.0;
             if !is_room {
-                solid.push(other.scaled(SOLID));
+                solid.push(*other);
             }
             if !is_room && (is_out || framed.is_none_or(|framed| is_ground(&framed))) {
                 ground.push(*other);
@@ -167,13 +188,28 @@ impl<'s> Around<'s> {
         round(self.original.position + self.stand.turn * offset.extend(0.0), 10.0 * self.stand.steps())
     }
 
-    /// Places beside the original, the nearest first: to the right, to the left, above and below.
-    fn along_axes(&self) -> impl Iterator<Item = Vec3> {
-        let [side, up] =
-            [Vec3::X, Vec3::Y].map(|axis| GAP * self.block.reach(self.stand.turn * axis).max(0.05));
+    /// Places in both directions along an axis of the picture: at the given distances, and then farther and farther away.
+    fn along(&self, axis: Vec3, next_to: &[f32]) -> Vec<Vec3> {
+        let width = GAP * self.block.reach(self.stand.turn * axis).max(0.05);
         let farther = (1..=MOST_FARTHER).map(|n| 1.0 + FARTHER * f32::from(n));
-        let ways = [side * Vec2::X, side * Vec2::NEG_X, up * Vec2::Y, up * Vec2::NEG_Y];
-        NEXT_TO.into_iter().chain(farther).flat_map(move |count| ways.map(|way| self.at(count * way)))
+        let counts = next_to.iter().copied().chain(farther);
+        counts
+            .flat_map(|count| [1.0, -1.0].map(|way| self.at(way * count * width * axis.truncate())))
+            .collect()
+    }
+
+    /// The nearest free place to the right or left of the original, in the picture or not.
+    fn beside(&self) -> Option<Vec3> {
+        let mut nearest = NEXT_TO;
+        nearest.reverse();
+        self.along(Vec3::X, &nearest).into_iter().find(|p| self.is_free(*p))
+    }
+
+    /// True if a copy there is in the room, and touches no object.
+    fn is_free(&self, p: Vec3) -> bool {
+        let block = self.block.at(p);
+        self.stand.has_room(&block)
+            && !self.solid.iter().chain(&self.ground).any(|other| block.touches(other))
     }
 
     /// Places all over the picture, the nearest first; none for an object out of it.
@@ -259,7 +295,7 @@ impl<'s> Around<'s> {
         }
         let core = block.scaled(SOLID);
         let stands_in = self.ground.iter().any(|other| block.touches(other))
-            || self.solid.iter().any(|other| core.touches(other));
+            || self.solid.iter().any(|other| core.touches(&other.scaled(SOLID)));
         let mostly = if cut > 0.5 * count { MOSTLY_CUT } else { 0.0 };
         let offset = (self.stand.turn.inverse() * (p - self.original.position)).truncate().abs();
         let askew = if offset.min_element() > 0.02 * self.block.radius { ASKEW } else { 0.0 };
@@ -289,12 +325,12 @@ mod tests {
         Stand::new(&session.document, registry, session.facts.eye, session.facts.camera)
     }
 
-    /// An object of a shipped scene, its copy, and whether the centre of the copy is in the picture.
+    /// An object of a shipped scene, its copy, and whether the picture with both shows the centre of the copy.
     fn copied(name: &str, index: usize) -> (Block, Block, bool) {
-        let (registry, session) = (Registry::builtin(), session_of(name));
+        let (registry, mut session) = (Registry::builtin(), session_of(name));
+        let _ = session.apply(Action::Duplicate(Selection::Object(index)), &registry);
         let stand = stand(&session, &registry);
-        let original = stand.taken[index];
-        let copy = original.at(stand.copy(index));
+        let [original, copy] = [0, 1].map(|i| stand.taken[index + i]);
         (original, copy, stand.sees(copy.centre, 0.0))
     }
 
@@ -312,10 +348,17 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_without_room_does_not_stand_in_the_original() {
+    fn a_copy_without_room_in_the_picture_stands_beside_the_original_in_nothing() {
         for name in ["compare_phong_blinn_phong", "portrait"] {
-            let (original, copy, seen) = copied(name, 0);
-            assert!(seen && !copy.scaled(SOLID).touches(&original.scaled(SOLID)), "{name}: {copy:?}");
+            let (registry, session) = (Registry::builtin(), session_of(name));
+            let stand = stand(&session, &registry);
+            let (original, copy) = (stand.taken[0], stand.taken[0].at(stand.copy(0)));
+            assert!(!copy.touches(&original), "{name}: {copy:?} in {original:?}");
+            assert!(stand.has_room(&copy), "{name}: {copy:?}");
+            let by = stand.turn.inverse() * (copy.centre - original.centre);
+            let width = original.reach(stand.turn * Vec3::X);
+            assert!(by.y.abs() < 0.02 && by.z.abs() < 0.02, "{name}: {by}, as the camera sees it");
+            assert!((1.99..2.1).contains(&(by.x.abs() / width)), "{name}: {by} at a width of {width}");
         }
     }
 
@@ -360,10 +403,10 @@ mod tests {
 
     #[test]
     fn a_copy_without_room_is_covered_and_cut_off_least() {
-        let (registry, session) = (Registry::builtin(), session_of("compare_phong_blinn_phong"));
+        let (registry, session) = (Registry::builtin(), session_of("superellipsoids"));
         let stand = stand(&session, &registry);
-        let around = Around::new(&stand, &session.document.objects[0], 0);
-        let copy = stand.copy(0);
+        let around = Around::new(&stand, &session.document.objects[4], 4);
+        let copy = stand.copy(4);
         let least = around.hidden(copy);
         assert!(least > 0.1, "there is no free place, {least}");
         for p in around.all_over().filter(|p| stand.sees(*p, 0.0)) {
