@@ -120,6 +120,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
     arguments.output.as_deref().map_or(Ok(()), outputs::can_begin)?;
     let registry = &workshop.registry;
+    if let Some(file) = &arguments.output {
+        save::can_write(file, &scene, registry, expected).map_err(|error| unwritten(&error))?;
+    }
     drawable(registry, &scene)?;
     let invalid = |why: &dyn std::fmt::Display| Failure::Invalid(format!("{}: {why}", source.name()));
     if arguments.each {
