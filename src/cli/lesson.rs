@@ -11,7 +11,7 @@ use super::{Checked, Options, Outcome, Reach, complain, print_text};
 use crate::files::Shown as _;
 use crate::{
     failure::Failure,
-    lesson::{Lesson, shipped::LESSONS},
+    lesson::{Lesson, Problem, limits::MAX_PROBLEMS, shipped::LESSONS},
     registry::Registry,
     text::plural,
 };
@@ -20,7 +20,7 @@ use crate::{
 pub(super) enum Command {
     /// List the shipped lessons
     List,
-    /// Check lessons and print every problem, with line and column
+    /// Check lessons and print their problems, with line and column
     Check {
         /// Markdown files, or folders with lesson.md
         #[arg(required = true, value_name = "FILE")]
@@ -89,13 +89,27 @@ fn check(files: &[PathBuf], json: bool, options: Options, registry: &Registry) -
         }
         let file = file_of(path);
         if !json {
-            for problem in &problems {
-                complain(problem.annotated(&file.shown().to_string()));
-            }
+            complain_about(&problems, &file.shown().to_string());
         }
         checked.add(file.to_string_lossy().into_owned(), problems);
     }
     checked.print(json, options, "lessons")
+}
+
+/// Prints the problems of a lesson as far as anybody reads them, and their number.
+fn complain_about(problems: &[Problem], file: &str) {
+    /// Maximum number of problems that are printed, in about five lines each.
+    const MOST_PRINTED: usize = 40;
+    problems.iter().take(MOST_PRINTED).for_each(|problem| complain(problem.annotated(file)));
+    let least = if problems.len() >= MAX_PROBLEMS { "at least " } else { "" };
+    let all = plural(problems.len(), "problem");
+    match problems.len().saturating_sub(MOST_PRINTED) {
+        0 if problems.len() < 2 => {}
+        0 => complain(format_args!("{file}: {all}")),
+        more => complain(format_args!(
+            "{file}: {least}{all}: the first {MOST_PRINTED} are printed, and --json has {more} more"
+        )),
+    }
 }
 
 fn show(file: &Path, options: Options, registry: &Registry) -> Outcome {

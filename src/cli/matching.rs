@@ -21,7 +21,7 @@ use crate::{
     matching::{
         self, Match, MatchError, Measure, Metric, Request, What, digits,
         each::{Matched, Ranking, candidates, match_each},
-        match_view,
+        match_view, rounded,
     },
     parameter::Value,
     registry::Registry,
@@ -120,6 +120,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     }
     arguments.output.as_deref().map_or(Ok(()), outputs::can_begin)?;
     let registry = &workshop.registry;
+    if let Some(file) = &arguments.output {
+        save::can_write(file, &scene, registry, expected).map_err(|error| unwritten(&error))?;
+    }
     drawable(registry, &scene)?;
     let invalid = |why: &dyn std::fmt::Display| Failure::Invalid(format!("{}: {why}", source.name()));
     if arguments.each {
@@ -189,7 +192,8 @@ fn ranking_in_words(ranking: &Ranking, measure: Measure) -> String {
     let mut text = format!("{}\n", measure.unit());
     let widest = ranking.matched.iter().map(|matched| matched.model.len()).max().unwrap_or_default();
     for Matched { model, found } in &ranking.matched {
-        let values: Vec<_> = found.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let values: Vec<_> =
+            found.values.iter().map(|(name, value)| format!("{name}={}", rounded(value))).collect();
         text += &format!("{:>8}  {model:widest$}  {}", digits(found.after), values.join(" "));
         text.truncate(text.trim_end().len());
         text.push('\n');
@@ -263,11 +267,15 @@ fn in_words(found: &Match, before: &[Value], view: usize, measure: Measure) -> S
         return format!("{stays}\n{unit}: {before}\n{}", about_the_search(found));
     }
     let mut text = format!("view {letter} matched to view A on the {measure}\n");
+    let mut kept = found.kept.clone();
     for ((name, value), before) in found.values.iter().zip(before) {
-        text += &format!("{name}: {before} → {value}\n");
+        match [before, value].map(rounded) {
+            [before, value] if before == value => kept.push(*name),
+            [before, value] => text += &format!("{name}: {before} → {value}\n"),
+        }
     }
-    if !found.kept.is_empty() {
-        text += &format!("unchanged: {}\n", listed(&found.kept, "and"));
+    if !kept.is_empty() {
+        text += &format!("unchanged: {}\n", listed(&kept, "and"));
     }
     text += &format!("{}: {} → {}\n", measure.unit(), digits(found.before), digits(found.after));
     text + &about_the_search(found)
@@ -303,4 +311,21 @@ fn as_json(found: &Match, view: usize, measure: Measure) -> Json {
         "evaluations": found.evaluations,
         "ended": found.ended.id(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_that_differ_in_no_digit_that_counts_are_unchanged() {
+        let number = Value::Number;
+        let values = [("roughness", 0.299_991_67), ("metallic", 0.999_95), ("k_s", 0.583_21)];
+        let values = values.map(|(name, value)| (name, number(value))).to_vec();
+        let found = Match { values, kept: vec!["k_d"], before: 0.5, after: 0.1, ..Match::default() };
+        let said = in_words(&found, &[0.3, 1.0, 0.6].map(number), 1, Measure::default());
+        assert!(said.contains("\nk_s: 0.6 → 0.583\nunchanged: k_d, roughness and metallic\n"), "{said}");
+        let json = as_json(&found, 1, Measure::default());
+        assert_eq!(json["values"]["roughness"], number(0.299_991_67).json(), "with all its digits");
+    }
 }

@@ -276,6 +276,17 @@ fn remedy(known: &[&str]) -> String {
     }
 }
 
+/// A value with three significant digits, for people: a search finds no more.
+#[must_use]
+pub fn rounded(value: &Value) -> Value {
+    let short = |v: f32| format!("{v:.2e}").parse().unwrap_or(v);
+    match value {
+        Value::Number(v) => Value::Number(short(*v)),
+        Value::Triple(all) => Value::Triple(all.map(short)),
+        other => other.clone(),
+    }
+}
+
 /// An error with a few digits.
 #[must_use]
 pub fn digits(error: f64) -> String {

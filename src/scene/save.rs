@@ -10,7 +10,7 @@ pub use super::write::to_json;
 use super::{
     Scene, check,
     error::{Path as ScenePath, Problem},
-    formats::{self, Target, UnknownExtension},
+    formats::{self, SceneFormat, Target, UnknownExtension},
     load::{self, Defaults, MAX_FILE_BYTES, Stamp},
 };
 use crate::{
@@ -133,26 +133,36 @@ pub fn write(
     written(path, scene, registry, expected).map_err(|why| SaveError { path: path.to_owned(), why })
 }
 
+/// Fails where [`write()`] would, for reasons that are known before the scene is complete: the format of the file, and what is there. For
+/// long work whose result would be lost. Changes nothing.
+///
+/// # Errors
+/// Returns a [`SaveError`].
+pub fn can_write(
+    path: &Path,
+    scene: &Scene,
+    registry: &Registry,
+    expected: Expected,
+) -> Result<(), SaveError> {
+    let check = || -> Result<(), Unwritten> {
+        let (format, target) = destination(path, scene, registry)?;
+        let old = on_disk(&target, expected)?;
+        // Files that the scene names cannot be looked for in a folder that is made only on writing.
+        let folder = files::folder_of(&target);
+        match matches!(files::kind(folder), Ok(Kind::Folder)) || scene.files().next().is_none() {
+            true => content(format, scene, (path, folder, old.as_deref()), registry).map(drop),
+            false => Ok(()),
+        }
+    };
+    check().map_err(|why| SaveError { path: path.to_owned(), why })
+}
+
 fn written(path: &Path, scene: &Scene, registry: &Registry, expected: Expected) -> Result<Stamp, Unwritten> {
-    let problems = check::scene(scene, registry);
-    if !problems.is_empty() {
-        return Err(Unwritten::Invalid(problems));
-    }
-    let format = formats::of_path(path, registry).map_err(Unwritten::UnknownExtension)?;
-    let writer = format.writer().ok_or(Unwritten::CannotWrite(format.name()))?;
-    // The target of /dev/stdout has no folder for a draft.
-    if let Ok(kind @ (Kind::Pipe | Kind::Device)) = files::kind(path) {
-        return Err(Unwritten::NoFile(kind));
-    }
-    let target = files::follow(path).map_err(FileError::from)?;
+    let (format, target) = destination(path, scene, registry)?;
     let folder = files::folder_of(&target);
     let old = on_disk(&target, expected)?;
     files::in_folder(folder, || {
-        let bytes = writer.write(scene, &Target::new(folder, old.as_deref()), registry);
-        let bytes = bytes.map_err(Unwritten::Lossy)?;
-        if !formats::is_json(format) {
-            comes_back(&bytes, scene, (path, folder), registry).map_err(Unwritten::Lossy)?;
-        }
+        let bytes = content(format, scene, (path, folder, old.as_deref()), registry)?;
         let mut draft = Draft::new(&target)?;
         draft.write_all(&bytes).map_err(FileError::from)?;
         if expected == Expected::Nothing {
@@ -164,6 +174,40 @@ fn written(path: &Path, scene: &Scene, registry: &Registry, expected: Expected) 
         }
         Ok(Stamp::of(&bytes))
     })
+}
+
+/// The format of a path for a valid scene, and the file to which the path leads.
+fn destination<'r>(
+    path: &Path,
+    scene: &Scene,
+    registry: &'r Registry,
+) -> Result<(&'r dyn SceneFormat, PathBuf), Unwritten> {
+    let problems = check::scene(scene, registry);
+    if !problems.is_empty() {
+        return Err(Unwritten::Invalid(problems));
+    }
+    let format = formats::of_path(path, registry).map_err(Unwritten::UnknownExtension)?;
+    format.writer().ok_or(Unwritten::CannotWrite(format.name()))?;
+    // The target of /dev/stdout has no folder for a draft.
+    if let Ok(kind @ (Kind::Pipe | Kind::Device)) = files::kind(path) {
+        return Err(Unwritten::NoFile(kind));
+    }
+    Ok((format, files::follow(path).map_err(FileError::from)?))
+}
+
+/// The scene in a format, from which it can be read back.
+fn content(
+    format: &dyn SceneFormat,
+    scene: &Scene,
+    (path, folder, old): (&Path, &Path, Option<&[u8]>),
+    registry: &Registry,
+) -> Result<Vec<u8>, Unwritten> {
+    let writer = format.writer().ok_or(Unwritten::CannotWrite(format.name()))?;
+    let bytes = writer.write(scene, &Target::new(folder, old), registry).map_err(Unwritten::Lossy)?;
+    if !formats::is_json(format) {
+        comes_back(&bytes, scene, (path, folder), registry).map_err(Unwritten::Lossy)?;
+    }
+    Ok(bytes)
 }
 
 /// `Ok` if the written scene can be read back from the content of the file; otherwise the first part that is

@@ -210,7 +210,9 @@ fn objects(list: &mut Json, registry: &Registry) {
         let names: Vec<_> = registry.models().iter().filter_map(user).chain(shadings).collect();
         let ranges = ranges(p, registry, &mut field);
         let defaults = defaults(p, registry, &mut field);
-        let help = format!("{} Used by: {}.{ranges}{defaults}", p.help, names.join(", "));
+        let (title, help) = words(p, registry);
+        field["title"] = title.into();
+        let help = format!("{help} Used by: {}.{ranges}{defaults}", names.join(", "));
         field["description"] = help.into();
         parameters.insert(p.name.to_owned(), field);
     }
@@ -280,6 +282,15 @@ fn by_value(all: impl Iterator<Item = (&'static str, String)>) -> Vec<(String, V
     found
 }
 
+/// The title and the help of a parameter, of each model if they differ.
+fn words(p: &Parameter, registry: &Registry) -> (String, String) {
+    let titles = by_value(users_of(p, registry).map(|(id, own)| (id, title(own))));
+    let helps = by_value(users_of(p, registry).map(|(id, own)| (id, own.help.to_owned())));
+    let each: Vec<_> = helps.iter().map(|(help, users)| format!("{}: {help}", users.join(", "))).collect();
+    let help = if each.len() > 1 { each.join(" ") } else { p.help.to_owned() };
+    (differing(titles).unwrap_or_else(|| title(p)), help)
+}
+
 /// The ranges of a parameter in words if they differ between models; all of them are then in its field.
 /// `check` knows the model of an object, and applies its range.
 fn ranges(p: &Parameter, registry: &Registry, field: &mut Json) -> String {
@@ -317,11 +328,16 @@ fn unit(unit: &str) -> &str {
     }
 }
 
+/// The label of a parameter, with its symbol and unit.
+fn title(p: &Parameter) -> String {
+    let unit = if p.unit.is_empty() { String::new() } else { format!(", {}", p.unit) };
+    format!("{} ({}{unit})", p.label, p.symbol)
+}
+
 /// A declared parameter.
 fn parameter(p: &Parameter) -> Json {
-    let unit = if p.unit.is_empty() { String::new() } else { format!(", {}", p.unit) };
     let mut field = p.kind.schema();
-    field["title"] = format!("{} ({}{unit})", p.label, p.symbol).into();
+    field["title"] = title(p).into();
     field["description"] = p.help.into();
     field["default"] = value(&p.default_value());
     field

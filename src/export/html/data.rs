@@ -22,7 +22,7 @@ use crate::{
     },
     optics::{TermSelection, colour::srgb_encode},
     parameter::{Parameter, Value, json as value, layout, stride},
-    reflection::{Ambient, ModelEntry, OnPages, Passage},
+    reflection::{Ambient, EquationPart, ModelEntry, OnPages, Passage, Term},
     registry::Registry,
     scene::{Scene, variant::LETTERS},
     shading::ShadingEntry,
@@ -324,18 +324,13 @@ fn model(
         let defaults: Map<_, _> = of.parameters.iter().map(default).collect();
         json!({ "of": id, "defaults": defaults, "table": blocks.add(&table) })
     });
-    let parts: Vec<_> = what
-        .equation
-        .iter()
-        .map(|part| json!({ "term": part.term.id(), "html": equation(part.text) }))
-        .collect();
     json!({
         "id": what.id,
         "name": what.name,
         "author": what.author,
         "source": what.source,
         "summary": what.summary,
-        "equation": parts,
+        "equation": parts(of_model),
         "parameters": without_knobs(parameters(entry.parameters), &deciding(of_model, lit.request.scene)),
         "size": stride(entry.parameters),
         "harmonics": entry.harmonics(),
@@ -347,6 +342,20 @@ fn model(
         "fixed": fixed(of_model, registry),
         "programs": programs,
     })
+}
+
+/// The parts of the equation of a model. Of a surface that stays opaque, since it has no knobs for transmission, they are those without
+/// that term.
+fn parts(of_model: &Program) -> Vec<Json> {
+    let opaque = of_model.model.passage_varies() && of_model.passage == Passage::NONE;
+    let summand = format!(" + {}", Term::Transmitted.symbol());
+    let part = |part: &EquationPart| match part.term {
+        Term::Transmitted if opaque => None,
+        Term::Total if opaque => Some((part.term, part.text.replace(&summand, ""))),
+        term => Some((term, part.text.to_owned())),
+    };
+    let all = of_model.model.declaration.equation.iter().filter_map(part);
+    all.map(|(term, text)| json!({ "term": term.id(), "html": equation(&text) })).collect()
 }
 
 /// The settings under which the specular response of a model is its lobe alone, with F = 1 and without
@@ -463,4 +472,31 @@ fn parameter(p: &Parameter, at: usize) -> Json {
         json["options"] = json!(p.kind.options());
     }
     json
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_equation_has_no_term_without_knobs() {
+        let registry = Registry::builtin();
+        let equation = |weight: f32| {
+            let mut scene = Scene { reflection_model: "openpbr".to_owned(), ..Scene::default() };
+            scene.objects[0].material.set("transmission_weight", Value::Number(weight));
+            let request = Request {
+                scene: &scene,
+                registry: &registry,
+                stem: "scene",
+                size: (64, 36),
+                object: 0,
+                point: None,
+            };
+            let data = data(&request, &Progress::NONE).unwrap_or_else(|error| panic!("{error:?}"));
+            data.scene["models"][0]["equation"].to_string()
+        };
+        let (opaque, clear) = (equation(0.0), equation(1.0));
+        assert!(!opaque.contains("<sub>t</sub>") && !opaque.contains("transmitted"), "{opaque}");
+        assert!(opaque.contains("specular") && clear.contains("transmitted"), "{clear}");
+    }
 }

@@ -150,9 +150,14 @@ fn told(session: &Session, registry: &Registry, changes: &[Change]) -> Vec<Strin
 }
 
 impl Change {
+    /// The label of the parameter, or its name if no model declares it.
+    fn label(&self) -> &str {
+        self.declared.map_or(&*self.place.1, |p| p.label)
+    }
+
     /// The message about a single object.
     fn single(&self, object: &str) -> String {
-        let Self { place: (_, name), wanted, to, .. } = self;
+        let (Self { wanted, to, .. }, name) = (self, self.label());
         match to {
             Some(value) if value == wanted => format!("{name} is {value} for {object} again."),
             Some(value) => {
@@ -169,7 +174,7 @@ impl Change {
 
     /// The message about several objects: the parts before and after their number.
     fn several(&self) -> (String, String) {
-        let Self { place: (_, name), wanted, to, .. } = self;
+        let (Self { wanted, to, .. }, name) = (self, self.label());
         match to {
             Some(value) if value == wanted => (format!("{name} is as it was again for"), ".".to_owned()),
             Some(value) if self.declared.is_some_and(|p| p.kind.components() > 1) => {
@@ -319,6 +324,20 @@ mod tests {
         put(&mut registry, &number("polish", 0.0, 200.0));
         follow(&mut session, &registry, &["polish is 150 for Sphere 1 again."]);
         assert!(session.stashed.is_empty() && !session.is_dirty());
+    }
+
+    #[test]
+    fn a_parameter_is_named_by_its_label() {
+        let (mut session, mut registry) =
+            begin(&number("shine_x", 0.0, 200.0), "shine_x", Value::Number(80.0));
+        put(&mut registry, &number("shine_x", 0.0, 1.0));
+        let said = "shine x is now 1 for Sphere 1 instead of 80, the largest value allowed.";
+        follow(&mut session, &registry, &[said]);
+        let object = Object { reflection_model: Some("mine".to_owned()), ..Object::default() };
+        session.document.amend(|scene| scene.objects.push(object));
+        session.document.amend(|scene| scene.objects[1].material.set("shine_x", Value::Number(1.0)));
+        put(&mut registry, &number("shine_x", 0.0, 0.5));
+        follow(&mut session, &registry, &["shine x is now 0.5 for 2 objects, the largest value allowed."]);
     }
 
     #[test]

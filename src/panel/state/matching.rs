@@ -3,7 +3,7 @@
 use super::{Effect, Session, Severity};
 use crate::{
     document::Edit,
-    matching::{Match, MatchError, Measure, digits, parameters},
+    matching::{Match, MatchError, Measure, digits, parameters, rounded},
     parameter::Parameter,
     registry::Registry,
     scene::{Part, Scene, variant::LETTERS},
@@ -131,7 +131,7 @@ impl Session {
         let label = |name: &&'static str| registry.material_parameter(name).map_or(*name, |p| p.label);
         let ambiguity = found.ambiguity(|name| label(&name)).map_or_else(String::new, |note| sentence(&note));
         let values: Vec<_> =
-            found.values.iter().map(|(name, value)| format!("{} {value}", label(name))).collect();
+            found.values.iter().map(|(name, value)| format!("{} {}", label(name), rounded(value))).collect();
         let kept: Vec<_> = found.kept.iter().map(label).collect();
         let kept = match kept.as_slice() {
             [] => String::new(),

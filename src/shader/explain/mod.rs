@@ -99,6 +99,17 @@ impl Complaint<'_> {
         if message == "invalid left-hand side of assignment" {
             return Some(here(self.assigned(scan, first)));
         }
+        if message.ends_with(" is recursive") || message.ends_with(" is cyclic") {
+            // Whatever uses a type uses what has its name.
+            let defines = |label: &&Label| {
+                let before = scan.before(scan.at(label.range.start), 1);
+                words::is_type(label.source()) && matches!(before, "fn" | "struct" | "const" | "alias")
+            };
+            if let Some(label) = self.labels.iter().find(defines) {
+                let rule = "is the name of a type of WGSL; choose another name";
+                return Some((Some(label.range.start), format!("`{}` {rule}", label.source())));
+            }
+        }
         if let Some([expected, found]) = between(message, "expected {}, found {}") {
             return grammar::unexpected(scan, first.range.start, expected, found);
         }

@@ -23,6 +23,16 @@ pub(super) fn wgsl_type(word: &str) -> String {
     }
 }
 
+/// True of the names of types of WGSL, also of short ones such as `vec3f`.
+pub(super) fn is_type(word: &str) -> bool {
+    let long = word.trim_end_matches(['f', 'h', 'i', 'u']);
+    matches!(word, "bool" | "i32" | "u32" | "f32" | "f16" | "array" | "atomic" | "ptr" | "sampler")
+        || matches!(long, "vec2" | "vec3" | "vec4")
+        || long
+            .strip_prefix("mat")
+            .is_some_and(|size| matches!(size.as_bytes(), [b'2'..=b'4', b'x', b'2'..=b'4']))
+}
+
 /// The message about an undefined name, the token `i`.
 pub(super) fn unknown(scan: &Scan, i: usize, name: &str) -> String {
     if name == "void" {

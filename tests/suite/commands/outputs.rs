@@ -64,6 +64,22 @@ fn match_never_replaces_the_scene_that_it_reads() {
 }
 
 #[test]
+fn match_says_before_its_search_that_a_file_cannot_hold_the_scene() {
+    let folder = folder();
+    for (output, expected) in [
+        ("notes.txt", "notes.txt was not written: .txt is not the extension of a scene"),
+        ("x.csv", "x.csv was not written: its format would lose variants; save the scene as JSON"),
+        ("new/x.csv", "new/x.csv was not written: its format would lose variants"),
+        ("x.png", "x.png was not written: files of the format PNG picture can only be read"),
+    ] {
+        let run = lcm_in(folder.path(), &["match", "s.json", "-o", output, "--overwrite"], b"");
+        refused(&run, 4, expected);
+        assert_eq!(run.out, "", "the search has not begun");
+    }
+    assert_eq!(names(folder.path()), ["s.json"]);
+}
+
+#[test]
 fn where_a_result_cannot_be_written_its_command_says_so_before_it_draws() {
     let folder = folder();
     for arguments in [

@@ -75,6 +75,24 @@ fn all_problems_are_printed_with_file_line_and_caret() {
     assert_eq!(none.status, Some(2));
 }
 
+#[test]
+fn many_problems_are_counted_and_the_first_are_printed() {
+    let folder = tempfile::tempdir().expect("writable");
+    let check = |count: usize| {
+        fs::write(folder.path().join("l.md"), lesson_with("", &"![a](b.png)\n\n".repeat(count)))
+            .expect("writable");
+        lcm_in(folder.path(), &["lesson", "check", "l.md"], b"").err
+    };
+    let few = check(3);
+    assert!(few.matches("error:").count() == 3 && few.ends_with("l.md: 3 problems\n"), "{few}");
+    let many = check(60);
+    assert_eq!(many.matches("error:").count(), 40, "{many}");
+    let said = "l.md: 60 problems: the first 40 are printed, and --json has 20 more\n";
+    assert!(many.ends_with(said), "{many}");
+    let said = "l.md: at least 200 problems: the first 40 are printed, and --json has 160 more\n";
+    assert!(check(300).ends_with(said));
+}
+
 /// A lesson with a single step.
 fn lesson_with(front: &str, step: &str) -> String {
     format!("---\ntitle: T\nsummary: S.\n{front}---\n\n## One\n\nText.\n\n{step}\n")

@@ -380,6 +380,24 @@ fn ambient_response(v: vec3<f32>, frame: Frame, m: Parameters) -> vec3<f32> {
 }
 
 #[test]
+fn the_schema_has_the_label_and_the_help_of_every_model_that_has_a_parameter() {
+    const TILT: Parameter = Parameter::number("tilt", 0.0..=1.0, 0.5).symbol("t");
+    model!(First, MODEL, { tilt: number = TILT.label("lean").help("How far it leans.") });
+    const fn second() -> reflection::Declaration {
+        reflection::Declaration::new("second", "Second", MODEL.wgsl)
+    }
+    model!(Second, second(), { tilt: number = TILT.label("slope").help("How steep it is.") });
+    let mut registry = Registry::builtin();
+    registry.try_add_reflection_model::<First>().expect("right");
+    registry.try_add_reflection_model::<Second>().expect("other words");
+    let schema = lights_camera_models::scene::schema::schema(&registry);
+    let field = &schema["properties"]["objects"]["items"]["properties"]["material"]["properties"]["tilt"];
+    assert_eq!(field["title"], "lean (t) in paper; slope (t) in second");
+    let said = field["description"].as_str().expect("described");
+    assert!(said.starts_with("paper: How far it leans. second: How steep it is. Used by: "), "{said}");
+}
+
+#[test]
 fn parameters_of_one_name_have_one_unit_and_the_schema_says_every_range() {
     const TILT: Parameter = Parameter::number("tilt", 0.0..=1.0, 0.5);
     model!(First, MODEL, { tilt: number = TILT });

@@ -238,6 +238,8 @@ fn lobe(x: float) -> float { return x; }⏎¦¦float¦`float` is not defined; di
 fn lobe(x: vec3) -> f32 { return x.x; }⏎¦¦vec3¦the type `vec3` needs the type of its numbers: `vec3<f32>`
 fn lobe(x: f32) -> void { }⏎¦¦void¦WGSL has no void; a function without a result has no ->
 fn lobe(x: f32) -> f32 { return lobe(x - 1.0); }⏎¦¦lobe¦`lobe` uses itself; WGSL has no recursion, so write a loop
+fn f32(x: i32) -> f32 { return 1.0; }⏎¦¦f32(x¦`f32` is the name of a type of WGSL; choose another name
+fn vec3f() -> vec3f { return vec3(1.0); }⏎¦¦vec3f()¦`vec3f` is the name of a type of WGSL; choose another name
 fn aa(x: f32) -> f32 { return bb(x); }⏎fn bb(x: f32) -> f32 { return aa(x); }⏎¦¦bb(x); }¦`aa` uses itself through others; WGSL has no recursion, so write a loop
 ¦loop { }¦loop¦this loop has no end: nothing in it leaves it
 ¦var x = 1.0; while cos_l > 0.0 { x += 1.0; }¦while¦this loop ends in its first iteration or never: nothing in its condition changes
