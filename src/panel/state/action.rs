@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::{
     Alike, Arrangement, CodeCommand, CompareCommand, Effect, LessonCommand, MatchCommand, MaterialCommand,
-    Note, PlotCommand, Session, Severity, TakeCommand, ViewChange,
+    PlotCommand, Session, Severity, TakeCommand, ViewChange,
 };
 use crate::{
     document::{Edit, Selection},
@@ -321,8 +321,7 @@ impl Session {
             Action::Material(command) => self.material(command, registry),
             Action::Code(command) => self.code(command, registry),
             Action::Export(command) => self.export(command),
-            Action::Copy(text, said) => self.copy(text, Note::new(Severity::Info, said)),
-            Action::CopyLink(to) => self.copy_link(to, registry),
+            Action::Copy(..) | Action::CopyLink(_) => self.carry_away(action, registry),
             Action::Say(severity, text) => self.say(severity, text),
             Action::Dismiss(index) => self.messages.dismiss(index),
             Action::DismissAll => self.messages.clear(),

@@ -1,9 +1,17 @@
 //! Texts for the clipboard, and what is said about them.
 
-use super::{Effect, Note, Session, Severity};
-use crate::platform;
+use super::{Action, Effect, Note, Session, Severity};
+use crate::{platform, registry::Registry};
 
 impl Session {
+    pub(super) fn carry_away(&mut self, action: Action, registry: &Registry) {
+        match action {
+            Action::Copy(text, said) => self.copy(text, Note::new(Severity::Info, said)),
+            Action::CopyLink(to) => self.copy_link(to, registry),
+            _ => {}
+        }
+    }
+
     /// Copies a text, and says so once it is on the clipboard.
     pub(super) fn copy(&mut self, text: String, note: Note) {
         self.copy_and_say(text, note, platform::COPIES_AT_ONCE);
