@@ -333,7 +333,7 @@ mod tests {
 
     #[test]
     fn values_that_three_digits_do_not_tell_apart_are_shown_in_full() {
-        let values = vec![("ior", Value::Number(1.504)), ("extinction", Value::Triple([3.0, 2.0, 1.0012]))];
+        let values = vec![("ior", Value::Number(1.504)), ("extinction", Value::Triple([3.0, 2.0, 1.0011]))];
         let found = Match { values, before: 0.5, after: 0.1, ..Match::default() };
         let before = [Value::Number(1.5), Value::Triple([3.0, 2.0, 1.001])];
         let said = in_words(&found, &before, 1, Measure::default());
