@@ -115,9 +115,6 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     if let Some(file) = &arguments.output {
         outputs::spare(file, &inputs(source.path(), [&scene], &workshop.registry))?;
     }
-    if let Some(file) = arguments.output.as_deref().filter(|file| !arguments.overwrite && file.exists()) {
-        return Err(unwritten(&SaveError { path: file.to_owned(), why: Unwritten::Exists }));
-    }
     arguments.output.as_deref().map_or(Ok(()), outputs::can_begin)?;
     let registry = &workshop.registry;
     if let Some(file) = &arguments.output {
@@ -269,10 +266,15 @@ fn in_words(found: &Match, before: &[Value], view: usize, measure: Measure) -> S
     let mut text = format!("view {letter} matched to view A on the {measure}\n");
     let mut kept = found.kept.clone();
     for ((name, value), before) in found.values.iter().zip(before) {
-        match [before, value].map(rounded) {
-            [before, value] if before == value => kept.push(*name),
-            [before, value] => text += &format!("{name}: {before} → {value}\n"),
+        if matching::nearly_equal(before, value) {
+            kept.push(*name);
+            continue;
         }
+        let mut shown = [before, value].map(rounded);
+        if shown[0] == shown[1] {
+            shown = [before.clone(), value.clone()];
+        }
+        text += &format!("{name}: {} → {}\n", shown[0], shown[1]);
     }
     if !kept.is_empty() {
         text += &format!("unchanged: {}\n", listed(&kept, "and"));
@@ -318,7 +320,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_that_differ_in_no_digit_that_counts_are_unchanged() {
+    fn values_that_differ_by_rounding_are_unchanged() {
         let number = Value::Number;
         let values = [("roughness", 0.299_991_67), ("metallic", 0.999_95), ("k_s", 0.583_21)];
         let values = values.map(|(name, value)| (name, number(value))).to_vec();
@@ -327,5 +329,17 @@ mod tests {
         assert!(said.contains("\nk_s: 0.6 → 0.583\nunchanged: k_d, roughness and metallic\n"), "{said}");
         let json = as_json(&found, 1, Measure::default());
         assert_eq!(json["values"]["roughness"], number(0.299_991_67).json(), "with all its digits");
+    }
+
+    #[test]
+    fn values_that_three_digits_do_not_tell_apart_are_shown_in_full() {
+        let values = vec![("ior", Value::Number(1.504)), ("extinction", Value::Triple([3.0, 2.0, 1.0011]))];
+        let found = Match { values, before: 0.5, after: 0.1, ..Match::default() };
+        let before = [Value::Number(1.5), Value::Triple([3.0, 2.0, 1.001])];
+        let said = in_words(&found, &before, 1, Measure::default());
+        assert!(
+            said.contains("\nior: 1.5 → 1.504\n") && said.contains("\nunchanged: extinction\n"),
+            "{said}"
+        );
     }
 }

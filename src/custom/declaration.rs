@@ -113,6 +113,11 @@ impl Reader<'_> {
         let parameters = self.parameters(&fields);
         let lobe = self.lobe(&fields);
         let taken = lobe.and_then(|id| self.registry.model(id)).map_or(&[][..], ModelEntry::curves);
+        let transmits = self.flag(&fields, "transmits", false, "it must be true or false");
+        let boundary = self.flag(&fields, "boundary", false, "it must be true or false");
+        if let Some(value) = fields.get("boundary").filter(|_| boundary && !transmits) {
+            self.wrong(value, "light passes through a boundary: it needs \"transmits\": true");
+        }
         Some(Said {
             name,
             author,
@@ -121,8 +126,8 @@ impl Reader<'_> {
             equation: self.equation(&fields),
             laws: self.laws(&fields),
             anisotropic: self.flag(&fields, "anisotropic", false, "it must be true or false"),
-            transmits: self.flag(&fields, "transmits", false, "it must be true or false"),
-            boundary: self.flag(&fields, "boundary", false, "it must be true or false"),
+            transmits,
+            boundary,
             parameters,
             groups: self.groups(&fields, parameters),
             lobe,

@@ -276,7 +276,21 @@ fn remedy(known: &[&str]) -> String {
     }
 }
 
-/// A value with three significant digits, for people: a search finds no more.
+/// The relative difference of numbers that are equal but for the rounding of a search.
+const EQUAL: f32 = 2e-4;
+
+/// True if two values are equal, numbers but for the rounding of a search.
+#[must_use]
+pub fn nearly_equal(one: &Value, other: &Value) -> bool {
+    let near = |a: f32, b: f32| (a - b).abs() <= EQUAL * a.abs().max(b.abs());
+    match (one, other) {
+        (Value::Number(a), Value::Number(b)) => near(*a, *b),
+        (Value::Triple(a), Value::Triple(b)) => a.iter().zip(b).all(|(a, b)| near(*a, *b)),
+        _ => one == other,
+    }
+}
+
+/// A value with three significant digits, for people.
 #[must_use]
 pub fn rounded(value: &Value) -> Value {
     let short = |v: f32| format!("{v:.2e}").parse().unwrap_or(v);

@@ -174,10 +174,14 @@ impl<'a, T: Target> Search<'a, T> {
             }
         }
         let (error, best) = std::mem::take(&mut self.best);
-        let Some(best) = best.filter(|_| error < before) else {
-            return Ok(self.found(Vec::new(), Vec::new(), [before; 2]));
-        };
         self.last = true;
+        let Some(best) = best.filter(|_| error < before) else {
+            // The present values may be one choice of many.
+            let judged = before > NONE && !self.free.is_empty();
+            let ambiguous =
+                if judged { self.ambiguous(&none).map_err(|Stop| Cancelled)? } else { Vec::new() };
+            return Ok(self.found(Vec::new(), ambiguous, [before; 2]));
+        };
         let good = (1.0 + GIVEN_UP[0]) * error + GIVEN_UP[1] * before;
         let (best, after) = self.simplified(best, good, error).map_err(|Stop| Cancelled)?;
         let ambiguous = self.ambiguous(&best).map_err(|Stop| Cancelled)?;
@@ -812,6 +816,34 @@ mod tests {
         assert_eq!(found.ambiguous, ["k_d", "k_s"], "{found:?}");
         let found = Search::new(&mut Product, &all[..2], 2000, &Progress::NONE).run().expect("not cancelled");
         assert_eq!(found.ambiguous, [""; 0], "{found:?}");
+    }
+
+    /// The same with values of one half, and a difference that none of them changes.
+    struct Rest;
+
+    impl Target for Rest {
+        fn count(&self) -> usize {
+            20
+        }
+
+        fn differences(&mut self, values: &Given, to: &mut [f64]) {
+            let get = |name: &str| {
+                values.iter().find(|(n, _)| *n == name).map_or(0.5, |(_, value)| value.numbers()[0])
+            };
+            let (k_a, k_d, k_s) = (get("k_a"), get("k_d"), get("k_s"));
+            for (i, to) in to.iter_mut().enumerate() {
+                let x = i as f64 / 20.0;
+                *to = (k_d * k_s - 0.25) * x + (k_a - 0.5) * x * x;
+            }
+            to[0] = 1.0;
+        }
+    }
+
+    #[test]
+    fn values_that_stay_may_be_ambiguous() {
+        let all = [&K_A, &K_D, &K_S].map(|parameter| free(parameter, Value::Number(0.5)));
+        let found = Search::new(&mut Rest, &all, 2000, &Progress::NONE).run().expect("not cancelled");
+        assert_eq!((&found.values, &found.ambiguous), (&Vec::new(), &vec!["k_d", "k_s"]), "{found:?}");
     }
 
     #[test]

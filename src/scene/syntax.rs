@@ -69,6 +69,9 @@ fn too_much(text: &str, most: usize) -> Option<(usize, String)> {
     None
 }
 
+/// How errors within a text begin whose surroundings are no JSON.
+const IN_TEXT: [&str; 3] = ["invalid escape", "lone leading surrogate", "unexpected end of hex escape"];
+
 /// The expectation, and a hint for common mistakes.
 fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
     if error.is_eof() {
@@ -92,8 +95,11 @@ fn explain(text: &str, error: &serde_json::Error) -> (usize, String) {
     let said = error.to_string();
     let said = said.split(" at line ").next().unwrap_or_default();
     let is_value = said != "key must be a string";
+    let in_text = IN_TEXT.iter().any(|kind| said.starts_with(kind));
 
-    let what = if rest.starts_with("//") || rest.starts_with("/*") || found == Some('#') {
+    let what = if in_text {
+        said.to_owned()
+    } else if rest.starts_with("//") || rest.starts_with("/*") || found == Some('#') {
         "comments are not part of JSON; remove them, or write a \"description\"".to_owned()
     } else if found == Some('\'') {
         "text and keys need double quotes (\"), not single ones (')".to_owned()
@@ -185,6 +191,9 @@ mod tests {
             ("{\"a\": 1} x", "1:10", "expected the end of the file"),
             ("{ // size\n}", "1:3", "comments"),
             ("{\"a\": \"x\ny\"}", "1:9", "line break"),
+            (r#"{"a": ".5\.1"}"#, "1:11", "invalid escape"),
+            (r#"{"a": "x = 2\inf"}"#, "1:14", "invalid escape"),
+            (r#"{"a": "it\'s"}"#, "1:11", "invalid escape"),
             ("{“a”: 1}", "1:2", "typographic"),
             ("}", "1:1", "expected a value"),
             ("\u{feff}\u{feff}{}", "1:1", "not the character U+FEFF (byte order mark)"),

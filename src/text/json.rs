@@ -4,7 +4,12 @@
 //! A [`Cursor`] points at a value and knows its path; a [`Reader`] returns the value as a type, and reports a
 //! value of another type with its path, the value and the rule.
 
-use jsonc_parser::{CollectOptions, ParseOptions, common::Ranged, parse_to_ast};
+use jsonc_parser::{
+    CollectOptions, ParseOptions,
+    common::Ranged,
+    errors::{ParseError, ParseErrorKind},
+    parse_to_ast,
+};
 
 pub use jsonc_parser::ast::{ObjectProp, Value as Ast};
 
@@ -38,14 +43,17 @@ const HALF_PAIR: &str =
 /// Returns the byte at which the text stops being JSON, and the reason.
 pub fn parse<'a>(text: &'a str, options: &ParseOptions) -> Result<Option<Ast<'a>>, (usize, String)> {
     let parsed = parse_to_ast(text, &CollectOptions::default(), options);
-    parsed.map(|p| p.value).map_err(|e| explained(text, e.range().start, &e.kind().to_string()))
+    parsed.map(|p| p.value).map_err(|e| explained(text, &e))
 }
 
 /// The byte and the reason of an error of the parser.
-fn explained(text: &str, at: usize, said: &str) -> (usize, String) {
+fn explained(text: &str, error: &ParseError) -> (usize, String) {
+    let (at, said) = (error.range().start, error.kind().to_string());
+    // Words in a text are no values.
+    let in_text = matches!(error.kind(), ParseErrorKind::String(_));
     let (start, word) = word_at(text, at);
     let is_key = text[start + word.len()..].trim_start().starts_with(':');
-    if let Some(what) = slip(word).filter(|_| !is_key) {
+    if let Some(what) = slip(word).filter(|_| !is_key && !in_text) {
         return (start, what);
     }
     if said.contains("surrogate") {

@@ -493,10 +493,13 @@ mod tests {
                 point: None,
             };
             let data = data(&request, &Progress::NONE).unwrap_or_else(|error| panic!("{error:?}"));
-            data.scene["models"][0]["equation"].to_string()
+            data.scene["views"][0]["models"][0]["equation"].to_string()
         };
         let (opaque, clear) = (equation(0.0), equation(1.0));
-        assert!(!opaque.contains("<sub>t</sub>") && !opaque.contains("transmitted"), "{opaque}");
+        assert!(
+            !opaque.contains("<i>I</i><sub><i>t</i></sub>") && !opaque.contains("transmitted"),
+            "{opaque}"
+        );
         assert!(opaque.contains("specular") && clear.contains("transmitted"), "{clear}");
     }
 }

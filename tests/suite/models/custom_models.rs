@@ -99,6 +99,11 @@ fn every_mistake_in_a_declaration_is_told_with_its_place_value_and_rule() {
         ("{ \"name\": 3 }", "1:18: name is 3, but it must be one line of text, of at most 60 characters"),
         ("{ \"name\": \" \" }", "name is \" \", but a name must not be blank"),
         ("{ \"anisotropic\": 1 }", "anisotropic is 1, but it must be true or false"),
+        (
+            "{ \"boundary\": true }",
+            "boundary is true, but light passes through a boundary: it needs \"transmits\": true",
+        ),
+        (r#"{ "equation": "f = .5\cdot x" }"#, "the declaration is not JSON: invalid escape"),
         ("{ \"equation\": 1 }", "equation is 1, but it must be text, or a list of parts"),
         (
             "{ \"equation\": [{ \"term\": \"difuse\", \"text\": \"\" }] }",
