@@ -302,7 +302,7 @@ impl<'s> Around<'s> {
             }
         }
         let core = block.scaled(SOLID);
-        let stands_in = self.ground.iter().any(|other| block.touches(other))
+        let stands_in = self.ground.iter().any(|other| block.scaled(SLACK).touches(other))
             || self.solid.iter().any(|other| core.touches(&other.scaled(SOLID)));
         let mostly = if cut > 0.5 * count { MOSTLY_CUT } else { 0.0 };
         let offset = (self.stand.turn.inverse() * (p - self.original.position)).truncate().abs();
