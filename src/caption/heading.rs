@@ -12,8 +12,8 @@ use crate::{
     scene::{Scene, variant::LETTERS},
 };
 
-/// Ranks of the parts of a heading.
-const MODEL: u8 = 1;
+/// Ranks of the parts of a heading; those up to the model are never dropped.
+pub const MODEL_RANK: u8 = 1;
 const SHADING: u8 = 2;
 const DIFFERS: u8 = 3;
 const DISPLAY: u8 = DIFFERS + MOST + 1;
@@ -65,7 +65,7 @@ pub(super) fn parts_of(
         several => format!("{} models", several.len()),
     };
     if said.over.reflection_model.is_some() {
-        say(MODEL, models());
+        say(MODEL_RANK, models());
     }
     if said.over.shading_model.is_some()
         && let Some(names) = shadings(&seen, registry)

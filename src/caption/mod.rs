@@ -10,7 +10,7 @@ mod strip;
 mod words;
 
 pub use ground::Ground;
-pub use heading::{header, header_parts, view_parts};
+pub use heading::{MODEL_RANK, header, header_parts, view_parts};
 pub use part::{Part, line};
 pub use rows::{of_copy, of_row, row_labels};
 pub use sampled::{Sampled, sampled};

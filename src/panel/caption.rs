@@ -139,6 +139,9 @@ impl Lines {
     pub(super) fn even(ui: &Ui, parts: &[Part], size: f32, colour: Color32, width: f32) -> Self {
         let within = |width: f32| Self::of(ui, parts.to_vec(), size, colour, width);
         let wide = within(width);
+        if wide.runs.last().is_none_or(|(at, _)| at.y <= 0.0) {
+            return wide;
+        }
         let mut narrower = (6..12u8).map(|part| within(width * f32::from(part) / 12.0));
         let is_as_low =
             |lines: &Self| lines.kept == wide.kept && !lines.is_elided() && lines.size.y <= wide.size.y + 0.5;

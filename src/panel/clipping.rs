@@ -34,8 +34,7 @@ pub fn badge(session: &Session, view: usize, pixels: f64) -> Option<Badge> {
         // A share alone would say nothing.
         shorter: vec![format!("Clipped: {share}"), "Clipped".to_owned()],
         help: "Some pixels ask for more light than the display can show. They are cut off: highlights lose their \
-               shape, and colours shift. Lights in sight do not count. A lower exposure, a weaker light or tone mapping brings them back. \
-               Click to show where."
+               shape, and colours shift. Lights in sight do not count. A lower exposure, a weaker light or tone mapping brings them back."
             .to_owned(),
     })
 }

@@ -26,7 +26,7 @@ use super::{
     state::{Cell, MatchCommand},
 };
 use crate::{
-    caption::{Part, line, view_parts},
+    caption::{MODEL_RANK, Part, line, view_parts},
     scene::comparison::Layout,
 };
 
@@ -269,12 +269,11 @@ fn cut_title(ui: &Ui, text: &str, (size, ink): (f32, Color32), (room, rows): (f3
 /// Puts what all headers say alike behind what differs, except names and models: where there is no room, it is dropped
 /// first.
 fn rank_by_difference(said: &mut [Vec<Part>]) {
-    let first = said.iter().flatten().map(|part| part.rank).filter(|rank| *rank > 0).min().unwrap_or(0);
     let of = |parts: &[Part], rank: u8| {
         parts.iter().filter(|p| p.rank == rank).map(Part::words).collect::<Vec<_>>()
     };
     let is_same =
-        |rank: u8| rank > first && said.windows(2).all(|pair| of(&pair[0], rank) == of(&pair[1], rank));
+        |rank: u8| rank > MODEL_RANK && said.windows(2).all(|pair| of(&pair[0], rank) == of(&pair[1], rank));
     let ranks: BTreeSet<_> = said.iter().flatten().map(|part| part.rank).collect();
     let mut order: Vec<_> = ranks.into_iter().map(|rank| (is_same(rank), rank)).collect();
     order.sort_unstable();
@@ -370,6 +369,10 @@ mod tests {
             .map(|words| words.split(' ').zip(1..).map(|(word, rank)| part(rank, word)).collect::<Vec<_>>());
         rank_by_difference(&mut said);
         assert_eq!(line(&said[0]), "Phong, 15, all, 0, 1.0", "that of both is last");
+        let mut alike = ["15 0", "15 +3"]
+            .map(|words| words.split(' ').zip(2..).map(|(word, rank)| part(rank, word)).collect::<Vec<_>>());
+        rank_by_difference(&mut alike);
+        assert_eq!(line(&alike[1]), "+3, 15", "only names and models stay where they are");
         let within = |room: usize| {
             let ranks = ranks_that_fit(&said, |parts, _| line(&parts).len() <= room);
             [0, 1].map(|i| line(&of_ranks(&said[i], &ranks)))

@@ -137,11 +137,11 @@ impl<'a> Overlaid<'_, 'a> {
             };
             self.stale(ui, rect, &mut placer);
             self.channel(ui, &mut placer, view);
-            let signs = badges_of(view, whole, ui, session, registry);
-            let signs = signs.into_iter().chain(of_disk(session)).collect();
+            let front: Vec<_> = of_disk(session).into_iter().collect();
+            let of_view = badges_of(view, whole, ui, session, registry);
             let badges = match stage {
-                Some(_) => (signs, false),
-                None => yielding(ui, &placer, signs, (session, rect, 1.0)),
+                Some(_) => ([front, of_view].concat(), false),
+                None => yielding(ui, &placer, [front, of_view], (session, rect, 1.0)),
             };
             self.badges(ui, &mut placer, badges);
             self.sizes = Needed::of([&placer.sizes; 2].map(Vec::as_slice), placer.room.width());
@@ -270,9 +270,10 @@ impl<'a> Overlaid<'_, 'a> {
             for sizes in [&mut below, &mut beside] {
                 sizes.extend_from_slice(&placer.sizes[known..]);
             }
-            let mut signs = badges_of(cell.view, cell.rect, ui, session, registry);
-            signs.extend(disk.take());
+            let signs: Vec<_> = disk.take().into_iter().collect();
+            let signs = [signs, badges_of(cell.view, cell.rect, ui, session, registry)];
             let few = in_few_rows(ui, cell.rect, &signs, &beside);
+            let signs = signs.concat();
             below.extend(sizes_of_badges(ui, cell.rect, &signs, false));
             beside.extend(sizes_of_badges(ui, cell.rect, &few.0, few.1));
             let badges = if matches!(spot, PlatePlace::Band(_)) { few } else { (signs, false) };
@@ -314,8 +315,8 @@ impl<'a> Overlaid<'_, 'a> {
             let mut placer = Placer::column(cell.rect, from.0, from.1);
             self.channel(ui, &mut placer, cell.view);
             let mut signs = std::mem::take(&mut missing);
-            signs.extend(badges_of(cell.view, cell.rect, ui, session, registry));
             signs.extend(disk.take());
+            let signs = [signs, badges_of(cell.view, cell.rect, ui, session, registry)];
             // Keeps badges on their own side of the edge of a wipe, if there is room.
             let beside = cell.part.is_positive() && cell.part.width() >= NARROWEST * scale;
             let room = if beside { cell.part } else { cell.rect };
@@ -385,34 +386,35 @@ impl<'a> Overlaid<'_, 'a> {
         let scale = theme::scale_here(ui);
         let font = theme::bold(ui);
         let rect = placer.room;
-        for (badge, actions) in all {
+        for (badge, click) in all {
             let put = |size| placer.place(size);
             let text = words(ui, rect, &badge, short);
             let place = plate(ui, rect, put, text, font.clone(), BADGE_SIGN * scale);
-            let sense = if actions.is_empty() { Sense::hover() | Sense::FOCUSABLE } else { Sense::click() };
+            let sense = if click.is_none() { Sense::hover() | Sense::FOCUSABLE } else { Sense::click() };
             let response = ui.interact(place, ui.id().with(("badge", &badge.text)), sense);
             let painter = ui.painter_at(rect);
-            let here = !actions.is_empty() && (response.hovered() || response.has_focus());
+            let here = click.is_some() && (response.hovered() || response.has_focus());
             let rim = if here { palette.text } else { palette.severity(badge.severity) };
             painter.rect_stroke(place, 4.0, Stroke::new(scale, rim), StrokeKind::Inside);
             let sign = pos2(place.left() + 14.0 * scale, place.center().y);
             icon::severity(&painter, sign, 6.0 * scale, badge.severity, &palette);
-            let role = if actions.is_empty() { WidgetType::Label } else { WidgetType::Button };
+            let role = if click.is_none() { WidgetType::Label } else { WidgetType::Button };
             theme::says(&response, role, &badge.text);
-            if !actions.is_empty() {
-                self.places.push(place);
-            }
-            if response.clicked() {
-                self.context.actions.extend(actions);
-            }
             self.written.push(place);
             let pointer = if sense.senses_click() { CursorIcon::PointingHand } else { CursorIcon::Default };
             let response = response.on_hover_cursor(pointer);
-            let help = if *text == badge.text {
+            let mut help = if *text == badge.text {
                 badge.help.clone()
             } else {
                 format!("{}. {}", badge.text, badge.help)
             };
+            if let Some(click) = click {
+                self.places.push(place);
+                help = format!("{help} {}", click.help);
+                if response.clicked() {
+                    self.context.actions.extend(click.actions);
+                }
+            }
             if !help.is_empty() {
                 // With the keyboard alone, the help can be reached in no other way.
                 if response.has_focus() {
@@ -548,14 +550,15 @@ fn sizes_of_badges(ui: &Ui, rect: Rect, all: &[Sign], short: bool) -> Vec<Vec2> 
 }
 
 /// Badges that cover no more of a picture and of the objects in it than they may, as far as that is possible, and true if
-/// they have their shortest words. If those cover too much, one badge is left, which says under the pointer what all say.
-/// So many views share the picture.
+/// they have their shortest words. If those cover too much, one badge is left of those of a view, the second ones, which
+/// says under the pointer what all say; the first ones stay before it. So many views share the picture.
 fn yielding(
     ui: &Ui,
     placer: &Placer,
-    all: Vec<Sign>,
+    [front, of_view]: [Vec<Sign>; 2],
     (session, picture, views): (&Session, Rect, f32),
 ) -> (Vec<Sign>, bool) {
+    let all = [front.as_slice(), of_view.as_slice()].concat();
     if all.is_empty() {
         return (all, false);
     }
@@ -571,31 +574,38 @@ fn yielding(
     if fits(false) {
         return (all, false);
     }
-    if all.len() < 2 || fits(true) {
+    if of_view.len() < 2 || fits(true) {
         return (all, true);
     }
-    (vec![gathered(&all)], true)
+    (with_one(&front, &of_view), true)
 }
 
 /// Badges that take as few rows above a picture as possible after plates of these sizes, and true if they have their shortest
-/// words.
-fn in_few_rows(ui: &Ui, rect: Rect, all: &[Sign], before: &[Vec2]) -> (Vec<Sign>, bool) {
+/// words. Only those of a view, the second ones, can become one.
+fn in_few_rows(ui: &Ui, rect: Rect, signs: &[Vec<Sign>; 2], before: &[Vec2]) -> (Vec<Sign>, bool) {
+    let all = signs.concat();
     if all.len() < 2 {
-        return (all.to_vec(), false);
+        return (all, false);
     }
     let high = |signs: &[Sign], short: bool| {
         let sizes = sizes_of_badges(ui, rect, signs, short);
         presentation::height_of_rows(before.iter().copied().chain(sizes), rect.width())
     };
-    let one = vec![gathered(all)];
+    let [front, of_view] = signs;
+    let one = if of_view.len() < 2 { all.clone() } else { with_one(front, of_view) };
     let least = high(&one, true) + 0.5;
-    match [false, true].into_iter().find(|short| high(all, *short) <= least) {
-        Some(short) => (all.to_vec(), short),
+    match [false, true].into_iter().find(|short| high(&all, *short) <= least) {
+        Some(short) => (all, short),
         None => (one, true),
     }
 }
 
-/// One badge for several, without their actions.
+/// Badges, and after them one for several of a view.
+fn with_one(front: &[Sign], of_view: &[Sign]) -> Vec<Sign> {
+    front.iter().cloned().chain([gathered(of_view)]).collect()
+}
+
+/// One badge for several. A click does what it does on the first of them that can be clicked.
 fn gathered(all: &[Sign]) -> Sign {
     let badges = || all.iter().map(|(badge, _)| badge);
     let joined = |texts: Vec<&str>, by: &str| texts.join(by);
@@ -612,7 +622,7 @@ fn gathered(all: &[Sign]) -> Sign {
             " ",
         ),
     };
-    (badge, Vec::new())
+    (badge, all.iter().find_map(|(_, click)| click.clone()))
 }
 
 /// The text of a plate in a picture, and the size of the plate.
@@ -641,7 +651,7 @@ fn plate(ui: &Ui, rect: Rect, put: impl FnOnce(Vec2) -> Rect, text: &str, font: 
 
 /// The badge for a scene file that has changed on disk.
 fn of_disk(session: &Session) -> Option<Sign> {
-    session.disk_badge().map(|badge| (badge, Vec::new()))
+    session.disk_badge().map(|badge| (badge, None))
 }
 
 /// The views whose pictures are seen; without a difference map, that is the one shown in its place, whole.
@@ -659,20 +669,27 @@ fn no_map(session: &Session) -> Vec<Sign> {
         return Vec::new();
     };
     let help = "This is the picture of view A. The map replaces it as soon as it belongs to both pictures.";
-    let badge = |text: &str, help: &str| {
+    let badge = |text: &str, shorter: &[&str], help: &str| {
         let badge = Badge {
             severity: Severity::Info,
             text: text.to_owned(),
-            shorter: Vec::new(),
+            shorter: shorter.iter().map(|text| (*text).to_owned()).collect(),
             help: help.to_owned(),
         };
-        (badge, Vec::new())
+        (badge, None)
     };
-    vec![badge(&reason, ""), badge(shown, help)]
+    vec![badge(&reason, &["No map"], ""), badge(shown, &[], help)]
 }
 
-/// A badge, and the actions of a click on it.
-type Sign = (Badge, Vec<Action>);
+/// A badge, and what a click on it does.
+type Sign = (Badge, Option<Click>);
+
+/// A sentence about a click, and its actions.
+#[derive(Clone)]
+struct Click {
+    help: &'static str,
+    actions: Vec<Action>,
+}
 
 /// The badge for hidden terms of the equation in a view, which shows them all.
 fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<Sign> {
@@ -689,10 +706,10 @@ fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<S
         severity: if whose.is_empty() { Severity::Info } else { Severity::Warning },
         text: format!("Only the {shown} term{whose} · Show all"),
         shorter: vec![format!("Only the {shown} term"), format!("Only {shown}")],
-        help: "The other terms of the equation are hidden. Click to show them all; T goes on to the next."
-            .to_owned(),
+        help: "The other terms of the equation are hidden.".to_owned(),
     };
-    Some((badge, vec![Action::View(ViewChange::Terms(TermSelection::All))]))
+    let actions = vec![Action::View(ViewChange::Terms(TermSelection::All))];
+    Some((badge, Some(Click { help: "Click to show all terms; T goes on to the next.", actions })))
 }
 
 /// The badge for lights and objects of a view whose light is not a finite number, which switches the channel that shows
@@ -711,11 +728,12 @@ fn no_number(view: usize, session: &Session, registry: &Registry) -> Option<Sign
         severity: Severity::Warning,
         text: format!("Not a number: {}", names.join(", ")),
         shorter: vec!["Not a number".to_owned()],
-        help: format!("{} It is drawn black or white. Click to show where.", lines.join(" ")),
+        help: format!("{} It is drawn black or white.", lines.join(" ")),
     };
     let shown = session.view.channels.get(view).copied().flatten() == Some(DebugChannel::NotANumber);
     let channel = (!shown).then_some(DebugChannel::NotANumber);
-    Some((badge, vec![Action::View(ViewChange::Channel(channel))]))
+    let actions = vec![Action::View(ViewChange::Channel(channel))];
+    Some((badge, Some(Click { help: "Click to show where the light is not a number.", actions })))
 }
 
 /// The badges of a view's picture. An action on the active view activates the view first.
@@ -723,12 +741,13 @@ fn badges_of(view: usize, picture: Rect, ui: &Ui, session: &Session, registry: &
     let per_point = ui.pixels_per_point();
     let pixels = f64::from(picture.area() * per_point * per_point);
     let toggle = Action::View(ViewChange::Clipping(!session.view.show_clipping));
-    let clipped = clipping::badge(session, view, pixels).map(|badge| (badge, vec![toggle]));
+    let click = Click { help: "Click to show where.", actions: vec![toggle] };
+    let clipped = clipping::badge(session, view, pixels).map(|badge| (badge, Some(click)));
     let of_view = hidden_terms(view, session, registry).into_iter().chain(no_number(view, session, registry));
     let mut all: Vec<_> = of_view.collect();
     if view != session.active() {
-        for (_, actions) in &mut all {
-            actions.insert(0, Action::Compare(CompareCommand::Activate(view)));
+        for click in all.iter_mut().filter_map(|(_, click)| click.as_mut()) {
+            click.actions.insert(0, Action::Compare(CompareCommand::Activate(view)));
         }
     }
     all.extend(clipped);
@@ -812,4 +831,36 @@ fn hint(ui: &Ui, rect: Rect, session: &Session) {
     let font = FontId::new(TextStyle::Body.resolve(ui.style()).size, FontFamily::Proportional);
     let put = |size| Rect::from_center_size(rect.center(), size);
     plate(ui, rect, put, text, font, 0.0);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gathered_badge_does_what_the_first_does_that_can_be_clicked() {
+        let sign = |text: &str, click: Option<Click>| {
+            let badge = Badge {
+                severity: Severity::Info,
+                text: text.to_owned(),
+                shorter: Vec::new(),
+                help: String::new(),
+            };
+            (badge, click)
+        };
+        let click = |help, change| Some(Click { help, actions: vec![Action::View(change)] });
+        let all = [
+            sign("A · first", None),
+            sign("A · second", click("Click.", ViewChange::Clipping(true))),
+            sign("A · third", click("Not this.", ViewChange::Clipping(false))),
+        ];
+        let made = with_one(&all[..1], &all);
+        let [front, (badge, Some(click))] = made.as_slice() else {
+            panic!("two, the second of which can be clicked")
+        };
+        assert_eq!(front.0.text, "A · first");
+        assert_eq!((badge.text.as_str(), click.help), ("A · first; A · second; A · third", "Click."));
+        assert_eq!(badge.shorter, ["A · 3 notes"]);
+        assert!(matches!(click.actions[..], [Action::View(ViewChange::Clipping(true))]));
+    }
 }

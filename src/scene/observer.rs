@@ -170,6 +170,10 @@ impl Scene {
             if outer_edge(seen.y, depth, radius) <= up {
                 return outer_edge(seen.x, depth, radius);
             }
+            // Out of the picture above or below.
+            if seen.y.abs() > up * depth {
+                return 0.0;
+            }
             // Something flat, like a teapot, is lower than the sphere around it.
             let [across, high] = extent(object, |p| seen + to_eye * p);
             if high <= up && across <= WIDE * up { across } else { 0.0 }

@@ -6,7 +6,7 @@ use bevy_egui::egui::{Pos2, Vec2};
 use glam::Vec3;
 
 use super::{
-    Sort,
+    Handle, Sort,
     grasp::{Dragged, snapped},
     paint, plane,
     shape::{ARM, Around, Body, GAP, HalfAxes, LETTER, LETTER_RADIUS, LETTERS, Placed, STUB},
@@ -41,11 +41,12 @@ pub(super) static SORT: Sort = Sort {
     id: "axis",
     name: |_, axis, part| format!("move {part} along {}", LETTERS[axis]),
     placed: |around| {
-        let Around { target, session, lens, middle, part, extent, .. } = around;
+        let Around { target, session, lens, middle, part, extent, held, .. } = around;
         let clear = extent.filter(|extent| extent.leaves_room(*part, lens));
         match (&target.body, around.mode) {
             (Body::Object(..), HandleMode::Move) => {
-                let around = clear.map(|_| arrows(target.at, [*middle; 2], part * ARM, clear, lens));
+                let around =
+                    clear.map(|_| arrows(target.at, [*middle; 2], part * ARM, clear, (*lens, *held)));
                 // Where the view ends beside the object, an arrow would lie on it.
                 let is_clear = |all: &Vec<Placed>| {
                     let mut arrows = all.iter().filter(|placed| !placed.lines.is_empty());
@@ -53,13 +54,21 @@ pub(super) static SORT: Sort = Sort {
                 };
                 around.filter(is_clear).unwrap_or_else(|| {
                     let others = others(session, target.at, lens);
-                    arrows_beside(target.at, *middle, STUB * part * ARM, (*extent, &others[..]), lens)
+                    arrows_beside(
+                        target.at,
+                        *middle,
+                        STUB * part * ARM,
+                        (*extent, &others[..]),
+                        (*lens, *held),
+                    )
                 })
             }
             (Body::Light(light, _), HandleMode::Move) if light.position.is_some() => {
-                arrows(target.at, [*middle; 2], part * ARM, None, lens)
+                arrows(target.at, [*middle; 2], part * ARM, None, (*lens, *held))
             }
-            (Body::Group(_), HandleMode::Move) => arrows(target.at, [*middle; 2], part * ARM, None, lens),
+            (Body::Group(_), HandleMode::Move) => {
+                arrows(target.at, [*middle; 2], part * ARM, None, (*lens, *held))
+            }
             _ => Vec::new(),
         }
     },
@@ -143,7 +152,7 @@ fn arrows_beside(
     middle: Pos2,
     arm: f32,
     (extent, others): (Option<HalfAxes>, &[(Pos2, f32)]),
-    lens: &Lens,
+    (lens, held): (&Lens, Option<Handle>),
 ) -> Vec<Placed> {
     let inside = lens.rect.shrink(LETTER_RADIUS);
     let mut best: Option<(f32, Vec<Placed>)> = None;
@@ -158,7 +167,7 @@ fn arrows_beside(
         if !is_near && best.as_ref().is_some_and(|(most, _)| *most > -FIRST) {
             break;
         }
-        let all = arrows(at, [origin, middle], arm, None, lens);
+        let all = arrows(at, [origin, middle], arm, None, (lens, held));
         let is_inside = all.iter().flat_map(Placed::points).all(|p| inside.contains(p));
         let own = all.iter().map(|handle| gap(handle, middle, extent)).fold(f32::INFINITY, f32::min);
         let beside = |p: Pos2| others.iter().map(move |(other, radius)| p.distance(*other) - radius);
@@ -184,7 +193,7 @@ fn arrows(
     [origin, middle]: [Pos2; 2],
     arm: f32,
     clear: Option<HalfAxes>,
-    lens: &Lens,
+    (lens, held): (&Lens, Option<Handle>),
 ) -> Vec<Placed> {
     let length = lens.metres(at, arm);
     let mut all = Vec::new();
@@ -210,18 +219,21 @@ fn arrows(
         let placed = Placed::new(SORT.handle(axis), end, LETTER_RADIUS, point);
         all.push(Placed { lines: vec![line], ..placed });
     }
-    let mut all = told_apart(&all, origin, (at - lens.eye).normalize_or_zero());
+    let mut all = told_apart(&all, origin, (at - lens.eye).normalize_or_zero(), held);
     all.push(plane::disc(at, origin, arm, clear, &all));
     all
 }
 
 /// The arrows that are not taken for another: of two that point the same way in the picture, the one gives way whose axis
-/// is seen more nearly end on along the line of sight.
-fn told_apart(all: &[Placed], origin: Pos2, sight: Vec3) -> Vec<Placed> {
+/// is seen more nearly end on along the line of sight. The one that is held stays.
+fn told_apart(all: &[Placed], origin: Pos2, sight: Vec3, held: Option<Handle>) -> Vec<Placed> {
     let along = |arrow: &Placed| sight[arrow.handle.which].abs();
     let way = |arrow: &Placed| (arrow.end - origin).normalized();
+    let is_held = |arrow: &Placed| held == Some(arrow.handle);
+    let goes_first = |one: &Placed, other: &Placed| is_held(one) || along(one) < along(other);
     let gives_way = |arrow: &Placed| {
-        all.iter().any(|other| along(other) < along(arrow) && way(other).dot(way(arrow)) > ALIKE)
+        let is_alike = |other: &&Placed| way(other).dot(way(arrow)) > ALIKE;
+        !is_held(arrow) && all.iter().filter(is_alike).any(|other| goes_first(other, arrow))
     };
     all.iter().filter(|arrow| !gives_way(arrow)).cloned().collect()
 }
@@ -246,10 +258,24 @@ mod tests {
         let rect = Rect::from_min_size(pos2(300.0, 40.0), vec2(width, height));
         let lens = Lens::of(&session, rect);
         let target = Target::of(&session, &registry, None, Vec::new).expect("selected");
-        let all = placed(&target, HandleMode::Move, &session, &lens);
+        let all = placed(&target, HandleMode::Move, &session, (&lens, None));
         let middle = lens.project(position).expect("in view");
         let extent = HalfAxes::of(&target, middle, &lens).expect("in front of the camera");
         (all, rect, middle, extent)
+    }
+
+    #[test]
+    fn an_arrow_that_is_held_stays_beside_another_that_looks_like_it() {
+        let arrow =
+            |axis: usize, end: Pos2| Placed::new(SORT.handle(axis), end, LETTER_RADIUS, Vec3::AXES[axis]);
+        let all = [arrow(0, pos2(76.0, 0.0)), arrow(2, pos2(75.0, 8.0))];
+        let left = |held: Option<Handle>| -> Vec<_> {
+            let sight = Vec3::new(0.3, 0.0, 0.9);
+            told_apart(&all, Pos2::ZERO, sight, held).iter().map(|arrow| arrow.handle.which).collect()
+        };
+        assert_eq!(left(None), [0]);
+        assert_eq!(left(Some(SORT.handle(2))), [2]);
+        assert_eq!(left(Some(SORT.handle(0))), [0]);
     }
 
     #[test]
@@ -277,7 +303,7 @@ mod tests {
             let target = Target::of(&session, &registry, None, Vec::new).expect("selected");
             let middle = lens.project(target.at).expect("in view");
             let extent = HalfAxes::of(&target, middle, &lens);
-            let all = placed(&target, HandleMode::Move, &session, &lens);
+            let all = placed(&target, HandleMode::Move, &session, (&lens, None));
             let nearest = all.iter().map(|handle| gap(handle, middle, extent)).fold(f32::INFINITY, f32::min);
             assert!(!all.is_empty() && nearest < 24.0, "{size:?}: {nearest} points from the object");
         }

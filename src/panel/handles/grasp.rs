@@ -356,7 +356,7 @@ mod tests {
     fn grasp(session: &Session, mode: HandleMode, handle: Handle) -> (Grasp, Placed) {
         let registry = Registry::builtin();
         let target = Target::of(session, &registry, None, Vec::new).expect("selected");
-        let all = placed(&target, mode, session, &lens(session));
+        let all = placed(&target, mode, session, (&lens(session), None));
         let handle = all.iter().find(|p| p.handle == handle).expect("it is there").clone();
         let start = handle.lines.first().map_or(handle.end, |line| line[line.len() / 2]);
         (Grasp::of(&handle, &target, &lens(session), start), handle)

@@ -207,15 +207,22 @@ pub(super) struct Around<'a> {
     pub(super) part: f32,
     /// The extent of the object.
     pub(super) extent: Option<HalfAxes>,
+    /// The handle that is dragged.
+    pub(super) held: Option<Handle>,
 }
 
 /// The handles of a target in a mode, in the order in which they are painted.
-pub(super) fn placed(target: &Target, mode: HandleMode, session: &Session, lens: &Lens) -> Vec<Placed> {
+pub(super) fn placed(
+    target: &Target,
+    mode: HandleMode,
+    session: &Session,
+    (lens, held): (&Lens, Option<Handle>),
+) -> Vec<Placed> {
     let Some(middle) = lens.project(target.at).filter(|p| lens.rect.contains(*p)) else {
         return Vec::new();
     };
     let (part, extent) = (part_of(lens), HalfAxes::of(target, middle, lens));
-    let around = Around { target, mode, session, lens, middle, part, extent };
+    let around = Around { target, mode, session, lens, middle, part, extent, held };
     SORTS.iter().flat_map(|sort| (sort.placed)(&around)).collect()
 }
 

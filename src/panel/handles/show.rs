@@ -64,7 +64,8 @@ pub(in crate::panel) fn handles(ui: &Ui, sight: Sight<'_>) -> Asked {
         return (actions, places);
     };
     let hold = hold.filter(|hold| hold.grasp.part == target.part);
-    let all = placed(&target, session.view.handles, session, &lens);
+    let held = hold.as_ref().map(|hold| hold.grasp.handle);
+    let all = placed(&target, session.view.handles, session, (&lens, held));
     let under = free_pointer(ui, rect, written, session).and_then(|at| under(&all, at));
     let mine = hold.as_ref().filter(|hold| hold.view == view);
     let is_down = ui.input(|i| i.pointer.any_down());

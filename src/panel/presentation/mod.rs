@@ -332,7 +332,8 @@ fn hidden(discs: &[(Pos2, f32)], plates: &[Rect]) -> f32 {
     discs.iter().map(share).sum::<f32>() / discs.iter().map(|d| d.1 * d.1).sum::<f32>().max(1.0)
 }
 
-/// The share of the objects in a picture, given as discs, that rectangles cover, by their areas.
+/// The share of the objects in a picture, given as discs, that rectangles cover, by their areas. Floors and backdrops, as
+/// wide as the picture, do not count.
 pub(super) fn covered(discs: &[(Pos2, f32)], picture: Rect, plates: &[Rect]) -> f32 {
     // Many are small.
     let steps = if discs.len() > 32 { 1 } else { 9 };
@@ -340,7 +341,8 @@ pub(super) fn covered(discs: &[(Pos2, f32)], picture: Rect, plates: &[Rect]) -> 
     let grid = (0..steps * steps).map(|i| vec2(middle(i % steps), middle(i / steps)));
     let grid: Vec<_> = grid.filter(|offset| offset.length() < 1.0).collect();
     let (mut all, mut hidden) = (0.0f32, 0.0f32);
-    for (at, radius) in discs {
+    let widest = 0.5 * picture.size().max_elem();
+    for (at, radius) in discs.iter().filter(|(_, radius)| *radius < widest) {
         let places = grid.iter().map(|offset| *at + *offset * (*radius / ALLOWANCE));
         for place in places.filter(|place| picture.contains(*place)) {
             let area = radius * radius;
@@ -372,6 +374,9 @@ mod tests {
         let share = |plate: Rect| covered(&ball, picture, &[plate]);
         assert!(share(picture) > 0.99 && share(picture.with_max_y(40.0)) < 0.01);
         assert!((share(picture.with_max_x(200.0)) - 0.5).abs() < 0.1);
+        let on_a_floor = [ball[0], (pos2(200.0, 900.0), 800.0)];
+        let corner = picture.with_min_y(280.0);
+        assert_eq!(covered(&on_a_floor, picture, &[corner]), covered(&ball, picture, &[corner]), "a floor");
         assert_eq!(covered(&[], picture, &[picture]), 0.0, "there is no object");
         let many = vec![(pos2(50.0, 50.0), 10.0); 40];
         assert!(covered(&many, picture, &[picture]) > 0.99);

@@ -101,8 +101,9 @@ impl Session {
     ) {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         let text = printable(&format!("{name} {what}")).into_owned();
-        self.disk.badge =
-            Some(Badge { severity, text, shorter: Vec::new(), help: printable(help).into_owned() });
+        let short = what.split(':').next().unwrap_or(what);
+        let shorter = vec![printable(&format!("{name} {short}")).into_owned(), format!("File {short}")];
+        self.disk.badge = Some(Badge { severity, text, shorter, help: printable(help).into_owned() });
     }
 
     /// Reports that a file which was written could not be kept after all.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Session, Severity, placing::Stand};
+use super::{Action, Effect, Note, Session, Severity, placing::Stand};
 use crate::{
     document::{Selection, names::free_name},
     light::MAX_LIGHTS,
@@ -114,7 +114,8 @@ impl Session {
                 }
                 self.select_new(Selection::Object(at));
                 if self.stand(registry).cuts_off(at) {
-                    self.say(Severity::Info, "The picture does not show all of the copy. C frames it.");
+                    let note = Note::new(Severity::Info, "The picture does not show all of the copy.");
+                    self.note(note.offering("Frame it", Action::Do(Effect::FocusSelection)));
                 }
             }
             _ => self.say(Severity::Info, "Select a light or an object to duplicate it."),

@@ -43,6 +43,8 @@ const VISIBLE_PART: f32 = 0.05;
 const APART: [f32; 8] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0];
 /// Width or height of a copy that leaves a small gap, in multiples of the copy's reach.
 const GAP: f32 = 2.2;
+/// Factor of the size of objects, so that what they stand on does not count as touched.
+const SLACK: f32 = 0.999;
 /// Factor from bounding boxes and spheres to the slightly smaller outlines.
 const OUTLINE: f32 = 0.95;
 /// Minimum distance between the markers of two lights, in halves of the height of the picture.

@@ -480,6 +480,7 @@ fn badges_take_one_line_where_there_is_little_room() {
 #[test]
 fn badges_cover_at_most_a_quarter_of_a_small_picture() {
     let clipped = |share: u32| Clipping::new(vec![share; Clipping::GRID[0] * Clipping::GRID[1]]);
+    let (mut tested, mut clicked) = (0, 0);
     for (layout, scale) in
         [Layout::Wipe, Layout::SideBySide].into_iter().flat_map(|l| [100, 125, 150].map(|s| (l, s)))
     {
@@ -507,10 +508,18 @@ fn badges_cover_at_most_a_quarter_of_a_small_picture() {
         };
         // In less, the sign and a word take more.
         if picture > 24_000.0 {
+            tested += 1;
             assert!(covered <= 0.25 * picture + 1.0, "{here}: {covered} of {picture}");
         }
         assert!(badges.len() == 3 || all.iter().any(|label| label.contains("; ")), "{here}: {all:?}");
+        // The one of several does what the first of them does.
+        if let Some(one) = badges.iter().find(|s| s.label.starts_with("B · ") && s.label.contains("; ")) {
+            bench.click_at(one.rect.center(), PointerButton::Primary);
+            assert_eq!(bench.session.terms_of(1), TermSelection::All, "{here}");
+            clicked += 1;
+        }
     }
+    assert!(tested > 0 && clicked > 0, "{tested} pictures, {clicked} clicks");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use lights_camera_models::{
     },
     panel::{
         marks::{Lens, anchor},
-        state::{Action, Session},
+        state::{Action, Effect, Session},
     },
     parameter::Value,
     reference,
@@ -215,7 +215,10 @@ fn a_copy_for_which_the_picture_has_no_room_stands_beside_the_original_and_a_mes
             let by = session.facts.camera.inverse() * (objects[1].position - objects[0].position);
             assert!(by.y.abs() < 0.02 && by.z.abs() < 0.02, "{what}: {by}, as the camera sees it");
             assert!(by.x.abs() < 1.15 * objects[0].size, "{what}: {by}");
-            let said = session.messages.iter().any(|note| note.text.contains("C frames it"));
+            let offer = Action::Do(Effect::FocusSelection);
+            let said = session.messages.iter().any(|note| {
+                note.offer.as_ref().is_some_and(|(label, action)| *label == "Frame it" && **action == offer)
+            });
             assert!(said, "{what}: {:?}", session.messages);
         }
     }

@@ -1,8 +1,10 @@
 //! The position of a copy of an object, by the bounds of all objects in the picture.
 
+use std::cell::LazyCell;
+
 use glam::{Vec2, Vec3};
 
-use super::{GAP, Stand, block::Block, round};
+use super::{GAP, SLACK, Stand, block::Block, round};
 use crate::scene::{Object, observer::WIDE};
 
 /// Distances of a copy from the original, in widths or heights of a copy with a small gap: with that gap, closer down
@@ -96,16 +98,16 @@ impl Stand<'_> {
             let find = |widens: bool| places.iter().copied().find(|p| around.is_clear(*p, widens));
             find(false).or_else(|| find(true))
         };
-        let free = || {
+        let free = LazyCell::new(|| {
             let places = sides.iter().chain(&others).copied();
             let free: Vec<_> = places.filter(|p| self.sees(*p, 0.0) && around.is_free(*p)).collect();
             around.least_hidden(&free)
-        };
+        });
         clear(&sides)
             .or_else(|| clear(&others))
-            .or_else(|| free().filter(|p| around.hidden(*p) <= LITTLE_HIDDEN))
+            .or_else(|| free.filter(|p| around.hidden(*p) <= LITTLE_HIDDEN))
             .or_else(|| around.beside())
-            .or_else(free)
+            .or_else(|| *free)
             .or_else(|| around.least_hidden(&[sides.as_slice(), others.as_slice()].concat()))
             .or_else(|| {
                 self.search(original.position, 0.55 * original.size, |p| self.free(p, around.block.radius))
@@ -113,10 +115,15 @@ impl Stand<'_> {
             .unwrap_or_else(|| self.lattice(original.position))
     }
 
-    /// True if an object is partly or wholly outside every view.
+    /// True if an object is partly or wholly outside every view that is no wider than it must be. Floors and backdrops,
+    /// larger than the picture or around the camera, are not meant to be whole.
     pub(in crate::panel::state) fn cuts_off(&self, index: usize) -> bool {
-        let framed = self.taken.get(index).map(|block| self.framed(block));
-        framed.is_some_and(|framed| framed.is_none_or(|framed| !framed.is_within(self.opening)))
+        let Some(block) = self.taken.get(index) else { return false };
+        let is_larger = |framed: &Framed| framed.half().cmpgt(Vec2::from(self.opening)).any();
+        match self.framed(block) {
+            Some(framed) => !framed.is_within(self.opening) && !is_larger(&framed),
+            None => !block.ball_holds(self.eye),
+        }
     }
 
     /// The bounds of a block in the picture; `None` if it is around the camera or behind it.
@@ -208,8 +215,9 @@ impl<'s> Around<'s> {
     /// True if a copy there is in the room, and touches no object.
     fn is_free(&self, p: Vec3) -> bool {
         let block = self.block.at(p);
+        let within = block.scaled(SLACK);
         self.stand.has_room(&block)
-            && !self.solid.iter().chain(&self.ground).any(|other| block.touches(other))
+            && !self.solid.iter().chain(&self.ground).any(|other| within.touches(other))
     }
 
     /// Places all over the picture, the nearest first; none for an object out of it.
@@ -249,7 +257,7 @@ impl<'s> Around<'s> {
         };
         self.stand.has_room(&block)
             && self.stand.framed(&block).map_or(self.is_out, |framed| is_seen(&framed))
-            && self.ground.iter().all(|other| !block.touches(other))
+            && self.ground.iter().all(|other| !block.scaled(SLACK).touches(other))
     }
 
     /// The place of which the least is covered or cut off, with its centre in the picture if possible.
@@ -294,7 +302,7 @@ impl<'s> Around<'s> {
             }
         }
         let core = block.scaled(SOLID);
-        let stands_in = self.ground.iter().any(|other| block.touches(other))
+        let stands_in = self.ground.iter().any(|other| block.scaled(SLACK).touches(other))
             || self.solid.iter().any(|other| core.touches(&other.scaled(SOLID)));
         let mostly = if cut > 0.5 * count { MOSTLY_CUT } else { 0.0 };
         let offset = (self.stand.turn.inverse() * (p - self.original.position)).truncate().abs();
@@ -345,6 +353,24 @@ mod tests {
         let (original, copy, seen) = copied("compare_phong_blinn_phong", 0);
         assert!(seen, "{copy:?}");
         assert!(copy.centre.distance(original.centre) > 1.1 * original.radius, "{copy:?}");
+        assert!(!copy.touches(&original), "{copy:?} in {original:?}");
+    }
+
+    #[test]
+    fn floors_are_not_cut_off_but_objects_out_of_the_picture_are() {
+        let (registry, mut session) = (Registry::builtin(), session_of("default"));
+        let eye = session.facts.eye;
+        let cube = |position: Vec3, size: f32| Object {
+            object_type: "cube".to_owned(),
+            position,
+            size,
+            ..Object::default()
+        };
+        session.document.amend(|scene| {
+            scene.objects = [cube(eye - 18.0 * Vec3::Y, 30.0), cube(eye + 18.0 * Vec3::X, 1.0)].into();
+        });
+        let stand = stand(&session, &registry);
+        assert!(!stand.cuts_off(0) && stand.cuts_off(1));
     }
 
     #[test]

@@ -4,13 +4,11 @@ use std::collections::HashSet;
 
 use glam::Vec3;
 
-use super::{APART, Block, GAP, Stand, round};
+use super::{APART, Block, GAP, SLACK, Stand, round};
 use crate::document::Selection;
 
 /// Space that a light takes, in metres from its position.
 const LAMP: f32 = 0.02;
-/// Factor of the size of objects, so that what they stand on does not count as touched.
-const SLACK: f32 = 0.999;
 /// Maximum number of parts whose copies are placed between them, and of steps that are tried for that.
 const MOST_BETWEEN: usize = 256;
 const STEPS_BETWEEN: u8 = 24;
