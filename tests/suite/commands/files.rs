@@ -528,7 +528,9 @@ fn save_in_a_loop_if_asked_to() {
 
 /// Kills processes that save to a file, until one has left something or all attempts are used.
 fn kill_while_saving(file: &Path, rounds: u64, mut enough: impl FnMut() -> bool) {
+    let changed = || fs::metadata(file).and_then(|about| about.modified()).ok();
     for round in 0..rounds {
+        let before = changed();
         let mut child = Command::new(env::current_exe().expect("this binary"))
             .args(["--exact", "commands::files::save_in_a_loop_if_asked_to", "--nocapture"])
             .env(LOOP_FILE, file)
@@ -536,7 +538,12 @@ fn kill_while_saving(file: &Path, rounds: u64, mut enough: impl FnMut() -> bool)
             .stderr(Stdio::null())
             .spawn()
             .expect("started");
-        thread::sleep(Duration::from_millis(60 + 7 * round % 41));
+        // A busy machine takes a while to start it.
+        let begin = Instant::now();
+        while changed() == before && begin.elapsed() < LIMIT {
+            thread::sleep(Duration::from_millis(2));
+        }
+        thread::sleep(Duration::from_millis(7 * round % 41));
         assert!(child.try_wait().expect("asked").is_none(), "it was still saving");
         child.kill().expect("killed");
         child.wait().expect("ended");
@@ -630,7 +637,7 @@ fn only_what_nobody_holds_and_this_program_wrote_is_litter() {
     assert_eq!(fs::read(at.join("d.json")).expect("there"), b"{}");
     drop(held);
     // Other tests start programs, which inherit the lock until they have started.
-    for _ in 0..100 {
+    for _ in 0..1200 {
         save(&there, &Scene::default(), Expected::Anything).expect("written");
         if !names(at).iter().any(|n| n == ".lcm-held01.tmp") {
             return;

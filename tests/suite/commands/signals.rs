@@ -105,7 +105,7 @@ impl Desk {
         let mut window = self.start(arguments);
         window.until("a question", asks);
         // It gets the keyboard focus once it is laid out.
-        thread::sleep(Duration::from_secs(1));
+        window.at_rest();
         window
     }
 

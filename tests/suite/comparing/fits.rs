@@ -176,7 +176,7 @@ fn the_fits_of_the_window_run_in_the_background_and_keep_what_they_have_when_can
     app.update();
     app.world_mut().resource_mut::<Messages<Effect>>().write(every(0, Metric::Log));
     let mut cancelled = false;
-    for _ in 0..6000 {
+    for _ in 0..24_000 {
         app.update();
         let session = app.world().resource::<Session>();
         if let Some(ranking) = session.fits.as_ref().and_then(|fits| fits.ranking.clone()) {

@@ -323,7 +323,7 @@ fn the_progress_of_a_match_is_shown_and_it_can_be_stopped() {
 fn matched(app: &mut App, effects: Vec<Effect>) -> (Severity, String) {
     let before = app.world().resource::<Session>().messages.added();
     app.world_mut().resource_mut::<Messages<Effect>>().write_batch(effects);
-    for _ in 0..6000 {
+    for _ in 0..24_000 {
         app.update();
         let messages = &app.world().resource::<Session>().messages;
         if messages.added() > before {

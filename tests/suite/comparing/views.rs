@@ -692,7 +692,7 @@ fn the_picture_in_place_of_a_difference_has_its_own_legend_and_dots_and_no_other
         assert!(!bench.says("Channel: B"), "{presenting}: it shows A");
         // They are calculated on another thread.
         let dots = |shape: &Shape| matches!(shape, Shape::Mesh(mesh) if mesh.vertices.len() > 2000);
-        let until = Instant::now() + Duration::from_secs(30);
+        let until = Instant::now() + Duration::from_secs(60);
         while !bench.shapes().iter().any(dots) {
             assert!(Instant::now() < until, "{presenting}: no lines and dots");
             thread::sleep(Duration::from_millis(20));

@@ -289,7 +289,7 @@ fn wait(bench: &mut Bench) {
     };
     // Fine curves come a moment after coarse ones.
     let mut rest = 60;
-    for _ in 0..2000 {
+    for _ in 0..8000 {
         bench.frame(Vec::new());
         rest -= i32::from(is_there(bench));
         if rest == 0 {

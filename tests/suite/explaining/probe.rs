@@ -91,7 +91,7 @@ fn the_hemisphere_is_whole_beside_the_list_in_a_window_of_1280_by_720() {
     bench.apply(Action::View(ViewChange::Pin(Some(pin))));
     let mut scales = Vec::new();
     // It is calculated in a thread.
-    for _ in 0..1000 {
+    for _ in 0..6000 {
         bench.frame(Vec::new());
         scales = bench.texts_in_sight();
         scales.retain(|(text, _)| text.starts_with("white: "));

@@ -80,7 +80,7 @@ fn the_shader_of_the_object_goes_to_the_clipboard() {
 fn export(app: &mut App, effect: Effect) -> Vec<(Severity, String)> {
     let before = app.world().resource::<Session>().messages.len();
     app.world_mut().resource_mut::<Messages<Effect>>().write(effect);
-    for _ in 0..3000 {
+    for _ in 0..12_000 {
         app.update();
         let session = app.world().resource::<Session>();
         if session.messages.len() > before || session.questions.open.is_some() {

@@ -202,6 +202,13 @@ pub fn peak(mut command: Command) -> u64 {
     }
 }
 
+/// Asserts that work takes less than a second or, if the machine is busy, no longer than in proportion to a tenth of
+/// the work.
+pub fn assert_quick(took: std::time::Duration, tenth: impl FnOnce() -> std::time::Duration) {
+    // In proportion to the square, it takes 100 times as long.
+    assert!(took.as_secs_f32() < 1.0 || took < 30 * tenth(), "{took:?}");
+}
+
 /// Runs a command with an input.
 pub fn run(mut command: Command, input: &[u8]) -> Run {
     let mut child = command

@@ -99,11 +99,12 @@ pub fn draw(app: &mut App) {
         let mut views = app.world_mut().query::<&Drawing>();
         views.iter(app.world()).next().is_some_and(Drawing::is_done)
     };
-    for _ in 0..200 {
+    for _ in 0..6000 {
         app.update();
         if done(app) {
             return;
         }
+        std::thread::sleep(std::time::Duration::from_millis(5));
     }
     panic!("no picture");
 }

@@ -92,7 +92,7 @@ fn picture(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<u8> {
 /// The status once problems are old enough to be reported.
 fn status(renderer: &mut GpuRenderer) -> ShaderStatus {
     thread::sleep(GRACE);
-    for _ in 0..200 {
+    for _ in 0..12_000 {
         renderer.step();
         if !renderer.app().world().resource::<LiveShaders>().is_busy() {
             break;

@@ -122,7 +122,6 @@ fn program(folder: &Path, does: &str) -> PathBuf {
 fn whatever_becomes_of_the_process_is_told_and_the_picture_stays() {
     let folder = tempfile::tempdir().expect("a folder");
     let ready = r#"echo '"Ready"'"#;
-    let budget = Budget { time: Duration::from_secs(2), memory: 100 << 20 };
     for (does, said) in [
         ("read line; kill -SEGV $$", "crashes"),
         ("read line; exit 0", "crashes"),
@@ -130,6 +129,9 @@ fn whatever_becomes_of_the_process_is_told_and_the_picture_stays() {
         ("read line; x=$(head -c 300000000 /dev/zero | tr '\\0' a); sleep 100", "more than 100 MiB"),
     ] {
         let path = program(folder.path(), &format!("{ready}\n{does}"));
+        // A busy machine needs its time for the others.
+        let time = Duration::from_secs(if said == "within 2 s" { 2 } else { 50 });
+        let budget = Budget { time, memory: 100 << 20 };
         let mut lab = apart(&path, budget);
         let before = lab.frame();
         lab.save("reflection/phong.wgsl", format!("{}\n", original("reflection/phong.wgsl")));

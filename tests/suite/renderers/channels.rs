@@ -362,7 +362,7 @@ fn both_renderers_draw_the_same_lines_and_dots_over_a_dim_surface() {
 /// Waits until the lines of a view are finished; returns them with the number of calculations.
 fn lines(bench: &mut Bench, view: usize) -> (std::sync::Arc<reference::Wires>, u64) {
     let mut before = None;
-    for _ in 0..500 {
+    for _ in 0..15_000 {
         bench.settle();
         std::thread::sleep(std::time::Duration::from_millis(4));
         let found = wires::shown(&bench.ctx, view);

@@ -118,7 +118,7 @@ impl Lab {
     /// The frame after everything was tried and problems were reported.
     pub fn settled(&mut self) -> Vec<u8> {
         thread::sleep(GRACE);
-        for _ in 0..200 {
+        for _ in 0..12_000 {
             self.renderer.step();
             if !self.live().is_busy() {
                 break;
@@ -622,7 +622,7 @@ fn unchanged_text_recompiles_nothing_and_a_change_recompiles_only_what_depends_o
 fn follow(lab: &mut Lab, watcher: &Watcher, expect_change: bool) -> Vec<Vec<u8>> {
     let mut frames = Vec::new();
     let mut quiet = 0;
-    for _ in 0..400 {
+    for _ in 0..6000 {
         let changed = watcher.changed();
         quiet = if changed.is_empty() && watcher.pending().is_none() { quiet + 1 } else { 0 };
         changed.iter().for_each(|file| lab.reread_file(file));

@@ -4,7 +4,7 @@ use std::{
     fs,
     path::Path,
     process::{Command, Stdio},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use lights_camera_models::{
@@ -155,7 +155,9 @@ fn a_process_killed_while_it_saves_leaves_a_valid_file() {
     let file = folder.path().join("a.json");
     let scenes = [large(1), large(500)];
     write(&file, &scenes[0], Expected::Nothing).expect("written");
+    let changed = || fs::metadata(&file).and_then(|about| about.modified()).ok();
     for round in 0..25 {
+        let before = changed();
         let mut child = Command::new(std::env::current_exe().expect("this binary"))
             .args(["--exact", "scenes::saving::save_in_a_loop_if_asked_to", "--nocapture"])
             .env(LOOP_FILE, &file)
@@ -163,7 +165,12 @@ fn a_process_killed_while_it_saves_leaves_a_valid_file() {
             .stderr(Stdio::null())
             .spawn()
             .expect("started");
-        std::thread::sleep(Duration::from_millis(40 + 7 * round % 41));
+        // A busy machine takes a while to start it.
+        let begin = Instant::now();
+        while changed() == before && begin.elapsed() < Duration::from_secs(60) {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        std::thread::sleep(Duration::from_millis(7 * round % 41));
         assert!(child.try_wait().expect("asked").is_none(), "it was still saving");
         child.kill().expect("killed");
         child.wait().expect("ended");

@@ -40,7 +40,7 @@ fn bench() -> (Bench, tempfile::TempDir) {
 
 /// Goes on until a thread has made this.
 fn wait_for(bench: &mut Bench, label: &str) {
-    for _ in 0..400 {
+    for _ in 0..6000 {
         bench.settle();
         if bench.says(label) {
             return;

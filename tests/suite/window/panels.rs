@@ -400,7 +400,7 @@ impl Bench {
 
     /// Waits until lobes are finished.
     pub fn wait_for_lobes(&mut self) {
-        for _ in 0..500 {
+        for _ in 0..6000 {
             self.settle();
             if !lobes_are_due(&self.ctx) {
                 return;

@@ -3,7 +3,10 @@
 
 #![cfg(target_os = "linux")]
 
-use std::{thread, time::Duration};
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
 
 use crate::{
     helpers::keyboard::Keyboard,
@@ -23,7 +26,13 @@ fn after_drag(step: impl Fn(&mut Keyboard, i16)) -> (Picture, Picture) {
     pointer.button(true);
     pause();
     for k in 1..=5 {
+        let last = screen.look().pixels;
         step(&mut pointer, k);
+        // A busy machine takes a while to show it.
+        let begin = Instant::now();
+        while screen.look().pixels == last && begin.elapsed() < Duration::from_secs(2) {
+            thread::sleep(Duration::from_millis(20));
+        }
         pause();
     }
     pointer.button(false);

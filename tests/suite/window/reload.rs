@@ -87,7 +87,7 @@ fn an_open_window_shows_what_is_edited_elsewhere() {
         if window.ticks() == before {
             break;
         }
-        assert!(begin.elapsed() < Duration::from_secs(15), "the window never rests");
+        assert!(begin.elapsed() < Duration::from_secs(60), "the window never rests");
     }
 
     let broken = scene([255, 0, 0]).replace("\"size\": 2", "\"size\": -2");
@@ -191,7 +191,7 @@ fn until_said(window: &Running<'_>, expected: impl Fn(&str) -> bool) -> String {
         if expected(news) {
             return news.to_owned();
         }
-        assert!(begin.elapsed() < Duration::from_secs(20), "it said: {said}");
+        assert!(begin.elapsed() < Duration::from_secs(60), "it said: {said}");
         thread::sleep(Duration::from_millis(20));
     }
 }
@@ -349,7 +349,7 @@ fn a_new_model_is_named_in_whole_before_the_window_rests() {
         keyboard.press(&[Key::Return]);
         let begin = Instant::now();
         while fs::read_dir(folder.path()).expect("there").count() < i + 2 {
-            assert!(begin.elapsed() < Duration::from_secs(20), "no file is written");
+            assert!(begin.elapsed() < Duration::from_secs(60), "no file is written");
             thread::sleep(Duration::from_millis(20));
         }
         // The file is noticed, read and tried.

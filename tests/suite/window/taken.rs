@@ -52,7 +52,7 @@ fn take(app: &mut App, view: Option<usize>, file: &Path, overwrite: bool) -> Vec
     session(app).messages.clear();
     let effect = Effect::Picture { view, file: Some(file.to_owned()), overwrite };
     app.world_mut().resource_mut::<Messages<Effect>>().write(effect);
-    for _ in 0..3000 {
+    for _ in 0..12_000 {
         app.update();
         let session = app.world().resource::<Session>();
         if !session.messages.is_empty() || session.questions.open.is_some() {
@@ -566,7 +566,7 @@ fn sheet(app: &mut App, subject: SheetOf, path: &Path) -> Vec<(Severity, String)
     session(app).messages.clear();
     let effect = Effect::WriteSheet { subject, path: path.to_owned() };
     app.world_mut().resource_mut::<Messages<Effect>>().write(effect);
-    for _ in 0..3000 {
+    for _ in 0..12_000 {
         app.update();
         let session = app.world().resource::<Session>();
         if !session.messages.is_empty() {
