@@ -69,7 +69,7 @@ fn match_says_before_its_search_that_a_file_cannot_hold_the_scene() {
     for (output, expected) in [
         ("notes.txt", "notes.txt was not written: .txt is not the extension of a scene"),
         ("x.csv", "x.csv was not written: its format would lose comparison; save the scene as JSON"),
-        ("new/x.csv", "new/x.csv was not written: its format would lose variants"),
+        ("new/x.csv", "new/x.csv was not written: its format would lose comparison"),
         ("x.png", "x.png was not written: files of the format PNG picture can only be read"),
     ] {
         let run = lcm_in(folder.path(), &["match", "s.json", "-o", output, "--overwrite"], b"");
