@@ -72,8 +72,4 @@ impl ReflectionModel for MeasuredRgl {
     fn quantity(&self, symbol: &str, arguments: &[f32]) -> Option<Vec3> {
         self.data()?.quantity(symbol, arguments)
     }
-
-    fn measured_near(&self, l: Vec3, v: Vec3) -> Option<(Vec3, Vec3)> {
-        Some(self.data()?.nearest(l, v))
-    }
 }

@@ -55,24 +55,6 @@ struct Neighbours {
     weights: [f32; 4],
 }
 
-/// Two directions as a file has them.
-#[derive(Clone, Copy, Debug)]
-struct Seen {
-    /// The azimuth of the viewer in the local frame.
-    azimuth: f32,
-    /// Its azimuth and angle in the file.
-    phi: f32,
-    theta: f32,
-    /// The half vector in the unit square.
-    point: [f32; 2],
-}
-
-/// An azimuth as a part of a turn, from 0 to 1.
-fn turn(phi: f32) -> f32 {
-    let t = phi / (2.0 * PI) + 0.5;
-    t - t.floor()
-}
-
 fn area([columns, rows]: [usize; 2]) -> usize {
     columns * rows
 }
@@ -226,42 +208,18 @@ impl<'a> Data<'a> {
         cell(i, j).lerp(cell(i + 1, j), x).lerp(cell(i, j + 1).lerp(cell(i + 1, j + 1), x), y)
     }
 
-    /// The place of two directions in the local frame.
-    fn seen(&self, l: Vec3, v: Vec3) -> Seen {
+    /// f_r N·L in sr⁻¹ for directions above the surface in the local frame.
+    pub(super) fn response(&self, l: Vec3, v: Vec3) -> Vec3 {
         let m = l + v;
         let polar = |d: Vec3| d.truncate().length().atan2(d.z);
         let around = |d: Vec3| if d.truncate().length() < 1e-7 { 0.0 } else { d.y.atan2(d.x) };
-        let azimuth = around(v);
-        let point = [(polar(m) / FRAC_PI_2).sqrt(), turn(self.azimuth(azimuth, around(m)))];
-        Seen { azimuth, phi: self.azimuth(azimuth, azimuth), theta: polar(v), point }
-    }
-
-    /// The pair of directions in the local frame nearest to another for which the file has numbers of its own: the viewer is one of
-    /// the file's, the half vector a node of the distribution of normals. Of an isotropic file, all azimuths are its own.
-    pub(super) fn nearest(&self, l: Vec3, v: Vec3) -> (Vec3, Vec3) {
-        let Seen { azimuth, phi, theta, point: [u, t] } = self.seen(l, v);
-        let known = |axis: usize, angle: f32| {
-            let all = &self.numbers[self.at[axis]..][..self.counts[axis]];
-            all[(self.place(axis, angle).round() as usize).min(all.len() - 1)]
+        let seen = around(v);
+        let (phi, theta) = (self.azimuth(seen, seen), polar(v));
+        let turn = |phi: f32| {
+            let t = phi / (2.0 * PI) + 0.5;
+            t - t.floor()
         };
-        let node = |t: f32, count: usize| (t * (count - 1) as f32).round() / (count - 1) as f32;
-        // The azimuth in the local frame: that of the file rises or falls with it.
-        let offset = self.azimuth(azimuth, 0.0);
-        let local = |phi: f32| (self.azimuth(azimuth, 1.0) - offset) * (phi - offset);
-        let towards = |theta: f32, phi: f32| {
-            let (sine, cosine) = theta.sin_cos();
-            Vec3::new(sine * phi.cos(), sine * phi.sin(), cosine)
-        };
-        let [columns, rows] = self.sizes[2];
-        let (phi, t) = if self.reduction() == 0 { (phi, t) } else { (known(0, phi), node(t, rows)) };
-        let v = towards(known(1, theta), local(phi));
-        let m = towards(FRAC_PI_2 * node(u, columns).powi(2), local(2.0 * PI * (t - 0.5)));
-        (2.0 * v.dot(m) * m - v, v)
-    }
-
-    /// f_r N·L in sr⁻¹ for directions above the surface in the local frame.
-    pub(super) fn response(&self, l: Vec3, v: Vec3) -> Vec3 {
-        let Seen { phi, theta, point, .. } = self.seen(l, v);
+        let point = [(polar(m) / FRAC_PI_2).sqrt(), turn(self.azimuth(seen, around(m)))];
         let near = self.neighbours(phi, theta);
         let place = self.warped(&near, point);
         let mut sum = Vec3::ZERO;

@@ -162,37 +162,6 @@ fn an_azimuth_is_one_of_the_part_of_a_turn_that_the_file_covers() {
 }
 
 #[test]
-fn the_nearest_directions_that_were_measured_are_nearer_to_the_model_than_those_between() {
-    for (alpha, phis) in [(Vec2::splat(0.35), 1), (Vec2::new(0.4, 0.25), 5)] {
-        let numbers = numbers(&arrays(alpha, [phis, 8], [32, 65], 16));
-        let data = Data::new(&numbers).expect("a table");
-        let mut seed = 7;
-        let (mut own, mut between, mut count) = (0.0, 0.0, 0.0);
-        for _ in 0..20_000 {
-            let (l, v) = (any_direction(&mut seed), any_direction(&mut seed));
-            let is_seen = |l: Vec3, v: Vec3| l.z.min(v.z) > 0.34 && (l + v).normalize().z > 0.82;
-            if !is_seen(l, v) {
-                continue;
-            }
-            let (a, b) = data.nearest(l, v);
-            // Viewers are 12.3° and 22.5° apart.
-            let [far_v, far_m] = [v.angle_between(b), (l + v).angle_between(a + b)];
-            assert!(far_v < 0.28 && far_m < 0.15, "{alpha} {far_v} {far_m}: {l} {v}, {a} {b}");
-            let error = |l: Vec3, v: Vec3| {
-                let expected = metal(l, v, alpha) * l.z;
-                ((data.response(l, v) - expected) / expected).abs().max_element()
-            };
-            if is_seen(a, b) {
-                own += error(a, b);
-                between += error(l, v);
-                count += 1.0;
-            }
-        }
-        assert!(count > 500.0 && own < between, "{alpha}: {} {}", own / count, between / count);
-    }
-}
-
-#[test]
 fn what_is_no_file_of_the_database_is_refused_with_the_reason() {
     let said = |bytes: &[u8]| (FORMAT.read)(bytes).expect_err("refused").message;
     assert!(said(b"solid cube").contains("begins with tensor_file"));
