@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use bevy_egui::egui::{self, Event, Key, Modifiers, PointerButton, Rect, Shape, accesskit::Role, pos2, vec2};
+use bevy_egui::egui::{self, Key, Modifiers, PointerButton, Rect, Shape, accesskit::Role, pos2, vec2};
 use lights_camera_models::{
     channel::DebugChannel,
     curves::Kind,
@@ -971,20 +971,7 @@ fn the_width_of_the_lesson_and_that_of_the_scene_list_are_kept_apart() {
     let (list, lesson) = (bench.session.settings.left_width, bench.session.settings.lesson_width);
     let edge = bench.area.rect.left();
     let (from, to) = (pos2(edge, 300.0), pos2(edge + 60.0, 300.0));
-    let press = |pos, pressed| Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
-    bench.frame(vec![Event::PointerMoved(from)]);
-    bench.frame(vec![press(from, true)]);
-    for k in 1..=6 {
-        bench.frame(vec![Event::PointerMoved(from + (to - from) * (k as f32 / 6.0))]);
-    }
-    bench.frame(Vec::new());
-    bench.frame(vec![press(to, false)]);
-    bench.settle();
+    crate::window::layout::drag(&mut bench, from, to);
     let kept = &bench.session.settings;
     assert!((kept.lesson_width - lesson - 60.0).abs() < 4.0, "{}", kept.lesson_width);
     assert_eq!(kept.left_width, list);

@@ -482,16 +482,23 @@ fn the_icons_of_a_dialog_say_what_they_do() {
     }
 }
 
-#[test]
-fn a_name_that_does_not_fit_below_the_list_has_both_of_its_ends() {
-    const NAME: &str = "a_room_with_many_lamps_as_it_was_lit_on_the_first_evening.json";
+const LONG_NAME: &str = "a_room_with_many_lamps_as_it_was_lit_on_the_first_evening.json";
+
+/// The dialog in large letters, with a file of a long name selected.
+fn with_a_long_name() -> (Bench, tempfile::TempDir) {
     let (mut bench, folder) = open(ThemeChoice::Dark, 150);
     bench.key(Key::Escape, Modifiers::NONE);
-    fs::copy(folder.path().join("shapes.json"), folder.path().join(NAME)).expect("copied");
+    fs::copy(folder.path().join("shapes.json"), folder.path().join(LONG_NAME)).expect("copied");
     bench.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL);
     until(&mut bench, "the list", |b: &mut Bench| b.tree.iter().any(|s| s.label.contains("a_room")));
     select(&mut bench, "a_room");
-    until(&mut bench, "the name", |b: &mut Bench| b.tree.iter().any(|s| s.label == NAME));
+    until(&mut bench, "the name", |b: &mut Bench| b.tree.iter().any(|s| s.label == LONG_NAME));
+    (bench, folder)
+}
+
+#[test]
+fn a_name_that_does_not_fit_below_the_list_has_both_of_its_ends() {
+    let (mut bench, _folder) = with_a_long_name();
     bench.settle();
     let texts = bench.texts_in_sight();
     let is_short = |text: &str| text.starts_with("a_room") && text.contains('…') && text.ends_with(".json");
@@ -506,20 +513,13 @@ fn a_name_that_does_not_fit_below_the_list_has_both_of_its_ends() {
 
 #[test]
 fn the_name_of_the_selected_file_is_whole() {
-    const NAME: &str = "a_room_with_many_lamps_as_it_was_lit_on_the_first_evening.json";
-    let (mut bench, folder) = open(ThemeChoice::Dark, 150);
-    bench.key(Key::Escape, Modifiers::NONE);
-    fs::copy(folder.path().join("shapes.json"), folder.path().join(NAME)).expect("copied");
-    bench.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL);
-    until(&mut bench, "the list", |b: &mut Bench| b.tree.iter().any(|s| s.label.contains("a_room")));
-    select(&mut bench, "a_room");
-    until(&mut bench, "the name", |b: &mut Bench| b.tree.iter().any(|s| s.label == NAME));
+    let (mut bench, _folder) = with_a_long_name();
     let screen = bench.ctx.content_rect();
     let whole = bench.shapes().into_iter().any(|shape| match &shape {
         Shape::Text(text) => {
             let seen = shape.visual_bounding_rect();
             let beside = seen.left() > screen.left() + 0.6 * screen.width();
-            text.galley.text() == NAME && !text.galley.elided && screen.contains_rect(seen) && beside
+            text.galley.text() == LONG_NAME && !text.galley.elided && screen.contains_rect(seen) && beside
         }
         _ => false,
     });
@@ -528,9 +528,8 @@ fn the_name_of_the_selected_file_is_whole() {
 
 #[test]
 fn a_name_that_does_not_fit_below_the_list_is_whole_under_the_pointer() {
-    const NAME: &str = "a_room_with_many_lamps_as_it_was_lit_on_the_first_evening.json";
     let (mut bench, folder) = open(ThemeChoice::Dark, 150);
-    for name in [NAME, "short.json"] {
+    for name in [LONG_NAME, "short.json"] {
         bench.key(Key::Escape, Modifiers::NONE);
         fs::copy(folder.path().join("shapes.json"), folder.path().join(name)).expect("copied");
         bench.key(Key::O, Modifiers::COMMAND | Modifiers::CTRL);
@@ -544,7 +543,7 @@ fn a_name_that_does_not_fit_below_the_list_is_whole_under_the_pointer() {
         let before = shown(&mut bench);
         let label = bench.texts_in_sight().into_iter().find(|(text, _)| text == "File:").expect("below").1;
         bench.hover(label.right_center() + vec2(20.0, 0.0));
-        let expected = if name == NAME { before + 1 } else { before };
+        let expected = if name == LONG_NAME { before + 1 } else { before };
         assert_eq!(shown(&mut bench), expected, "{name}");
     }
 }

@@ -67,7 +67,7 @@ fn two_views(bench: &mut Bench) {
 }
 
 /// Drags from one place to another.
-fn drag(bench: &mut Bench, from: Pos2, to: Pos2) {
+pub fn drag(bench: &mut Bench, from: Pos2, to: Pos2) {
     let press = |pos, pressed| Event::PointerButton {
         pos,
         button: PointerButton::Primary,
