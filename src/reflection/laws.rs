@@ -275,6 +275,10 @@ impl Extreme {
             *self = Self { size, case: Some(case()) };
         }
     }
+
+    fn note_larger(&mut self, size: f32, case: impl FnOnce() -> Case) {
+        self.note(size, size > self.size, case);
+    }
 }
 
 /// The extent of the search.
@@ -353,7 +357,7 @@ pub fn examine<E>(
             let lobes = model.instantiate(&values, Encoding::Srgb).lobes();
             for (v, error) in sampling_errors(&lobes, |pairs| ask(&values, pairs))? {
                 let case = || Case { values: values.clone(), l: None, v };
-                findings.sampling.note(error, error > findings.sampling.size, case);
+                findings.sampling.note_larger(error, case);
             }
         }
         compare(&values, effort.pairs, &mut random, &mut findings, &mut ask)?;
@@ -449,7 +453,7 @@ fn compare<E>(
         if is_finite(&there) && is_finite(&back) {
             let error = reciprocity_error(there, back, l, v, &frame);
             let case = || Case { values: values.clone(), l: Some(l), v };
-            findings.reciprocity.note(error, error > findings.reciprocity.size, case);
+            findings.reciprocity.note_larger(error, case);
         }
     }
     Ok(())
@@ -490,7 +494,7 @@ fn exchange<E>(
         let Some((there, back)) = found.filter(|(t, b)| is_finite(t) && b.is_finite()) else { continue };
         let error = transmission_error(there, back, l, v, &frame);
         let case = || Case { values: values.clone(), l: Some(l), v };
-        findings.transmission.note(error, error > findings.transmission.size, case);
+        findings.transmission.note_larger(error, case);
     }
     Ok(())
 }
@@ -528,7 +532,7 @@ fn integrate<E>(
         }
         let case = || Case { values: values.clone(), l: None, v };
         if found.is_finite() {
-            findings.albedo.note(found, found > findings.albedo.size, case);
+            findings.albedo.note_larger(found, case);
         }
     }
     Ok(())
