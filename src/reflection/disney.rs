@@ -190,12 +190,14 @@ impl ReflectionModel for Disney {
         let alpha = self.alpha();
         let f0 = self.f0();
         let main = lobe(ggx(h, alpha), alpha) * (f0 + (Vec3::ONE - f0) * fresnel);
-        let coat =
-            lobe(gtr(h, Vec2::splat(self.coat_width()), 1.0), Vec2::splat(0.25)) * (0.04 + 0.96 * fresnel);
-        Terms::of(
-            PI * cos_l * (1.0 - self.metallic) * body,
-            PI * cos_l * (main + 0.25 * self.clearcoat * coat),
-        )
+        // Its distribution has a power, which would take as long as the rest.
+        let coat = if self.clearcoat > 0.0 {
+            let lobe = lobe(gtr(h, Vec2::splat(self.coat_width()), 1.0), Vec2::splat(0.25));
+            0.25 * self.clearcoat * (lobe * (0.04 + 0.96 * fresnel))
+        } else {
+            0.0
+        };
+        Terms::of(PI * cos_l * (1.0 - self.metallic) * body, PI * cos_l * (main + coat))
     }
 
     fn lobes(&self) -> Lobes {
