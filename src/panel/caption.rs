@@ -16,6 +16,8 @@ use crate::{
 pub(super) const MOST_VALUES: usize = 4;
 /// Maximum number of lines; more would hide the picture.
 const LINES: usize = 2;
+/// Number of even captions whose widths are kept: more than a screen has views.
+const EVEN: usize = 2 * (MAX_VARIANTS + 1);
 
 /// The caption of the picture: its models, shading and display, and for a single object the key values.
 #[must_use]
@@ -118,6 +120,37 @@ pub(super) fn values_of(
     model.parameters.iter().filter(used).filter_map(part).collect()
 }
 
+/// An even caption.
+#[derive(Clone, Debug)]
+struct Even {
+    parts: Vec<Part>,
+    /// Size of its letters, the width that it has, and pixels per point.
+    room: [f32; 3],
+    /// The width of its lines.
+    found: f32,
+}
+
+/// The latest even captions, the last used one at the end.
+#[derive(Clone, Debug, Default)]
+struct Evened(Vec<Even>);
+
+impl Evened {
+    /// The width of the lines of a caption, if it is known.
+    fn find(&mut self, parts: &[Part], room: [f32; 3]) -> Option<f32> {
+        let at = self.0.iter().position(|even| even.room == room && even.parts == parts)?;
+        self.0[at..].rotate_left(1);
+        self.0.last().map(|even| even.found)
+    }
+
+    /// Keeps a new one, in place of that which was not used for longest.
+    fn keep(&mut self, even: Even) {
+        if self.0.len() >= EVEN {
+            self.0.remove(0);
+        }
+        self.0.push(even);
+    }
+}
+
 /// A caption laid out in lines.
 pub(super) struct Lines {
     runs: Vec<(Vec2, Arc<Galley>)>,
@@ -135,17 +168,30 @@ impl Lines {
         Self::within(ui, parts, size, colour, width, LINES)
     }
 
-    /// The same on a slide: in narrower lines where they are no more, so that no word hangs alone in the last one.
+    /// The same on a slide: in narrower lines where they are no more, so that no word hangs alone in the last one. The width
+    /// that was found is kept for the next frames.
     pub(super) fn even(ui: &Ui, parts: &[Part], size: f32, colour: Color32, width: f32) -> Self {
         let within = |width: f32| Self::of(ui, parts.to_vec(), size, colour, width);
+        let room = [size, width, ui.pixels_per_point()];
+        if let Some(found) = kept::with(ui.ctx(), |known: &mut Evened| known.find(parts, room)) {
+            return within(found);
+        }
+        let (found, lines) = Self::evened(within, width);
+        kept::with(ui.ctx(), |known: &mut Evened| known.keep(Even { parts: parts.to_vec(), room, found }));
+        lines
+    }
+
+    /// The narrowest lines by `within` that are no more than those of this width and show as much, and their width.
+    fn evened(within: impl Fn(f32) -> Self, width: f32) -> (f32, Self) {
         let wide = within(width);
         if wide.runs.last().is_none_or(|(at, _)| at.y <= 0.0) {
-            return wide;
+            return (width, wide);
         }
-        let mut narrower = (6..12u8).map(|part| within(width * f32::from(part) / 12.0));
-        let is_as_low =
-            |lines: &Self| lines.kept == wide.kept && !lines.is_elided() && lines.size.y <= wide.size.y + 0.5;
-        narrower.find(is_as_low).unwrap_or(wide)
+        let narrower = (6..12u8).map(|part| width * f32::from(part) / 12.0);
+        let is_as_low = |(_, lines): &(f32, Self)| {
+            lines.kept == wide.kept && !lines.is_elided() && lines.size.y <= wide.size.y + 0.5
+        };
+        narrower.map(|width| (width, within(width))).find(is_as_low).unwrap_or((width, wide))
     }
 
     /// Lays out parts within `most` lines, leaving out optional parts where necessary.
@@ -219,5 +265,59 @@ impl Lines {
         for (offset, galley) in self.runs {
             ui.painter().galley(pos2(at.x + offset.x, at.y + offset.y), galley, colour);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_egui::egui::RawInput;
+
+    use super::*;
+
+    #[test]
+    fn an_even_caption_is_laid_out_in_one_width_once_that_is_known() {
+        let ctx = Context::default();
+        ctx.set_fonts(crate::lettering::fonts());
+        let words = ["Microfacet", "Phong shading", "computed per pixel", "roughness 0.35", "exposure 1 EV"];
+        let parts = words.map(|word| Part::new(0, word));
+        // The size of a caption, and the number of texts that its frame has laid out.
+        let caption = |width: f32, even: bool| {
+            // egui forgets the texts of earlier frames.
+            (0..2).for_each(|_| drop(ctx.run_ui(RawInput::default(), |_| ())));
+            let mut size = Vec2::ZERO;
+            let _ = ctx.run_ui(RawInput::default(), |ui| {
+                let lines = match even {
+                    true => Lines::even(ui, &parts, 20.0, Color32::WHITE, width),
+                    false => Lines::of(ui, parts.to_vec(), 20.0, Color32::WHITE, width),
+                };
+                size = lines.size;
+            });
+            (size, ctx.fonts(|fonts| fonts.num_galleys_in_cache()))
+        };
+        let (line, _) = caption(f32::INFINITY, false);
+        for width in [0.9 * line.x, 0.8 * line.x] {
+            let (wide, once) = caption(width, false);
+            let (first, tried) = caption(width, true);
+            assert!(wide.y > 1.5 * line.y && first.y == wide.y && first.x < 0.8 * width, "{wide} {first}");
+            assert!(tried > once, "{tried} texts, {once} at one width");
+            for _ in 0..2 {
+                let (again, laid_out) = caption(width, true);
+                assert_eq!(again, first);
+                assert!(laid_out <= once, "{laid_out} texts, {once} at one width");
+            }
+        }
+    }
+
+    #[test]
+    fn the_captions_that_are_used_are_kept() {
+        let parts = |i: usize| vec![Part::new(0, i.to_string())];
+        let mut known = Evened::default();
+        for i in 0..3 * EVEN {
+            known.keep(Even { parts: parts(i), room: [1.0; 3], found: i as f32 });
+            assert_eq!(known.find(&parts(0), [1.0; 3]), Some(0.0), "{i}");
+        }
+        assert_eq!(known.0.len(), EVEN);
+        assert_eq!(known.find(&parts(1), [1.0; 3]), None, "it was not used");
+        assert_eq!(known.find(&parts(0), [2.0; 3]), None, "in another room");
     }
 }

@@ -96,6 +96,7 @@ pub mod progress;
 pub mod question;
 mod rank;
 pub mod reload;
+mod resting;
 pub mod segmented;
 pub mod settings;
 pub mod shader;

@@ -15,6 +15,7 @@ use super::{
     placer::{self, Placer},
     prelude::*,
     presentation::{self, CAPTION, Footer, Needed, PlatePlace, Stage},
+    resting,
     state::{Badge, Cell, SHADER_TAB},
     wires,
 };
@@ -141,7 +142,7 @@ impl<'a> Overlaid<'_, 'a> {
             let of_view = badges_of(view, whole, ui, session, registry);
             let badges = match stage {
                 Some(_) => ([front, of_view].concat(), false),
-                None => yielding(ui, &placer, [front, of_view], (session, rect, 1.0)),
+                None => yielding(ui, &placer, [front, of_view], (session, view), (rect, 1.0)),
             };
             self.badges(ui, &mut placer, badges);
             self.sizes = Needed::of([&placer.sizes; 2].map(Vec::as_slice), placer.room.width());
@@ -321,7 +322,7 @@ impl<'a> Overlaid<'_, 'a> {
             let beside = cell.part.is_positive() && cell.part.width() >= NARROWEST * scale;
             let room = if beside { cell.part } else { cell.rect };
             let mut placer = Placer::column(room, from.0, placer.below());
-            let badges = yielding(ui, &placer, signs, (session, cell.rect, sharing));
+            let badges = yielding(ui, &placer, signs, (session, cell.view), (cell.rect, sharing));
             self.badges(ui, &mut placer, badges);
             next = Some(placer.below());
         }
@@ -549,35 +550,76 @@ fn sizes_of_badges(ui: &Ui, rect: Rect, all: &[Sign], short: bool) -> Vec<Vec2> 
     all.iter().map(size).collect()
 }
 
+/// The words of the badges of a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wording {
+    /// The longest that fit.
+    Whole,
+    /// The shortest.
+    Short,
+    /// The shortest, where one badge stands for all of the view.
+    Gathered,
+}
+
 /// Badges that cover no more of a picture and of the objects in it than they may, as far as that is possible, and true if
 /// they have their shortest words. If those cover too much, one badge is left of those of a view, the second ones, which
 /// says under the pointer what all say; the first ones stay before it. So many views share the picture.
+///
+/// While the camera turns, the choice is kept: it takes a look at every object, and words that change with the view are
+/// restless.
 fn yielding(
     ui: &Ui,
     placer: &Placer,
     [front, of_view]: [Vec<Sign>; 2],
-    (session, picture, views): (&Session, Rect, f32),
+    (session, view): (&Session, usize),
+    (picture, views): (Rect, f32),
 ) -> (Vec<Sign>, bool) {
     let all = [front.as_slice(), of_view.as_slice()].concat();
     if all.is_empty() {
         return (all, false);
     }
+    let texts = || all.iter().flat_map(|(badge, _)| iter::once(&badge.text).chain(&badge.shorter));
+    // A share that follows the picture makes no other badge of it.
+    let without_numbers = |text: &String| text.replace(|c: char| c.is_ascii_digit() || c == '.', "");
+    let words: Vec<_> = texts().map(without_numbers).collect();
+    let lengths: Vec<_> = texts().map(String::len).collect();
+    let shown = (session.document.revision(), session.active());
+    let type_size = (theme::bold(ui), ui.pixels_per_point());
+    let key = (words, [front.len(), of_view.len()], [picture, placer.room], views, shown, type_size);
+    let id = Id::new(("words of badges", view));
+    let wording = resting::choice(ui.ctx(), id, session, (key, (lengths, placer.clone())), || {
+        wording(ui, placer, (&all, of_view.len()), (session, picture, views))
+    });
+    match wording {
+        Wording::Whole => (all, false),
+        Wording::Short => (all, true),
+        Wording::Gathered => (with_one(&front, &of_view), true),
+    }
+}
+
+/// The words of badges, the last so many of which are those of a view, by what they cover.
+fn wording(
+    ui: &Ui,
+    placer: &Placer,
+    (all, of_view): (&[Sign], usize),
+    (session, picture, views): (&Session, Rect, f32),
+) -> Wording {
     let discs = presentation::discs(session, picture);
     let fits = |short: bool| {
         let mut placer = placer.clone();
-        let sizes = sizes_of_badges(ui, placer.room, &all, short);
+        let sizes = sizes_of_badges(ui, placer.room, all, short);
         let plates: Vec<_> = sizes.into_iter().map(|size| placer.place(size)).collect();
         let area: f32 = plates.iter().map(Rect::area).sum();
         area <= PLATE * picture.area() / views
             && presentation::covered(&discs, picture, &plates) <= OBJECTS / views
     };
     if fits(false) {
-        return (all, false);
+        Wording::Whole
+    } else if of_view < 2 || fits(true) {
+        Wording::Short
+    } else {
+        Wording::Gathered
     }
-    if of_view.len() < 2 || fits(true) {
-        return (all, true);
-    }
-    (with_one(&front, &of_view), true)
 }
 
 /// Badges that take as few rows above a picture as possible after plates of these sizes, and true if they have their shortest

@@ -8,7 +8,7 @@ pub(super) const EDGE: f32 = 8.0;
 pub(super) const GAP: f32 = 4.0;
 
 /// Gives plates over a picture their places: below each other from a corner on, or in rows.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Placer {
     /// The rectangle for the plates.
     pub(super) room: Rect,

@@ -34,6 +34,13 @@ with_defaults! {
 }
 
 impl PictureArea {
+    /// The ratio of width to height of the pictures, which is the same for all views; `None` if there are none.
+    #[must_use]
+    pub fn aspect(&self) -> Option<f32> {
+        let rect = self.cells.first().map_or(self.frame, |cell| cell.rect);
+        (rect.is_finite() && rect.is_positive()).then(|| rect.aspect_ratio())
+    }
+
     /// The view at a point, and the rectangle of its picture.
     #[must_use]
     pub fn cell_at(&self, point: egui::Pos2) -> Option<&Cell> {

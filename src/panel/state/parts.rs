@@ -113,7 +113,7 @@ impl Session {
                     self.travels.copied(from, to);
                 }
                 self.select_new(Selection::Object(at));
-                if self.stand(registry).cuts_off(at) {
+                if self.stand(registry).cuts_off(at, self.facts.aspect) {
                     let note = Note::new(Severity::Info, "The picture does not show all of the copy.");
                     self.note(note.offering("Frame it", Action::Do(Effect::FocusSelection)));
                 }

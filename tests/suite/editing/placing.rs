@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use bevy_egui::egui::{Pos2, Rect, vec2};
+use bevy_egui::egui::{Key, Modifiers, Pos2, Rect, vec2};
 use glam::{Mat3, Quat, Vec3};
 use lights_camera_models::{
     document::Selection,
@@ -24,7 +24,7 @@ use lights_camera_models::{
     },
 };
 
-use crate::helpers::support::root;
+use crate::{helpers::support::root, window::panels::Bench};
 
 /// One of the shipped scenes.
 fn shipped(name: &str) -> Scene {
@@ -225,6 +225,24 @@ fn a_copy_for_which_the_picture_has_no_room_stands_beside_the_original_and_a_mes
     let mut session = Session::default();
     session.apply(Action::Duplicate(Selection::Object(0)), &registry);
     assert!(session.messages.is_empty(), "{:?}", session.messages);
+}
+
+#[test]
+fn a_copy_that_a_wide_window_shows_whole_needs_no_framing() {
+    for (size, whole) in [(vec2(1280.0, 720.0), false), (vec2(2600.0, 700.0), true)] {
+        let mut scene = Scene::default();
+        scene.objects[0].size = 2.4;
+        let mut bench = Bench::new(Session::new(scene));
+        bench.size = size;
+        bench.apply(Action::Select(Selection::Object(0)));
+        let aspect = bench.area.aspect().expect("there is a picture");
+        assert_eq!(aspect > 2.5, whole, "{size}: {aspect}");
+        bench.key(Key::D, Modifiers::CTRL | Modifiers::COMMAND);
+        assert_eq!(bench.session.document.objects.len(), 2, "{size}");
+        let offers = |(label, _): &(&str, Box<Action>)| *label == "Frame it";
+        let said = bench.session.messages.iter().any(|note| note.offer.as_ref().is_some_and(offers));
+        assert_eq!(said, !whole, "{size}: {:?}", bench.session.messages);
+    }
 }
 
 #[test]

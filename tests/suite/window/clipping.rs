@@ -1,10 +1,16 @@
 //! The picture reports where it clips, counted in what the renderer draws.
 
-use bevy_egui::egui::{Color32, PointerButton};
+use bevy_egui::egui::{Color32, PointerButton, vec2};
+use glam::Vec3;
 use lights_camera_models::{
     channel::DebugChannel,
     document::Selection,
-    panel::state::{Action, Clipping, NoNumber, Session, ViewChange},
+    optics::TermSelection,
+    panel::{
+        marks::Lens,
+        state::{Action, Clipping, NoNumber, Session, ViewChange},
+    },
+    scene::Scene,
 };
 
 use crate::{helpers::screen::Picture, window::panels::Bench};
@@ -12,7 +18,7 @@ use crate::{helpers::screen::Picture, window::panels::Bench};
 /// A window that does not have a badge yet.
 fn bench_without(badge: &str) -> Bench {
     let mut bench = Bench::new(Session::default());
-    bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
+    bench.size = vec2(1280.0, 720.0);
     bench.settle();
     assert!(!bench.says(badge));
     bench
@@ -68,6 +74,47 @@ fn what_gives_no_number_has_a_badge_that_shows_where() {
     bench.session.facts.not_finite[0] = (0..4).map(|_| odd(Selection::Object(0))).collect();
     bench.settle();
     assert!(bench.find("Not a number: Sphere 1, Sphere 1, 2 more").is_some());
+}
+
+#[test]
+fn badges_keep_their_words_while_the_camera_moves_and_choose_them_once_it_rests() {
+    let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+    scene.objects[0].size = 0.3;
+    let mut bench = Bench::new(Session::new(scene));
+    bench.size = vec2(1280.0, 720.0);
+    let clipped = |each: u32| Clipping::new(vec![each; Clipping::GRID[0] * Clipping::GRID[1]]);
+    bench.session.facts.clipping[0] = clipped(5);
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
+    let badge = bench.find("Only the diffuse term · Show all").cloned();
+    let badge = badge.expect("a badge");
+    let is_whole = |bench: &Bench| bench.texts_just_painted().contains(&badge.label);
+    assert!(is_whole(&bench), "it covers nothing: {:?}", bench.texts_just_painted());
+    // The camera moves until the object is behind the badge. It looks straight ahead.
+    let home = bench.session.facts.eye;
+    let object = bench.session.document.objects[0].position;
+    let lens = Lens::of(&bench.session, bench.area.frame);
+    let place = |p: Vec3| lens.project(p).expect("before the camera");
+    let metre = place(object + Vec3::X).x - place(object).x;
+    let by = (badge.rect.center() - place(object)) / metre;
+    let there = home + Vec3::new(-by.x, by.y, 0.0);
+    for i in 1..=10u8 {
+        bench.session.facts.eye = home.lerp(there, f32::from(i) / 10.0);
+        bench.session.facts.clipping[0] = clipped(5 + u32::from(i));
+        bench.frame(Vec::new());
+        assert!(is_whole(&bench), "step {i}: {:?}", bench.texts_just_painted());
+    }
+    let rest = |bench: &mut Bench| (0..12).for_each(|_| drop(bench.frame(Vec::new())));
+    rest(&mut bench);
+    assert!(!is_whole(&bench), "the object is behind it");
+    bench.session.facts.eye = home;
+    bench.frame(Vec::new());
+    assert!(!is_whole(&bench), "at once");
+    rest(&mut bench);
+    assert!(is_whole(&bench), "it covers nothing again");
+    // A change of the scene counts at once.
+    bench.session.facts.eye = there;
+    bench.apply(Action::Expose(1.0));
+    assert!(!is_whole(&bench), "another scene");
 }
 
 #[cfg(target_os = "linux")]

@@ -115,13 +115,18 @@ impl Stand<'_> {
             .unwrap_or_else(|| self.lattice(original.position))
     }
 
-    /// True if an object is partly or wholly outside every view that is no wider than it must be. Floors and backdrops,
-    /// larger than the picture or around the camera, are not meant to be whole.
-    pub(in crate::panel::state) fn cuts_off(&self, index: usize) -> bool {
+    /// True if an object is partly or wholly outside pictures with this ratio of width to height; without one, outside every
+    /// view that is no wider than it must be. Floors and backdrops, larger than the picture or around the camera, are not meant
+    /// to be whole.
+    pub(in crate::panel::state) fn cuts_off(&self, index: usize, aspect: Option<f32>) -> bool {
         let Some(block) = self.taken.get(index) else { return false };
-        let is_larger = |framed: &Framed| framed.half().cmpgt(Vec2::from(self.opening)).any();
+        let opening = aspect.map_or(self.opening, |aspect| {
+            let up = (0.5 * self.scene.view_angle().vertical(aspect)).tan();
+            [aspect * up, up]
+        });
+        let is_larger = |framed: &Framed| framed.half().cmpgt(Vec2::from(opening)).any();
         match self.framed(block) {
-            Some(framed) => !framed.is_within(self.opening) && !is_larger(&framed),
+            Some(framed) => !framed.is_within(opening) && !is_larger(&framed),
             None => !block.ball_holds(self.eye),
         }
     }
@@ -370,7 +375,30 @@ mod tests {
             scene.objects = [cube(eye - 18.0 * Vec3::Y, 30.0), cube(eye + 18.0 * Vec3::X, 1.0)].into();
         });
         let stand = stand(&session, &registry);
-        assert!(!stand.cuts_off(0) && stand.cuts_off(1));
+        assert!(!stand.cuts_off(0, None) && stand.cuts_off(1, None));
+    }
+
+    #[test]
+    fn what_is_cut_off_depends_on_the_shape_of_the_picture() {
+        let (registry, mut session) = (Registry::builtin(), session_of("default"));
+        let up = (0.5 * session.document.observer.field_of_view.to_radians()).tan();
+        let (eye, turn) = (session.facts.eye, session.facts.camera);
+        // In halves of the height of a wide picture.
+        let ball = |across: f32, rise: f32| Object {
+            position: eye + turn * (4.5 * Vec3::new(across * up, rise * up, -1.0)),
+            size: 0.2,
+            ..Object::default()
+        };
+        session.document.amend(|scene| scene.objects = [ball(2.0, 0.0), ball(0.0, 1.3)].into());
+        let stand = stand(&session, &registry);
+        for (aspect, cut) in [
+            (None, [true, true]),
+            (Some(WIDE), [true, true]),
+            (Some(2.2), [false, true]),
+            (Some(1.0), [true, false]),
+        ] {
+            assert_eq!([0, 1].map(|i| stand.cuts_off(i, aspect)), cut, "{aspect:?}");
+        }
     }
 
     #[test]
