@@ -56,7 +56,7 @@ fn explaining(model: &str) -> Bench {
 /// Moves the pointer, and lets the highlight appear.
 fn point(bench: &mut Bench, at: Pos2) {
     bench.frame(vec![Event::PointerMoved(at)]);
-    (0..3).for_each(|_| drop(bench.frame(Vec::new())));
+    (0..3).for_each(|_| bench.frame(Vec::new()));
 }
 
 /// The highlighted positions: backgrounds in the selection colour. Pressed buttons are taller than a line.

@@ -349,8 +349,7 @@ fn handles_fade_when_the_pointer_rests_or_leaves_and_never_cover_the_object() {
     let lens = Lens::of(&bench.session, bench.area.rect);
     let middle = lens.project(position(&bench)).unwrap();
     let near = middle + vec2(150.0, 20.0);
-    let seconds =
-        |bench: &mut Bench, count: usize| (0..30 * count).for_each(|_| drop(bench.frame(Vec::new())));
+    let seconds = |bench: &mut Bench, count: usize| (0..30 * count).for_each(|_| bench.frame(Vec::new()));
     bench.frame(vec![Event::PointerMoved(near)]);
     bench.settle();
     bench.frame(vec![Event::PointerMoved(near + vec2(4.0, 0.0))]);
