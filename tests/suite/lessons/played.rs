@@ -16,6 +16,8 @@ use lights_camera_models::{
 use serde::de::DeserializeSeed as _;
 use serde_json::{Value, json};
 
+use crate::helpers::support::builtin;
+
 /// Width and height of the picture seen by the learner.
 const SIZE: [u32; 2] = [320, 180];
 
@@ -47,7 +49,7 @@ struct Learner {
 impl Learner {
     fn new() -> Self {
         Self {
-            registry: Registry::builtin(),
+            registry: builtin(),
             explainer: Explainer::default(),
             scene: Scene::default(),
             selection: Selection::Object(0),

@@ -17,7 +17,7 @@ use lights_camera_models::{
 
 use crate::helpers::{
     pictures::{close_up, sampled},
-    support::{changed, full_scene, read, written},
+    support::{builtin, changed, full_scene, read, written},
 };
 
 const SIZE: u32 = 96;
@@ -39,7 +39,7 @@ fn on_gpu(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<u8> {
 }
 
 fn on_cpu(scene: &Scene, samples: u32) -> Vec<u8> {
-    reference::render(scene, &Registry::builtin(), &settings(samples)).to_rgb8(&scene.display)
+    reference::render(scene, &builtin(), &settings(samples)).to_rgb8(&scene.display)
 }
 
 /// A ball in front of a background.

@@ -41,6 +41,8 @@ use lights_camera_models::{
     shader::Source,
 };
 
+use crate::helpers::support::builtin;
+
 // ── a model with everything that a panel can be asked for, and many more ──
 
 const DISTRIBUTION: Parameter =
@@ -179,7 +181,7 @@ pub struct Seen {
 
 impl Bench {
     pub fn new(session: Session) -> Self {
-        Self::with_registry(session, Registry::builtin())
+        Self::with_registry(session, builtin())
     }
 
     /// A window with a sphere and the model [`Everything`], among many models.
