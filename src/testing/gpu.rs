@@ -11,7 +11,7 @@ use crate::{
     optics::{Frame, colour::Encoding},
     parameter::Values,
     reflection::{ModelEntry, ReflectionModel},
-    render::capture::evaluate::evaluate,
+    render::capture::evaluate::Evaluator,
     shader::compose::Sources,
 };
 
@@ -41,10 +41,13 @@ pub fn on_gpu(model: &ModelEntry, sources: &Sources) -> Outcome {
     // Every choice should occur.
     let choices = model.parameters.iter().filter(|p| !p.kind.options().is_empty()).count();
     let mut comparison = Comparison::default();
+    // The shader is compiled once, which takes longer than its work.
+    let mut evaluator = Evaluator::new(sources, model).map_err(|e| e.to_string())?;
     for _ in 0..8 * (1 + choices) {
         let values = random_values(model, &mut seed);
         let pairs: Vec<_> = (0..2000).map(|_| pair(model, &mut seed)).collect();
-        let answers = evaluate(sources, model, &values, Encoding::Srgb, &pairs).map_err(|e| e.to_string())?;
+        evaluator.set(&values, Encoding::Srgb);
+        let answers = evaluator.evaluate(&pairs).map_err(|e| e.to_string())?;
         let surface = model.instantiate(&values, Encoding::Srgb);
         for ((l, v), gpu) in pairs.iter().zip(answers) {
             comparison.compare(gpu, (model, &values), &*surface, [*l, *v])?;
@@ -68,6 +71,7 @@ pub fn at_the_ends(model: &ModelEntry, sources: &Sources, seed: &mut u64) -> Out
     ends.extend((0..6).map(|_| direction(&mut directions)));
     let pairs: Vec<_> = ends.iter().flat_map(|l| ends.iter().map(|v| (*l, *v))).collect();
     let mut sensitive = false;
+    let mut evaluator = Evaluator::new(sources, model).map_err(|e| e.to_string())?;
     // All at the minimum, all at the maximum, then each at either.
     for set in 0..10 {
         let values = Values::each(model.parameters, |p| {
@@ -79,7 +83,8 @@ pub fn at_the_ends(model: &ModelEntry, sources: &Sources, seed: &mut u64) -> Out
             };
             ends.into_iter().nth(i).unwrap_or_else(|| p.default_value())
         });
-        let answers = evaluate(sources, model, &values, Encoding::Srgb, &pairs).map_err(|e| e.to_string())?;
+        evaluator.set(&values, Encoding::Srgb);
+        let answers = evaluator.evaluate(&pairs).map_err(|e| e.to_string())?;
         let surface = model.instantiate(&values, Encoding::Srgb);
         for ((l, v), gpu) in pairs.iter().zip(answers) {
             let cpu = surface.response(*l, *v, &Frame::LOCAL);

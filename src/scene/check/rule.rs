@@ -46,11 +46,31 @@ pub(crate) fn tessellation_rule(shape: &ShapeEntry) -> String {
 /// A parameter in a material: the ranges that the reflection model and the shading model declare apply, and if neither
 /// does, the range of some other that declares it.
 pub fn material_parameter(registry: &Registry, models: [&str; 2], name: &str, value: &Value) -> Rule {
+    // A legal value for another model needs no list of all declarations.
+    if own(registry, models, name).next().is_none() && others(registry, name).any(|p| p.allows(value)) {
+        return Ok(());
+    }
     match Declared::of_models(registry, models, name).refusing(value) {
         Ok(()) => Ok(()),
         Err(Some(declared)) => declared.check(value),
         Err(None) => Err(unknown_material_parameter(registry, name)),
     }
+}
+
+/// The declarations of a name by a reflection model and a shading model.
+fn own(
+    registry: &Registry,
+    [model, shading]: [&str; 2],
+    name: &str,
+) -> impl Iterator<Item = &'static Parameter> {
+    let model = registry.model(model).and_then(|m| m.parameter(name));
+    let shading = registry.shading_model(shading).and_then(|s| s.parameter(name));
+    model.into_iter().chain(shading)
+}
+
+/// The declarations of a name by all models.
+fn others(registry: &Registry, name: &str) -> impl Iterator<Item = &'static Parameter> {
+    registry.material_users().flat_map(|(_, all)| all).filter(move |p| p.name == name)
 }
 
 /// The declarations against which a value in an object's material is checked.
@@ -72,14 +92,12 @@ impl Declared {
 
     /// The declarations of a name for objects with this reflection model and this shading model.
     #[must_use]
-    pub fn of_models(registry: &Registry, [model, shading]: [&str; 2], name: &str) -> Self {
-        let model = registry.model(model).and_then(|m| m.parameter(name));
-        let shading = registry.shading_model(shading).and_then(|s| s.parameter(name));
-        let own: Vec<_> = model.into_iter().chain(shading).collect();
+    pub fn of_models(registry: &Registry, models: [&str; 2], name: &str) -> Self {
+        let own: Vec<_> = own(registry, models, name).collect();
         if !own.is_empty() {
             return Self::Own(own);
         }
-        Self::Others(registry.material_users().flat_map(|(_, all)| all).filter(|p| p.name == name).collect())
+        Self::Others(others(registry, name).collect())
     }
 
     /// All declarations.

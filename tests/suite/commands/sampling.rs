@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 
 use crate::{
     helpers::pictures::close_up,
-    helpers::support::{Run, command_in, command_of, lcm_in, names, peak, run},
+    helpers::support::{Run, command_in, lcm_in, names, peak},
     renderers::golden::read_png,
 };
 
@@ -365,6 +365,18 @@ fn a_picture_with_so_many_samples_is_one_picture_whatever_the_threads() {
 /// output.
 #[cfg(target_os = "linux")]
 fn on_terminal(folder: &Path, seconds: u32, words: &[&str], arguments: &str) -> String {
+    on_terminal_of(None, folder, seconds, words, arguments)
+}
+
+/// Like [`on_terminal`], on a terminal of a kind.
+#[cfg(target_os = "linux")]
+fn on_terminal_of(
+    kind: Option<&str>,
+    folder: &Path,
+    seconds: u32,
+    words: &[&str],
+    arguments: &str,
+) -> String {
     use std::io::Read as _;
 
     // Whoever runs the tests may ignore some signals, and programs respect that. `timeout` hands on those that it gets.
@@ -374,6 +386,7 @@ fn on_terminal(folder: &Path, seconds: u32, words: &[&str], arguments: &str) -> 
     );
     let mut script = std::process::Command::new("script")
         .args(["-qec", &command, "/dev/null"])
+        .envs(kind.map(|kind| ("TERM", kind)))
         .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
@@ -481,12 +494,8 @@ fn the_frames_of_a_converging_picture_leave_no_memory_behind() {
 #[test]
 fn an_explanation_that_takes_long_says_so_on_a_terminal() {
     let folder = folder();
-    let lcm = env!("CARGO_BIN_EXE_lcm");
-    let line = format!(
-        "timeout 8 {lcm} explain softbox.json --at 32,18 --size 64x36 --light-samples 1048576 --derivatives"
-    );
-    let mut command = command_of(Path::new("script"), folder.path(), ["-qec", &line, "/dev/null"]);
-    command.env("TERM", "xterm");
-    let shown = run(command, b"");
-    assert!(shown.out.contains("explaining the pixel") && shown.out.contains("so far"), "{}", shown.out);
+    let arguments = "explain softbox.json --at 32,18 --size 64x36 --light-samples 1048576 --derivatives";
+    let words = ["explaining the pixel", "so far"];
+    let shown = on_terminal_of(Some("xterm"), folder.path(), 8, &words, arguments);
+    assert!(words.iter().all(|word| shown.contains(word)), "{shown}");
 }

@@ -150,7 +150,7 @@ impl Window<'_> {
                 picture.write(&file);
                 panic!("never showed {what}; {}; ended: {ended:?}; said: {}", file.display(), self.said());
             }
-            thread::sleep(Duration::from_millis(10));
+            thread::sleep(Duration::from_millis(20));
         }
     }
 

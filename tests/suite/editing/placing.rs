@@ -486,13 +486,14 @@ fn a_new_light_shows_the_scene_and_does_not_blow_it_out() {
         ("large", dark(large)),
         ("shiny", shiny),
     ] {
+        let before = brightness(&Session::new(scene.clone()), &registry);
         for kind in registry.lights() {
             let kind = kind.declaration.id;
             let mut session = Session::new(scene.clone());
-            let before = brightness(&session, &registry);
+            let mut after = Vec::new();
             for nth in 0..3 {
                 session.apply(Action::AddLight(kind.to_owned()), &registry);
-                let after = brightness(&session, &registry);
+                after = brightness(&session, &registry);
                 let clipped =
                     |all: &[f32]| all.iter().filter(|b| **b > 1.0).count() as f32 / all.len() as f32;
                 let more = clipped(&after) - clipped(&before);
@@ -501,7 +502,6 @@ fn a_new_light_shows_the_scene_and_does_not_blow_it_out() {
                 let most = if kind == "environment" { 0.025 } else { 0.02 };
                 assert!(more < most, "{what}, {kind} {nth}: {more} of the objects clip: {light:?}");
             }
-            let after = brightness(&session, &registry);
             let gain = after.iter().zip(&before).map(|(a, b)| a - b).fold(0.0, f32::max);
             assert!(gain > 0.04, "{what}, {kind}: the brightest gain is {gain}");
         }
@@ -512,10 +512,10 @@ fn a_new_light_shows_the_scene_and_does_not_blow_it_out() {
 fn a_new_light_is_noticed_at_once() {
     let registry = Registry::builtin();
     let shown = |b: f32| srgb_encode(b.min(1.0));
+    let before = brightness(&Session::default(), &registry);
     for kind in registry.lights() {
         let kind = kind.declaration.id;
         let mut session = Session::default();
-        let before = brightness(&session, &registry);
         session.apply(Action::AddLight(kind.to_owned()), &registry);
         let after = brightness(&session, &registry);
         let gains = after.iter().zip(&before).map(|(a, b)| shown(*a) - shown(*b));
@@ -552,21 +552,27 @@ fn crowded(registry: &Registry) -> Session {
 #[test]
 fn each_of_many_new_lights_can_be_seen() {
     let registry = Registry::builtin();
+    // Adds a light, and returns the brightness with it.
+    let add = |session: &mut Session, before: &[f32], (kind, nth): (&str, usize)| {
+        session.apply(Action::AddLight(kind.to_owned()), &registry);
+        let after = brightness(session, &registry);
+        let shown = |b: f32| srgb_encode(b.min(1.0));
+        let mut gains: Vec<_> = after.iter().zip(before).map(|(a, b)| shown(*a) - shown(*b)).collect();
+        gains.sort_by(f32::total_cmp);
+        // Spots reach little of the scene.
+        let gain = gains[gains.len() * if kind == "spot" { 995 } else { 970 } / 1000];
+        let cd = session.document.lights.last().map_or(0.0, |l| l.intensity);
+        assert!(gain > 0.035, "{kind} {nth} of {cd}: a gain of {gain}");
+        after
+    };
+    let mut session = crowded(&registry);
+    let mut before = brightness(&session, &registry);
+    for nth in 0..4 {
+        before = add(&mut session, &before, ("point", nth));
+    }
+    // Each kind as the fifth.
     for kind in ["point", "ambient", "directional", "spot"] {
-        let mut session = crowded(&registry);
-        for nth in 0..5 {
-            let kind = if nth < 4 { "point" } else { kind };
-            let before = brightness(&session, &registry);
-            session.apply(Action::AddLight(kind.to_owned()), &registry);
-            let after = brightness(&session, &registry);
-            let shown = |b: f32| srgb_encode(b.min(1.0));
-            let mut gains: Vec<_> = after.iter().zip(&before).map(|(a, b)| shown(*a) - shown(*b)).collect();
-            gains.sort_by(f32::total_cmp);
-            // Spots reach little of the scene.
-            let gain = gains[gains.len() * if kind == "spot" { 995 } else { 970 } / 1000];
-            let cd = session.document.lights.last().map_or(0.0, |l| l.intensity);
-            assert!(gain > 0.035, "{kind} {nth} of {cd}: a gain of {gain}");
-        }
+        add(&mut session.clone(), &before, (kind, 4));
     }
 }
 

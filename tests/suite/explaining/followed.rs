@@ -4,7 +4,7 @@ use std::fs;
 
 use lights_camera_models::{
     custom,
-    explain::{self, agrees, reading},
+    explain::{self, Explainer, agrees, reading},
     reference::Settings,
     reflection::{Declaration, EquationPart, ModelEntry, Quantity, Term},
     registry::Registry,
@@ -126,6 +126,7 @@ fn the_text_of_random_pixels_can_be_calculated_line_by_line() {
     let settings = Settings { width: 64, height: 48, samples: 1, ..Settings::default() };
     let mut seed = 4;
     let mut count = 0;
+    let mut explainer = Explainer::default();
     for model in registry.models() {
         for shading in ["flat", "gouraud", "phong", "derivative"] {
             let mut scene = Scene { reflection_model: model.declaration.id.to_owned(), ..Scene::default() };
@@ -144,7 +145,7 @@ fn the_text_of_random_pixels_can_be_calculated_line_by_line() {
             spot(&mut scene.lights[1]);
             for _ in 0..4 {
                 let at = [18 + (28.0 * random(&mut seed)) as u32, 12 + (24.0 * random(&mut seed)) as u32];
-                let explained = explain::pixel(&scene, &registry, &settings, at).expect("inside");
+                let explained = explainer.pixel(&scene, &registry, &settings, at).expect("inside");
                 let text = explained.to_text();
                 let (lines, wrong) = wrong_lines(&text);
                 assert!(

@@ -25,7 +25,7 @@ fn explaining(scene: Scene) -> Bench {
 
 /// A window with a scene and a pinned pixel at that place of its first view.
 fn explaining_at(scene: Scene, place: impl Fn(Rect) -> Pos2) -> Bench {
-    let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
+    let mut bench = Bench::new(Session::new(scene));
     bench.size = vec2(1600.0, 2000.0);
     bench.session.settings.bottom_height = 1100.0;
     bench.apply(Action::Select(Selection::Object(0)));

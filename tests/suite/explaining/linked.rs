@@ -19,7 +19,6 @@ use lights_camera_models::{
         theme::{self, DARK},
     },
     parameter::Values,
-    registry::Registry,
     scene::{Light, Part, Scene},
 };
 
@@ -29,7 +28,7 @@ use crate::window::panels::{Bench, Seen};
 fn bench(model: &str, tab: &str) -> Bench {
     let scene =
         Scene { reflection_model: model.to_owned(), shading_model: "phong".to_owned(), ..Scene::default() };
-    let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
+    let mut bench = Bench::new(Session::new(scene));
     bench.size = vec2(1600.0, 1200.0);
     bench.session.settings.bottom_height = 420.0;
     bench.apply(Action::Select(Selection::Object(0)));
@@ -56,7 +55,7 @@ fn explaining(model: &str) -> Bench {
 /// Moves the pointer, and lets the highlight appear.
 fn point(bench: &mut Bench, at: Pos2) {
     bench.frame(vec![Event::PointerMoved(at)]);
-    (0..3).for_each(|_| drop(bench.frame(Vec::new())));
+    (0..3).for_each(|_| bench.frame(Vec::new()));
 }
 
 /// The highlighted positions: backgrounds in the selection colour. Pressed buttons are taller than a line.
@@ -533,7 +532,7 @@ fn pictures_of_explain() -> Result<(), Box<dyn std::error::Error>> {
                 shading_model: id.to_owned(),
                 ..Scene::default()
             };
-            let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
+            let mut bench = Bench::new(Session::new(scene));
             bench.size = vec2(width, height);
             bench.session.settings.theme = theme;
             bench.session.settings.scale = scale;
@@ -563,7 +562,7 @@ fn explain_has_the_columns_that_have_room() {
         (vec2(1280.0, 720.0), 200, 1),
     ] {
         let scene = Scene { shading_model: "gouraud".to_owned(), ..Scene::default() };
-        let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
+        let mut bench = Bench::new(Session::new(scene));
         bench.size = size;
         bench.session.settings.scale = scale;
         bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));

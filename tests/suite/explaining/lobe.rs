@@ -21,7 +21,7 @@ use lights_camera_models::{
 use crate::window::panels::Bench;
 
 fn bench(scene: Scene) -> Bench {
-    let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
+    let mut bench = Bench::new(Session::new(scene));
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
     bench.settle();
@@ -134,7 +134,7 @@ fn it_is_calculated_when_something_changed_and_only_then() {
 
 #[test]
 fn it_hides_nothing_until_it_is_asked_for() {
-    let mut bench = Bench::with_registry(Session::new(scene("phong", "phong")), Registry::builtin());
+    let mut bench = Bench::new(Session::new(scene("phong", "phong")));
     bench.size = vec2(1280.0, 720.0);
     bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
     bench.apply(Action::View(ViewChange::Pin(Some(Pin::middle(0)))));

@@ -14,7 +14,6 @@ use lights_camera_models::{
         theme::DARK,
     },
     reflection::Term,
-    registry::Registry,
     scene::{Light, Object, Part, Scene, rotation::rotation},
 };
 
@@ -29,7 +28,7 @@ fn scene(model: &str, shading: &str) -> Scene {
 
 /// A window with a pinned pixel of the sphere.
 fn bench(scene: Scene) -> Bench {
-    let mut bench = Bench::with_registry(Session::new(scene), Registry::builtin());
+    let mut bench = Bench::new(Session::new(scene));
     bench.size = vec2(1280.0, 900.0);
     bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
     bench.settle();

@@ -1,13 +1,13 @@
 //! The explanation of a pixel against the picture: `explain::pixel` and `lcm explain`.
 
-use std::fs;
+use std::{fs, sync::atomic::AtomicBool};
 
 use glam::Vec3;
 use lights_camera_models::{
     explain::{self, ExplainError, Explainer, Explanation, Place, Spot},
     light::Incident,
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
-    reference::{self, Settings},
+    reference::{self, LightSamples, Settings},
     registry::Registry,
     scene::{
         Background, Display, Light, Object, Scene,
@@ -17,12 +17,12 @@ use lights_camera_models::{
 };
 use serde_json::json;
 
-use crate::helpers::support::{lcm, lcm_in, root, shipped_scenes, written};
+use crate::helpers::support::{builtin, lcm, lcm_in, root, shipped_scenes, written};
 
 const SMALL: Settings = Settings { width: 160, height: 90, samples: 1, terms: TermSelection::All };
 
 fn at(scene: &Scene, pixel: [u32; 2]) -> Explanation {
-    explain::pixel(scene, &Registry::builtin(), &SMALL, pixel).expect("in the picture")
+    explain::pixel(scene, &builtin(), &SMALL, pixel).expect("in the picture")
 }
 
 /// The default scene with other models.
@@ -95,6 +95,9 @@ fn adds_up(explained: &Explanation, spot: &Spot) -> Result<(), String> {
     }
 }
 
+/// The samples of light with extent for each of the shading models.
+const SAMPLES: [u32; 4] = [LightSamples::DEFAULT, 64, 64, 64];
+
 #[test]
 fn every_number_leads_to_the_code_of_the_picture() {
     let registry = Registry::builtin();
@@ -103,7 +106,10 @@ fn every_number_leads_to_the_code_of_the_picture() {
     let mut refused = 0;
     for path in shipped_scenes() {
         let shipped = load::file(&path, &registry, Defaults::Use).unwrap_or_else(|e| panic!("{e}")).scene;
-        for shading in registry.shading_models() {
+        // As the window does: meshes are built once.
+        let mut explainer = Explainer::default();
+        // Both take the same samples of light with extent, so that few compare as well as the usual number.
+        for (shading, count) in registry.shading_models().iter().zip(SAMPLES) {
             let view = (random(&mut seed) * (shipped.variants.len() + 1) as f32) as usize;
             let (mut scene, terms) = shipped.seen(view, &registry).expect("there is such a view");
             let models = registry.models();
@@ -123,11 +129,11 @@ fn every_number_leads_to_the_code_of_the_picture() {
             scene.display.background = Background::ALL[(objects + backgrounds) / 12 % Background::ALL.len()];
             // Twelve pixels of each are compared, whatever its size.
             let settings = Settings { width: SMALL.width / 2, height: SMALL.height / 2, terms, ..SMALL };
-            let picture = reference::render(&scene, &registry, &settings);
+            let (samples, odd) = (LightSamples::of(count), AtomicBool::default());
+            let picture = reference::render_samples(&scene, &registry, &settings, samples, &odd);
             let codes = picture.to_rgb8(&scene.display);
             let pick = |side: u32, seed: &mut u64| ((random(seed) * side as f32) as u32).min(side - 1);
-            // As the window does: meshes are built once.
-            let mut explainer = Explainer::default();
+            explainer.set_light_samples(count);
             let mut previous: Option<Explanation> = None;
             for _ in 0..12 {
                 let pixel = [pick(settings.width, &mut seed), pick(settings.height, &mut seed)];
@@ -151,6 +157,7 @@ fn every_number_leads_to_the_code_of_the_picture() {
             }
         }
     }
+    assert_eq!(registry.shading_models().len(), SAMPLES.len());
     assert!(objects > 300 && backgrounds > 100 && refused > 300, "{objects} {backgrounds} {refused}");
 }
 
@@ -302,8 +309,7 @@ fn terms_that_are_left_out_are_left_out() {
     let mut specular = None;
     for terms in TermSelection::ALL {
         let settings = Settings { terms, ..SMALL };
-        let explained =
-            explain::pixel(&scene, &Registry::builtin(), &settings, MIDDLE).expect("in the picture");
+        let explained = explain::pixel(&scene, &builtin(), &settings, MIDDLE).expect("in the picture");
         let lit = &explained.seen.as_ref().expect("the sphere").spots[0].lights[0];
         assert!(near(lit.contribution, lit.response.select(terms) * lit.arriving, 1e-5), "{terms:?}");
         let text = explained.to_text();
@@ -442,10 +448,11 @@ fn clipping_at_the_near_plane_and_large_triangles_are_explained_too() {
         scene.observer.direction = Vec3::new(0.1, -0.3, -1.0);
         let picture = reference::render(&scene, &registry, &SMALL);
         let codes = picture.to_rgb8(&scene.display);
+        let mut explainer = Explainer::default();
         let mut seen = 0;
         for i in (0..picture.pixels.len()).step_by(97) {
             let pixel = [i as u32 % SMALL.width, i as u32 / SMALL.width];
-            let explained = at(&scene, pixel);
+            let explained = explainer.pixel(&scene, &registry, &SMALL, pixel).expect("in the picture");
             let code = [codes[3 * i], codes[3 * i + 1], codes[3 * i + 2]];
             wrong(&explained, code, picture.pixels[i].truncate())
                 .unwrap_or_else(|what| panic!("{shading} {pixel:?}: {what}"));

@@ -22,7 +22,10 @@ use lights_camera_models::{
     testing::random,
 };
 
-use crate::{helpers::support::lcm, window::panels::Bench};
+use crate::{
+    helpers::support::{builtin, lcm},
+    window::panels::Bench,
+};
 
 fn bench_of(session: Session, registry: Registry) -> Bench {
     let mut bench = Bench::with_registry(session, registry);
@@ -33,7 +36,7 @@ fn bench_of(session: Session, registry: Registry) -> Bench {
 }
 
 fn bench(scene: Scene) -> Bench {
-    bench_of(Session::new(scene), Registry::builtin())
+    bench_of(Session::new(scene), builtin())
 }
 
 fn scene(model: &str, shading: &str) -> Scene {
@@ -214,7 +217,7 @@ fn the_code_is_that_of_the_picture_in_every_shading_model() {
         let mut session = Session::new(scene(model, shading));
         session.facts.camera = Quat::from_rotation_y(turn);
         session.facts.eye = Vec3::splat(5.0) + session.facts.camera * Vec3::new(0.3, 0.2, 4.5);
-        let mut bench = bench_of(session, Registry::builtin());
+        let mut bench = bench_of(session, builtin());
         point_at_sphere(&mut bench);
         let size = shown(&bench).size;
         let codes = picture(&bench, size);

@@ -1,4 +1,4 @@
-//! Pages: small, self-contained, and with the pictures of `lcm render`, drawn by Chromium with WebGPU and
+//! Pages: small, self-contained, and with the pictures of the program's renderers, drawn by Chromium with WebGPU and
 //! with WebGL 2.
 
 #![cfg(target_os = "linux")]
@@ -6,15 +6,15 @@
 use std::{
     fs,
     path::{Path, PathBuf},
-    sync::atomic::AtomicBool,
 };
 
 use lights_camera_models::{
     custom,
     export::{Export, ExportError, Progress, Request, html},
     optics::TermSelection,
-    reference::{self, LightSamples, Settings},
+    reference::Settings,
     registry::Registry,
+    render::capture::gpu::{GpuRenderer, Output},
     scene::{
         Scene, has_extent,
         load::{self, Defaults},
@@ -23,8 +23,9 @@ use lights_camera_models::{
 use serde_json::{Value, json};
 
 use crate::{
-    helpers::browser::{Browser, rgb},
+    helpers::browser::Browser,
     helpers::pages::PAGES,
+    helpers::pictures::sampled,
     helpers::support::{lcm, root},
 };
 
@@ -184,26 +185,34 @@ fn size_of(scene: &Scene) -> [u32; 2] {
     [WIDTH / share, HEIGHT / share]
 }
 
-fn rendered(scene: &Path, folder: &Path, options: &[&str]) -> Vec<u8> {
-    let file = folder.join("rendered.png");
-    let (scene, out) = (scene.to_str().expect("Unicode"), file.to_str().expect("Unicode"));
-    // A page takes 64 samples of light with extent, and only the CPU renderer can be set to that.
-    let lit = load::file(Path::new(scene), &Registry::builtin(), Defaults::Refuse).expect("valid").scene;
-    let extended = has_extent(lit.shining(), &Registry::builtin());
-    let [across, down] = size_of(&lit);
-    let size = format!("{across}x{down}");
-    let mut arguments = vec!["render", scene, "-o", out, "--size", &size, "--samples", "1", "-q"];
-    arguments.extend(match extended {
-        true => &["--renderer", "cpu", "--light-samples", "64"][..],
-        false => &["--renderer", "gpu"],
-    });
-    arguments.extend(options);
-    let run = lcm(&arguments, "");
-    assert_eq!(run.status, Some(0), "{}", run.err);
-    let (pixels, width) = rgb(&fs::read(&file).expect("a picture"));
-    fs::remove_file(&file).expect("gone");
-    assert_eq!(width, across as usize);
-    pixels
+/// The renderers of `lcm render`, without a start of the program and its driver for each picture.
+struct Program(GpuRenderer);
+
+impl Program {
+    fn new() -> Self {
+        Self(GpuRenderer::new(WIDTH, HEIGHT, 1, Output::Display).expect("software Vulkan is installed"))
+    }
+
+    /// The picture of a view, with one sample per pixel.
+    fn rendered(&mut self, scene: &Scene, view: usize) -> Vec<u8> {
+        let registry = Registry::builtin();
+        let (seen, terms) = scene.seen(view, &registry).expect("it has this view");
+        assert_eq!(terms, TermSelection::All);
+        if has_extent(scene.shining(), &registry) {
+            // A page takes 64 samples of light with extent, and only the CPU renderer can be set to that.
+            return sampled_on_cpu(&seen, &registry, 64);
+        }
+        self.0.set_scene(seen);
+        self.0.settle().expect("the GPU draws");
+        self.0.read_rgb8().expect("the picture can be read")
+    }
+}
+
+/// The picture of a scene by the CPU renderer, with one sample per pixel and so many of light with extent.
+fn sampled_on_cpu(scene: &Scene, registry: &Registry, count: u32) -> Vec<u8> {
+    let [width, height] = size_of(scene);
+    let settings = Settings { width, height, samples: 1, terms: TermSelection::All };
+    sampled(scene, registry, &settings, count)
 }
 
 /// Sets a control of the panel as a user does, and waits until the picture has followed.
@@ -265,6 +274,7 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
     fs::copy(shipped("wall_washer.ies"), folder.path().join("wall_washer.ies")).expect("copied");
     let page_file = folder.path().join("page.html");
     let lamps = scene(&shipped("gouraud_misses_highlight.json"));
+    let mut program = Program::new();
     let mut seen = 0;
     for (i, case) in cases.iter().enumerate() {
         let mut text: Value =
@@ -287,8 +297,12 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
         }
         let changed = folder.path().join("changed.json");
         fs::write(&changed, text.to_string()).expect("written");
-        let shading = case.shading.map(|s| ["--shading", s]);
-        let expected = rendered(&changed, folder.path(), shading.as_ref().map_or(&[], |s| s.as_slice()));
+        let mut changed = scene(&changed);
+        if let Some(shading) = case.shading {
+            shading.clone_into(&mut changed.shading_model);
+            changed.objects.iter_mut().for_each(|object| object.shading_model = None);
+        }
+        let expected = program.rendered(&changed, 0);
         let [across, down] = size_of(&original);
         browser.resize(across, down);
         // What a control changes, the page calculates before either draws: one of them shows it.
@@ -321,8 +335,9 @@ fn pages_show_the_pictures_of_the_program_with_webgpu_and_webgl() {
             continue;
         }
         // A wrong twin would be detected.
-        let wrong = rendered(&shipped(case.scene), folder.path(), &["--exposure", "0.1"]);
-        let off = difference(&wrong, &expected);
+        let mut wrong = scene(&shipped(case.scene));
+        wrong.display.exposure = 0.1;
+        let off = difference(&program.rendered(&wrong, 0), &expected);
         assert!(off.mean > MEAN || off.beyond > BEYOND, "{}: {off:?}", case.scene);
     }
     assert_eq!(seen, 2 * cases.len() - cases.iter().filter(|case| case.knob.is_some()).count());
@@ -351,12 +366,7 @@ fn pages_have_light_with_extent() {
     let read = scene(&file);
     let [width, height] = size_of(&read);
     browser.resize(width, height);
-    let rendered = |count: u32, scene: &Scene| {
-        let settings = Settings { width, height, samples: 1, terms: TermSelection::All };
-        let samples = LightSamples { first: 0, count };
-        let picture = reference::render_samples(scene, &registry, &settings, samples, &AtomicBool::default());
-        picture.to_rgb8(&scene.display)
-    };
+    let rendered = |count: u32, scene: &Scene| sampled_on_cpu(scene, &registry, count);
     let expected = rendered(64, &read);
     let page_file = folder.path().join("page.html");
     fs::write(&page_file, page(&read).expect("a page")).expect("written");
@@ -384,7 +394,7 @@ fn pages_have_the_background_of_the_scene() {
     let folder = tempfile::tempdir().expect("a folder");
     let (file, page_file) = (folder.path().join("scene.json"), folder.path().join("page.html"));
     let text = fs::read_to_string(shipped("default.json")).expect("readable");
-    let mut pictures = Vec::new();
+    let (mut pictures, mut program) = (Vec::new(), Program::new());
     for (background, tone_mapping) in [("colour", "none"), ("colour", "aces"), ("gradient", "reinhard")] {
         let mut json: Value = serde_json::from_str(&text).expect("JSON");
         json["display"] = json!({
@@ -392,8 +402,9 @@ fn pages_have_the_background_of_the_scene() {
             "tone_mapping": tone_mapping,
         });
         fs::write(&file, json.to_string()).expect("written");
-        let expected = rendered(&file, folder.path(), &[]);
-        fs::write(&page_file, page(&scene(&file)).expect("a page")).expect("written");
+        let shown = scene(&file);
+        let expected = program.rendered(&shown, 0);
+        fs::write(&page_file, page(&shown).expect("a page")).expect("written");
         for renderer in ["webgpu", "webgl"] {
             browser.open(&page_file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
             let (shown, _) = browser.look();
@@ -417,11 +428,12 @@ fn a_page_holds_every_view_with_a_switch() {
     let Some(browser) = Browser::start() else { return };
     browser.resize(WIDTH, HEIGHT);
     let folder = tempfile::tempdir().expect("a folder");
-    let file = shipped("compare_diffuse_models.json");
+    let scene = scene(&shipped("compare_diffuse_models.json"));
     let page_file = folder.path().join("page.html");
-    fs::write(&page_file, page(&scene(&file)).expect("a page")).expect("written");
+    fs::write(&page_file, page(&scene).expect("a page")).expect("written");
     let text = |what: &str| browser.run(what).as_str().unwrap_or_default().to_owned();
-    let expected = ["A", "B", "C"].map(|view| rendered(&file, folder.path(), &["--view", view]));
+    let mut program = Program::new();
+    let expected = [0, 1, 2].map(|view| program.rendered(&scene, view));
     for renderer in ["webgpu", "webgl"] {
         browser.open(&page_file, &format!("renderer={renderer}&picture={WIDTH}x{HEIGHT}&samples=1"));
         for view in [0, 2, 1, 0] {

@@ -10,6 +10,8 @@ use lights_camera_models::{
     scene::{Light, Object, Observer, Scene},
 };
 
+use super::support::builtin;
+
 /// The folder that `scripts/pictures` names.
 pub fn picture_folder() -> Result<PathBuf, Box<dyn Error>> {
     let folder = env::var_os("LCM_PANEL_PICTURES").ok_or("LCM_PANEL_PICTURES must name a folder")?;
@@ -33,7 +35,7 @@ pub fn on_gpu(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<Vec3> {
 
 /// A scene with one object that fills much of the picture and one light next to the observer.
 pub fn close_up(shape: &str, light: &str) -> Scene {
-    let registry = Registry::builtin();
+    let registry = builtin();
     // Types from elsewhere are set up by their tests.
     let declaration = registry.light(light).map(|entry| entry.declaration);
     let mut scene = Scene {

@@ -89,9 +89,12 @@ impl Screen {
 
     /// The present content of the screen.
     pub fn look(&self) -> Picture {
-        let bytes =
-            fs::read(self.memory.path().join("Xvfb_screen0")).expect("the server keeps its picture there");
-        Picture::from_xwd(&bytes)
+        Picture::from_xwd(&self.framebuffer())
+    }
+
+    /// That content as the server keeps it.
+    fn framebuffer(&self) -> Vec<u8> {
+        fs::read(self.memory.path().join("Xvfb_screen0")).expect("the server keeps its picture there")
     }
 }
 
@@ -132,6 +135,9 @@ impl Running<'_> {
     /// Software Vulkan on a busy machine takes its time.
     const DEADLINE: Duration = Duration::from_secs(60);
 
+    /// How long a picture that stays the same is not looked at again, which would take time from the program.
+    const SAME: Duration = Duration::from_millis(200);
+
     /// The program's standard error so far.
     pub fn said(&self) -> String {
         fs::read_to_string(&self.said).expect("readable")
@@ -152,13 +158,20 @@ impl Running<'_> {
     /// Waits until the screen satisfies a condition.
     pub fn until(&mut self, what: &str, mut shows: impl FnMut(&Picture) -> bool) -> Picture {
         let begin = Instant::now();
+        let (mut last, mut looked) = (Vec::new(), begin);
         loop {
-            let picture = self.screen.look();
-            if shows(&picture) {
-                return picture;
+            let now = self.screen.framebuffer();
+            if now != last || looked.elapsed() > Self::SAME {
+                looked = Instant::now();
+                let picture = Picture::from_xwd(&now);
+                if shows(&picture) {
+                    return picture;
+                }
+                last = now;
             }
             let ended = self.program.try_wait().expect("the state of a child is known");
             if ended.is_some() || begin.elapsed() > Self::DEADLINE {
+                let picture = Picture::from_xwd(&last);
                 let file = std::env::temp_dir().join("lcm_screen.png");
                 picture.write(&file);
                 panic!("never showed {what}; {}; ended: {ended:?}; said: {}", file.display(), self.said());

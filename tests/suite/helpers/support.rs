@@ -6,6 +6,7 @@ use std::{
     io::Write as _,
     path::{Path, PathBuf},
     process::{Command, Output, Stdio},
+    sync::LazyLock,
 };
 
 use lights_camera_models::{
@@ -31,6 +32,12 @@ pub fn check_wording(messages: &str) {
         assert_eq!(wrong, None, "{message}");
         assert!(!message.contains("  ") && !message.ends_with(';'), "{message}");
     }
+}
+
+/// The built-in registry. It is made once, and clones share what takes long to calculate: the curves of surfaces.
+pub fn builtin() -> Registry {
+    static BUILTIN: LazyLock<Registry> = LazyLock::new(Registry::builtin);
+    BUILTIN.clone()
 }
 
 /// The shipped scenes.
@@ -114,7 +121,7 @@ pub fn said(text: &str) -> String {
 
 /// The messages of reading bytes; empty if they are a valid scene.
 pub fn said_of_bytes(bytes: &[u8]) -> String {
-    match load::from_bytes(bytes, "scene.json", &Registry::builtin(), Defaults::Refuse) {
+    match load::from_bytes(bytes, "scene.json", &builtin(), Defaults::Refuse) {
         Ok(_) => String::new(),
         Err(error) => error.to_string(),
     }
@@ -122,7 +129,7 @@ pub fn said_of_bytes(bytes: &[u8]) -> String {
 
 /// Reads a valid scene.
 pub fn read(text: &str) -> Scene {
-    match load::from_text(text, "scene.json", &Registry::builtin(), Defaults::Refuse) {
+    match load::from_text(text, "scene.json", &builtin(), Defaults::Refuse) {
         Ok(loaded) => loaded.scene,
         Err(error) => panic!("{error}\n{text}"),
     }
@@ -130,7 +137,7 @@ pub fn read(text: &str) -> Scene {
 
 /// The text of a scene file.
 pub fn written(scene: &Scene) -> String {
-    save::to_json(scene, None, &Registry::builtin())
+    save::to_json(scene, None, &builtin())
 }
 
 /// The result of a run of the program.

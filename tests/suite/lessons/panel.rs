@@ -790,7 +790,7 @@ fn page_keys_scroll_long_text_and_the_footer_stays() {
         bench.key(Key::F6, Modifiers::NONE);
         bench.key(Key::F6, Modifiers::NONE);
         bench.key(Key::PageDown, Modifiers::NONE);
-        (0..20).for_each(|_| drop(bench.frame(Vec::new())));
+        (0..20).for_each(|_| bench.frame(Vec::new()));
         assert!(
             heading(&bench).is_none_or(|now| now < top - 100.0),
             "{size:?} {scale}: {:?}",
@@ -814,7 +814,7 @@ fn the_reason_of_an_answer_is_scrolled_into_sight() {
         go(&mut bench, LessonCommand::Open(LessonSource::Shipped(lamp)));
         go(&mut bench, LessonCommand::GoTo(step));
         go(&mut bench, LessonCommand::Answer(answer));
-        (0..30).for_each(|_| drop(bench.frame(Vec::new())));
+        (0..30).for_each(|_| bench.frame(Vec::new()));
         let next = bench.find("Next").expect("a button").rect;
         let texts = bench.texts_in_sight();
         let place =
@@ -837,7 +837,7 @@ fn after_a_wrong_answer_the_others_are_in_sight_and_in_a_presentation_the_verdic
         [(false, [&both[..], &["One half.", "All of it."][..]].concat()), (true, both.into())]
     {
         bench.apply(Action::View(ViewChange::Presenting(presenting)));
-        (0..30).for_each(|_| drop(bench.frame(Vec::new())));
+        (0..30).for_each(|_| bench.frame(Vec::new()));
         let next = bench.find("Next").expect("a button").rect;
         let texts = bench.texts_in_sight();
         for start in seen {
@@ -1001,7 +1001,7 @@ fn the_controls_that_a_step_names_get_a_ring_and_come_into_view() {
     bench.apply(Action::View(ViewChange::Scale(200)));
     assert_eq!(rings(&mut bench), []);
     go(&mut bench, LessonCommand::GoTo(2));
-    (0..60).for_each(|_| drop(bench.frame(Vec::new())));
+    (0..60).for_each(|_| bench.frame(Vec::new()));
     let knob = bench.field("shininess").rect;
     let inside = bench.area.rect.right()..1280.0 / bench.ctx.zoom_factor();
     let screen = Rect::from_x_y_ranges(inside.start..=inside.end, 20.0..=330.0);
@@ -1027,7 +1027,7 @@ fn a_few_slow_frames_are_enough_to_show_a_knob() {
     let mut bench = desk.bench(Session::default());
     bench.apply(Action::View(ViewChange::Scale(200)));
     bench.session.apply(Action::Lesson(LessonCommand::GoTo(2)), &bench.registry);
-    (0..4).for_each(|_| drop(bench.frame(Vec::new())));
+    (0..4).for_each(|_| bench.frame(Vec::new()));
     let knob = bench.field("shininess").rect;
     assert!(knob.top() > 20.0 && knob.bottom() < 330.0, "scrolled into view: {knob:?}");
 }
@@ -1040,7 +1040,7 @@ fn a_part_that_a_step_points_at_is_in_sight() {
     let mut bench = desk.bench(Session::default());
     go(&mut bench, LessonCommand::GoTo(2));
     bench.apply(Action::View(ViewChange::BottomTab(EXPLAIN_TAB.to_owned())));
-    (0..60).for_each(|_| drop(bench.frame(Vec::new())));
+    (0..60).for_each(|_| bench.frame(Vec::new()));
     let row = bench.find("Point 1").expect("the scene list is unfolded").rect;
     let tab = bench.find("Explain").expect("a tab").rect;
     let shading = bench.find("Shading: Phong").expect("a choice").rect;
@@ -1069,7 +1069,7 @@ fn the_line_that_a_task_asks_to_read_is_in_sight_for_every_point() {
         go(&mut bench, LessonCommand::GoTo(step));
         for at in [[0.02, 0.03], [0.05, 0.08], [0.04, 0.05]] {
             bench.apply(Action::View(ViewChange::Pin(Some(Pin { view: 0, at }))));
-            (0..60).for_each(|_| drop(bench.frame(Vec::new())));
+            (0..60).for_each(|_| bench.frame(Vec::new()));
             let texts = bench.texts_in_sight();
             let found = texts.iter().find(|(text, _)| text.contains(line));
             let (_, place) = found.unwrap_or_else(|| panic!("step {step}, {at:?}: {texts:?}"));

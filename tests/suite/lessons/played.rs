@@ -1,7 +1,7 @@
 //! Every shipped lesson from start to end: each task can be solved as its text asks, is not solved before,
 //! and is not solved by a plausible mistake.
 
-use std::path::Path;
+use std::{path::Path, sync::atomic::AtomicBool};
 
 use lights_camera_models::{
     custom,
@@ -9,15 +9,19 @@ use lights_camera_models::{
     explain::{Explainer, Explanation},
     lesson::{Goal, Lesson, Situation, WindowFacts, shipped::LESSONS},
     optics::TermSelection,
-    reference::Settings,
+    reference::{self, LightSamples, Settings},
     registry::Registry,
     scene::{Scene, SceneIn, SceneOf},
 };
 use serde::de::DeserializeSeed as _;
 use serde_json::{Value, json};
 
+use crate::helpers::support::builtin;
+
 /// Width and height of the picture seen by the learner.
 const SIZE: [u32; 2] = [320, 180];
+const SETTINGS: Settings =
+    Settings { width: SIZE[0], height: SIZE[1], samples: 1, terms: TermSelection::All };
 
 /// An action of a learner.
 enum Deed {
@@ -47,7 +51,7 @@ struct Learner {
 impl Learner {
     fn new() -> Self {
         Self {
-            registry: Registry::builtin(),
+            registry: builtin(),
             explainer: Explainer::default(),
             scene: Scene::default(),
             selection: Selection::Object(0),
@@ -78,21 +82,29 @@ impl Learner {
         scene
     }
 
-    fn explained(&mut self, pixel: [u32; 2]) -> Explanation {
-        let scene = self.seen();
-        let [width, height] = SIZE;
-        let settings = Settings { width, height, samples: 1, terms: TermSelection::All };
-        self.explainer.pixel(&scene, &self.registry, &settings, pixel).expect("within the picture")
+    fn explained(&mut self, scene: &Scene, pixel: [u32; 2]) -> Explanation {
+        self.explainer.pixel(scene, &self.registry, &SETTINGS, pixel).expect("within the picture")
     }
 
     fn asks<T>(&mut self, of: impl FnOnce(&Situation) -> T) -> T {
-        let probe = self.pin.map(|pixel| self.explained(pixel));
+        let scene = self.seen();
+        let probe = self.pin.map(|pixel| self.explained(&scene, pixel));
+        self.asks_about(&scene, probe.as_ref(), of)
+    }
+
+    /// Asks about the scene that is seen, and the explanation of its pinned pixel.
+    fn asks_about<T>(
+        &self,
+        scene: &Scene,
+        probe: Option<&Explanation>,
+        of: impl FnOnce(&Situation) -> T,
+    ) -> T {
         of(&Situation {
-            scene: &self.seen(),
+            scene,
             registry: &self.registry,
             selection: self.selection,
             window: self.window,
-            probe: probe.as_ref(),
+            probe,
             pinned: probe.is_some(),
         })
     }
@@ -140,15 +152,24 @@ impl Learner {
                 self.holds(goal)
             }
             Deed::Pin => {
+                let scene = self.seen();
+                // Pixels of the background need no explanation.
+                let (samples, odd) = (LightSamples::of(1), AtomicBool::default());
+                let picture = reference::render_samples(&scene, &self.registry, &SETTINGS, samples, &odd);
                 // The coarse grid first: most tasks have many solutions.
                 for stride in [9, 5, 2] {
                     for y in (stride / 2..SIZE[1]).step_by(stride as usize) {
                         for x in (stride / 2..SIZE[0]).step_by(stride as usize) {
-                            if self.explained([x, y]).seen.is_none() {
+                            if picture.pixel(x, y).w == 0.0 {
+                                continue;
+                            }
+                            let explained = self.explained(&scene, [x, y]);
+                            if explained.seen.is_none() {
                                 continue;
                             }
                             self.pin = Some([x, y]);
-                            if self.holds(goal) == wanted {
+                            let probe = Some(&explained);
+                            if self.asks_about(&scene, probe, |at| goal.until.holds(at)) == wanted {
                                 return wanted;
                             }
                         }

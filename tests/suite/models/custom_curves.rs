@@ -8,7 +8,7 @@ use lights_camera_models::{
     optics::{Frame, albedo, colour::Encoding, geometry::direction},
     parameter::{Value, Values},
     registry::Registry,
-    render::capture::evaluate::evaluate,
+    render::capture::evaluate::Evaluator,
     shader::check::ShaderProblem,
 };
 
@@ -72,9 +72,11 @@ fn settings(alpha: f32, fresnel: &'static str) -> Vec<(&'static str, Value)> {
 fn the_curves_of_a_custom_model_are_the_albedos_of_the_models_that_they_name() {
     let registry = read("layered", &text(DECLARED)).expect("valid");
     let model = registry.model("layered").expect("registered");
+    let mut evaluator = Evaluator::new(registry.sources(), model).expect("software Vulkan is installed");
     for alpha in [0.3f32, 0.7] {
         let mut values = Values::default();
         values.set("coat_alpha", Value::Number(alpha));
+        evaluator.set(&values, Encoding::Srgb);
         let surface = model.instantiate(&values, Encoding::Srgb);
         for degrees in [0.0, 40.0, 75.0] {
             let v = direction(degrees, 0.0);
@@ -96,8 +98,7 @@ fn the_curves_of_a_custom_model_are_the_albedos_of_the_models_that_they_name() {
             assert!((found.diffuse - tint).abs().max_element() < 1e-4, "{}", found.diffuse);
             assert!(near(found.specular.z, tint.z) && (0.3..1.0).contains(&found.specular.x));
             // The shader reads the same.
-            let gpu = evaluate(registry.sources(), model, &values, Encoding::Srgb, &[(Vec3::Z, v)])
-                .expect("the GPU evaluates")[0];
+            let gpu = evaluator.evaluate(&[(Vec3::Z, v)]).expect("the GPU evaluates")[0];
             for (a, b) in
                 [(gpu.ambient, found.ambient), (gpu.diffuse, found.diffuse), (gpu.specular, found.specular)]
             {

@@ -18,7 +18,7 @@ use lights_camera_models::{
 };
 use std::sync::Arc;
 
-use crate::helpers::pictures::on_gpu;
+use crate::helpers::{pictures::on_gpu, support::builtin};
 
 const LOCAL: Frame = Frame::LOCAL;
 
@@ -50,7 +50,7 @@ fn model(registry: &Registry) -> &ModelEntry {
 }
 
 fn surface_of(values: &Values) -> Arc<dyn Surface> {
-    model(&Registry::builtin()).instantiate(values, Encoding::Srgb)
+    model(&builtin()).instantiate(values, Encoding::Srgb)
 }
 
 fn surface(material: &[(&'static str, Value)]) -> Arc<dyn Surface> {
@@ -310,7 +310,7 @@ const SIZE: u32 = 40;
 /// The largest and the mean deviation of a picture from the surroundings, relative.
 fn visible(scene: &Scene, samples: u32) -> [f32; 2] {
     let settings = Settings { width: SIZE, height: SIZE, samples: 1, ..Settings::default() };
-    let (registry, samples) = (Registry::builtin(), LightSamples::of(samples));
+    let (registry, samples) = (builtin(), LightSamples::of(samples));
     let picture = reference::render_samples(scene, &registry, &settings, samples, &AtomicBool::default());
     let around = picture.pixel(0, 0).x;
     assert!((around - 0.25 * PI).abs() < 1e-5, "{around}");
@@ -399,7 +399,7 @@ fn both_renderers_draw_the_light_that_passes() {
         scene.lights[0].parameters.set("source", Value::Choice("sky".into()));
         scene.lights[0].intensity = 1.0;
         let settings = Settings { width: SIZE, height: SIZE, samples: 1, ..Settings::default() };
-        let cpu = reference::render(&scene, &Registry::builtin(), &settings);
+        let cpu = reference::render(&scene, &builtin(), &settings);
         let gpu = on_gpu(&mut renderer, &scene);
         let scale = cpu.pixels.iter().map(|p| p.truncate().max_element()).fold(0.0, f32::max);
         let off = |(g, c): (&Vec3, &glam::Vec4)| (*g - c.truncate()).abs().max_element() / scale;

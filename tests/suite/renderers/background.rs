@@ -1,12 +1,14 @@
 //! Backgrounds that a scene gives: both renderers show them alike and as they are picked, and nothing else changes.
 
+use std::sync::atomic::AtomicBool;
+
 use bevy::{camera::RenderTarget, ecs::prelude::With};
 use glam::Vec3;
 use lights_camera_models::{
     channel::{DebugChannel, Setting},
     optics::{colour::Encoding, tone::ToneMapping},
     parameter::Value,
-    reference::{self, Settings, render_channel, render_rgb8},
+    reference::{self, LightSamples, Settings, render_channel, render_rgb8},
     registry::Registry,
     render::{
         capture::gpu::{GpuRenderer, Output},
@@ -17,7 +19,7 @@ use lights_camera_models::{
 
 use crate::helpers::{
     pictures::{close_up, sampled},
-    support::{changed, full_scene, read, written},
+    support::{builtin, changed, full_scene, read, written},
 };
 
 const SIZE: u32 = 96;
@@ -39,7 +41,7 @@ fn on_gpu(renderer: &mut GpuRenderer, scene: &Scene) -> Vec<u8> {
 }
 
 fn on_cpu(scene: &Scene, samples: u32) -> Vec<u8> {
-    reference::render(scene, &Registry::builtin(), &settings(samples)).to_rgb8(&scene.display)
+    reference::render(scene, &builtin(), &settings(samples)).to_rgb8(&scene.display)
 }
 
 /// A ball in front of a background.
@@ -141,8 +143,10 @@ fn it_stands_in_place_of_light_at_infinity_and_behind_lamps_that_are_near() {
     let registry = Registry::builtin();
     let mut renderer = renderer(1, Output::Display);
     renderer.set_light_samples(8);
+    // What is covered does not depend on samples of light.
     let seen = |scene: &Scene| {
-        let picture = reference::render(scene, &registry, &settings(1));
+        let (samples, odd) = (LightSamples::of(1), AtomicBool::default());
+        let picture = reference::render_samples(scene, &registry, &settings(1), samples, &odd);
         picture.pixels.iter().filter(|pixel| pixel.w > 0.0).count()
     };
     let all = among_lights(Background::Environment);

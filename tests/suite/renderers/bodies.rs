@@ -12,7 +12,10 @@ use lights_camera_models::{
     scene::{Light, Observer, Scene},
 };
 
-use crate::helpers::pictures::{close_up, on_gpu};
+use crate::helpers::{
+    pictures::{close_up, on_gpu},
+    support::builtin,
+};
 
 const SIZE: u32 = 64;
 /// Samples of light and of ways through bodies.
@@ -51,7 +54,7 @@ fn on_cpu(scene: &Scene) -> Picture {
 fn on_cpu_with(scene: &Scene, samples: u32) -> Picture {
     let settings = reference::Settings { width: SIZE, height: SIZE, samples: 1, terms: TermSelection::All };
     let odd = AtomicBool::default();
-    reference::render_samples(scene, &Registry::builtin(), &settings, LightSamples::of(samples), &odd)
+    reference::render_samples(scene, &builtin(), &settings, LightSamples::of(samples), &odd)
 }
 
 /// The fraction of the pixels within the object that differ by more than two codes on the display.

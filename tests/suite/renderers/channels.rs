@@ -10,7 +10,7 @@ use lights_camera_models::{
         DebugChannel, Setting,
         colours::{BELOW, NAN, TOWARDS},
     },
-    explain::{self, Inside},
+    explain::{Explainer, Inside},
     optics::{colour::luminance, tone::ToneMapping, viridis::viridis},
     panel::{
         state::{Action, Session, ViewChange},
@@ -29,7 +29,7 @@ use lights_camera_models::{
 use crate::{
     helpers::pictures::close_up,
     helpers::screen::Picture,
-    helpers::support::{lcm_in, root},
+    helpers::support::{builtin, lcm_in, root},
     window::panels::Bench,
 };
 
@@ -44,11 +44,11 @@ fn renderer() -> GpuRenderer {
 }
 
 fn setting(channel: DebugChannel, scene: &Scene) -> Setting {
-    Setting::new(channel, scene, &Registry::builtin(), scene.observer.position, None)
+    Setting::new(channel, scene, &builtin(), scene.observer.position, None)
 }
 
 fn on_cpu(scene: &Scene, channel: DebugChannel) -> Vec<u8> {
-    render_channel(scene, &Registry::builtin(), &settings(), &setting(channel, scene))
+    render_channel(scene, &builtin(), &settings(), &setting(channel, scene))
 }
 
 fn on_gpu(renderer: &mut GpuRenderer, scene: &Scene, channel: Option<DebugChannel>) -> Vec<u8> {
@@ -220,18 +220,18 @@ fn light_that_remains_in_solids_is_shown_by_both_renderers() {
         }
         // As many ways by chance as the other renderer takes.
         let (samples, setting) = (LightSamples::of(REMAINING_SAMPLES), setting(channel, &scene));
-        let cpu = reference::render_channel_by(&scene, &Registry::builtin(), &settings(), &setting, samples);
+        let cpu = reference::render_channel_by(&scene, &builtin(), &settings(), &setting, samples);
         let gpu = on_gpu(&mut renderer, &scene, Some(channel));
         assert!(bright(&cpu) > 200, "{shape}, {shading}: {} pixels", bright(&cpu));
         let off = share(&gpu, &cpu, 3);
         assert!(off < 0.02, "{shape}, {shading}, {roughness}: {off} of the pixels differ");
         if shading != "flat" && roughness == 0.0 {
             // It is the number of the explanation.
-            let (mut compared, registry) = (0, Registry::builtin());
+            let (mut compared, registry, mut explainer) = (0, builtin(), Explainer::default());
             let pixels = cpu.as_chunks::<3>().0.iter().enumerate().filter(|(_, p)| p[0].abs_diff(p[1]) > 4);
             for (i, pixel) in pixels.step_by(97) {
                 let at = [i as u32 % SIZE, i as u32 / SIZE];
-                let explained = explain::pixel(&scene, &registry, &settings(), at).expect("within");
+                let explained = explainer.pixel(&scene, &registry, &settings(), at).expect("within");
                 let seen = explained.seen.expect("the object");
                 let refraction = seen.spots[0].refraction.as_ref().expect("it bends light");
                 let Some(Inside::Ways(_, remaining)) = &refraction.inside else { panic!("{refraction:?}") };

@@ -21,7 +21,7 @@ use lights_camera_models::{
 
 use crate::{
     helpers::pictures::sampled,
-    helpers::support::{root, shipped_scenes},
+    helpers::support::{builtin, root, shipped_scenes},
 };
 
 const WIDTH: u32 = 192;
@@ -108,7 +108,7 @@ const SETTINGS: reference::Settings =
 const LIGHT_SAMPLES: u32 = 8;
 
 fn on_cpu(scene: &Scene) -> Vec<u8> {
-    sampled(scene, &Registry::builtin(), &SETTINGS, LIGHT_SAMPLES)
+    sampled(scene, &builtin(), &SETTINGS, LIGHT_SAMPLES)
 }
 
 pub fn updating() -> bool {
@@ -212,7 +212,7 @@ fn shipped_scenes_look_as_accepted_on_the_gpu() {
 #[test]
 fn the_comparison_notices_one_light_changed() {
     // The noise is equal in both.
-    let drawn = |scene: &Scene| sampled(scene, &Registry::builtin(), &SETTINGS, 16);
+    let drawn = |scene: &Scene| sampled(scene, &builtin(), &SETTINGS, 16);
     for (name, mut scene) in scenes() {
         let right = drawn(&scene);
         assert_eq!(SAME_RENDERER.broken(&right, &right), None);

@@ -26,7 +26,10 @@ use lights_camera_models::{
     testing,
 };
 
-use crate::helpers::pictures::{Difference, close_up, compare, on_gpu, sampled};
+use crate::helpers::{
+    pictures::{Difference, close_up, compare, on_gpu, sampled},
+    support::builtin,
+};
 
 const SIZE: u32 = 96;
 /// The samples of lights with extent: both renderers take the same, so few compare as well as many.
@@ -39,7 +42,7 @@ fn background() -> Vec3 {
 fn cpu(scene: &Scene, terms: TermSelection) -> reference::Picture {
     let settings = reference::Settings { width: SIZE, height: SIZE, samples: 1, terms };
     let (samples, odd) = (LightSamples::of(LIGHT_SAMPLES), AtomicBool::default());
-    reference::render_samples(scene, &Registry::builtin(), &settings, samples, &odd)
+    reference::render_samples(scene, &builtin(), &settings, samples, &odd)
 }
 
 fn gpu(renderer: &mut GpuRenderer, scene: &Scene, terms: TermSelection) -> Vec<Vec3> {

@@ -16,12 +16,12 @@ use lights_camera_models::{
     scene::{Light, Object, Observer, Scene},
 };
 
-use crate::helpers::pictures::close_up;
+use crate::helpers::{pictures::close_up, support::builtin};
 
 const SMALL: Settings = Settings { width: 160, height: 120, samples: 1, terms: TermSelection::All };
 
 fn render(scene: &Scene, settings: &Settings) -> Picture {
-    reference::render(scene, &Registry::builtin(), settings)
+    reference::render(scene, &builtin(), settings)
 }
 
 /// The default scene with other models.

@@ -197,7 +197,7 @@ fn places_are_found_and_replaced_from_the_keyboard() {
 
 /// Numbers of the first and the last line in sight, once the text has come to rest.
 fn lines_in_sight(bench: &mut Bench) -> [u32; 2] {
-    (0..60).for_each(|_| drop(bench.frame(Vec::new())));
+    (0..60).for_each(|_| bench.frame(Vec::new()));
     let text = bench.tree.iter().find(|seen| seen.role == Role::MultilineTextInput);
     let left = text.expect("the text is shown").rect.left();
     let beside = |place: &egui::Rect| place.right() < left + 1.0 && place.left() > left - 60.0;

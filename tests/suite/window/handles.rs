@@ -21,7 +21,7 @@ use lights_camera_models::{
     shader::Source,
 };
 
-use crate::{library::plugins::lamp::RingLamp, window::panels::Bench};
+use crate::{helpers::support::builtin, library::plugins::lamp::RingLamp, window::panels::Bench};
 
 const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
 
@@ -39,7 +39,7 @@ fn scene() -> Scene {
 }
 
 fn bench(scene: Scene) -> Bench {
-    bench_with(scene, Registry::builtin())
+    bench_with(scene, builtin())
 }
 
 fn bench_with(scene: Scene, registry: Registry) -> Bench {
@@ -349,8 +349,7 @@ fn handles_fade_when_the_pointer_rests_or_leaves_and_never_cover_the_object() {
     let lens = Lens::of(&bench.session, bench.area.rect);
     let middle = lens.project(position(&bench)).unwrap();
     let near = middle + vec2(150.0, 20.0);
-    let seconds =
-        |bench: &mut Bench, count: usize| (0..30 * count).for_each(|_| drop(bench.frame(Vec::new())));
+    let seconds = |bench: &mut Bench, count: usize| (0..30 * count).for_each(|_| bench.frame(Vec::new()));
     bench.frame(vec![Event::PointerMoved(near)]);
     bench.settle();
     bench.frame(vec![Event::PointerMoved(near + vec2(4.0, 0.0))]);
@@ -414,7 +413,7 @@ fn where_an_object_leaves_no_room_its_handles_are_at_the_edge_of_the_view() {
 
 #[test]
 fn handles_of_an_object_at_the_edge_lie_on_no_object() {
-    let mut bench = bench_with(Scene::default(), Registry::builtin());
+    let mut bench = bench_with(Scene::default(), builtin());
     (bench.session.facts.eye, bench.session.facts.camera) =
         (Session::default().facts.eye, Session::default().facts.camera);
     bench.settle();

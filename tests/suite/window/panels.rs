@@ -41,6 +41,8 @@ use lights_camera_models::{
     shader::Source,
 };
 
+use crate::helpers::support::builtin;
+
 // ── a model with everything that a panel can be asked for, and many more ──
 
 const DISTRIBUTION: Parameter =
@@ -179,7 +181,7 @@ pub struct Seen {
 
 impl Bench {
     pub fn new(session: Session) -> Self {
-        Self::with_registry(session, Registry::builtin())
+        Self::with_registry(session, builtin())
     }
 
     /// A window with a sphere and the model [`Everything`], among many models.
@@ -217,7 +219,7 @@ impl Bench {
     }
 
     /// Runs one frame with the given events.
-    pub fn frame(&mut self, events: Vec<Event>) -> Vec<epaint::ClippedPrimitive> {
+    pub fn frame(&mut self, events: Vec<Event>) {
         self.time += 1.0 / 30.0;
         let input = RawInput {
             // As in bevy_egui: a window of this many points has this many pixels.
@@ -255,10 +257,17 @@ impl Bench {
                 self.copied = Some(text.clone());
             }
         }
-        self.shapes = output.shapes.iter().map(|clipped| clipped.shape.clone()).collect();
-        self.clips = output.shapes.iter().map(|clipped| clipped.clip_rect).collect();
         self.painter.take(&mut output.textures_delta);
-        self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point)
+        (self.shapes, self.clips) =
+            output.shapes.into_iter().map(|shown| (shown.shape, shown.clip_rect)).unzip();
+    }
+
+    /// What the last frame painted, as triangles: only pictures need them.
+    fn triangles(&self) -> Vec<epaint::ClippedPrimitive> {
+        let shown = self.shapes.iter().zip(&self.clips);
+        let shown =
+            shown.map(|(shape, clip)| epaint::ClippedShape { clip_rect: *clip, shape: shape.clone() });
+        self.ctx.tessellate(shown.collect(), self.ctx.pixels_per_point())
     }
 
     pub fn settle(&mut self) {
@@ -320,7 +329,7 @@ impl Bench {
     /// Rests the pointer somewhere until the tooltip appears.
     pub fn hover(&mut self, at: Pos2) {
         self.frame(vec![Event::PointerMoved(at)]);
-        (0..30).for_each(|_| drop(self.frame(Vec::new())));
+        (0..30).for_each(|_| self.frame(Vec::new()));
     }
 
     pub fn type_into(&mut self, label: &str, text: &str) {
@@ -413,10 +422,10 @@ impl Bench {
     /// Renders the window in software and writes it to a file, with this colour instead of the picture.
     pub fn picture(&mut self, file: &Path, ground: egui::Color32) -> Result<(), Box<dyn std::error::Error>> {
         // Tooltips wait for the pointer to rest.
-        for _ in 0..30 {
+        for _ in 0..31 {
             self.frame(Vec::new());
         }
-        let mut primitives = self.frame(Vec::new());
+        let mut primitives = self.triangles();
         let zoom = self.ctx.zoom_factor();
         for primitive in &mut primitives {
             primitive.clip_rect = primitive.clip_rect * zoom;

@@ -12,7 +12,7 @@ use lights_camera_models::{
         Surface, brdf,
     },
     registry::Registry,
-    render::capture::evaluate::evaluate,
+    render::capture::evaluate::Evaluator,
     shader::compose::Sources,
 };
 
@@ -137,6 +137,7 @@ fn narrow_lobes_are_the_same_on_the_gpu() {
     let registry = Registry::builtin();
     for (id, tilt) in [("modified_phong", 1.0), ("blinn_phong_normalised", 2.0)] {
         let model = registry.model(id).unwrap();
+        let mut evaluator = Evaluator::new(&Sources::default(), model).expect("software Vulkan is installed");
         for alpha in [1_000, 30_000, 1_000_000] {
             let mut values = Values::default();
             values.set("alpha", Value::Integer(alpha));
@@ -149,8 +150,8 @@ fn narrow_lobes_are_the_same_on_the_gpu() {
                 })
                 .collect();
             let surface = model.instantiate(&values, Encoding::Srgb);
-            let answers = evaluate(&Sources::default(), model, &values, Encoding::Srgb, &pairs)
-                .expect("the GPU evaluates");
+            evaluator.set(&values, Encoding::Srgb);
+            let answers = evaluator.evaluate(&pairs).expect("the GPU evaluates");
             for ((l, v), gpu) in pairs.iter().zip(answers) {
                 let cpu = surface.response(*l, *v, &LOCAL).specular.x;
                 let error = (gpu.specular.x - cpu).abs() / cpu.max(1e-2);
