@@ -103,7 +103,7 @@ fn badges_keep_their_words_while_the_camera_moves_and_choose_them_once_it_rests(
         bench.frame(Vec::new());
         assert!(is_whole(&bench), "step {i}: {:?}", bench.texts_just_painted());
     }
-    let rest = |bench: &mut Bench| (0..12).for_each(|_| drop(bench.frame(Vec::new())));
+    let rest = |bench: &mut Bench| (0..12).for_each(|_| bench.frame(Vec::new()));
     rest(&mut bench);
     assert!(!is_whole(&bench), "the object is behind it");
     bench.session.facts.eye = home;
