@@ -424,10 +424,10 @@ fn long_work_has_a_bar_on_a_terminal_that_goes_on_by_samples() {
     let (samples, time) = (" of 1000000 samples, ", "s so far; Ctrl+C ends it");
     let long = "--renderer cpu --size 320x180 --light-samples 1000000";
     let bar = ["drawing softbox.json, ", samples, time, "░"];
-    says(6, &bar, &format!("render softbox.json -o p.png {long}"));
+    says(60, &bar, &format!("render softbox.json -o p.png {long}"));
     let view = ["drawing two.json, view A, ", time];
-    says(6, &view, &format!("render two.json --layout wipe -o p.png {long}"));
-    says(6, &["2 of 2, softbox.json, ", samples], &format!("render point.json softbox.json -o many {long}"));
+    says(60, &view, &format!("render two.json --layout wipe -o p.png {long}"));
+    says(60, &["2 of 2, softbox.json, ", samples], &format!("render point.json softbox.json -o many {long}"));
     // The time left is told once enough is done.
     let short = "--renderer cpu --size 320x180 --light-samples 5000";
     let said = says(90, &[" left; Ctrl+C ends it"], &format!("render softbox.json -o p.png {short}"));
@@ -435,10 +435,10 @@ fn long_work_has_a_bar_on_a_terminal_that_goes_on_by_samples() {
     assert_eq!(early, None, "{said}");
     let noise = "--renderer cpu --size 320x180 --noise 0.01 --light-samples 1000000";
     let until = [" samples, noise ", " %, until 0.01 %"];
-    says(6, &until, &format!("render softbox.json -o p.png {noise}"));
+    says(60, &until, &format!("render softbox.json -o p.png {noise}"));
     let gold = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/compare_gold.json");
-    says(3, &["matching, ", time], &format!("match {gold} --on picture"));
-    says(3, &[" % matching, ", time], &format!("match {gold} --on picture --each"));
+    says(60, &["matching, ", time], &format!("match {gold} --on picture"));
+    says(60, &[" % matching, ", time], &format!("match {gold} --on picture --each"));
     let said = says(6, &[], &format!("render --quiet softbox.json -o p.png {long}"));
     assert!(!said.contains("samples"), "{said}");
     let left = names(folder.path());
