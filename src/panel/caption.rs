@@ -151,6 +151,11 @@ impl Evened {
     }
 }
 
+/// What remains of a separator at the end of a line: a comma, but no dot, which looks like a mistake where nothing follows.
+fn closing(joint: &str) -> &str {
+    joint.trim_end_matches([' ', '·'])
+}
+
 /// A caption laid out in lines.
 pub(super) struct Lines {
     runs: Vec<(Vec2, Arc<Galley>)>,
@@ -227,17 +232,18 @@ impl Lines {
             let symbol = (!part.symbol.is_empty())
                 .then(|| maths::lay_out(ui, &maths::parse_symbol(part.symbol), 1.1 * size, colour));
             let lead = symbol.as_ref().map_or(0.0, |s| s.width + 0.3 * size);
-            // A line that continues on the next one ends with the separator.
-            let more = parts.get(i + 1).map_or(0.0, |next| text(next.joint(part).trim_end()).size().x);
+            let more = parts.get(i + 1).map_or(0.0, |next| text(closing(next.joint(part))).size().x);
             let joint = i.checked_sub(1).map_or("", |before| part.joint(&parts[before]));
-            let (dot, open) = (text(joint), text(joint.trim_end()));
+            let (dot, open) = (text(joint), text(closing(joint)));
             if at.x > 0.0 && at.x + dot.size().x + lead + galley.size().x + more > width {
-                runs.push((at, open.clone()));
+                most = most.max(at.x + open.size().x);
+                runs.push((at, open));
                 at = vec2(0.0, at.y + height);
                 rows += 1;
             } else if i > 0 {
-                runs.push((at, dot.clone()));
-                at.x += dot.size().x;
+                let end = at.x + dot.size().x;
+                runs.push((at, dot));
+                at.x = end;
             }
             let foot = at + vec2(0.0, baseline(&galley));
             runs.extend(symbol.into_iter().flat_map(|s| s.pieces).map(|p| (foot + p.offset, p.galley)));
@@ -253,12 +259,6 @@ impl Lines {
     /// True if a part is cut within, since it is longer than a line.
     pub(super) fn is_elided(&self) -> bool {
         self.runs.iter().any(|(_, galley)| galley.elided)
-    }
-
-    /// The lines without the dots at their ends: on a slide, a dot that nothing follows looks like a mistake.
-    pub(super) fn closed(mut self) -> Self {
-        self.runs.retain(|(_, galley)| galley.text() != " ·");
-        self
     }
 
     pub(super) fn paint(self, ui: &Ui, at: Pos2, colour: Color32) {
@@ -305,6 +305,37 @@ mod tests {
                 assert_eq!(again, first);
                 assert!(laid_out <= once, "{laid_out} texts, {once} at one width");
             }
+        }
+    }
+
+    #[test]
+    fn a_line_ends_with_no_dot_and_is_as_wide_as_its_words() {
+        let ctx = Context::default();
+        ctx.set_fonts(crate::lettering::fonts());
+        let words = ["Microfacet", "Phong shading", "k = 0.35", "n = 12", "AgX"];
+        let set = |continues: bool, width: f32| {
+            let parts = words.map(|word| Part { continues, ..Part::new(0, word) });
+            let mut lines = None;
+            // Fonts come with the first frame.
+            for _ in 0..2 {
+                let _ = ctx.run_ui(RawInput::default(), |ui| {
+                    lines = Some(Lines::of(ui, parts.to_vec(), 16.0, Color32::WHITE, width));
+                });
+            }
+            lines.expect("laid out")
+        };
+        let all = (60..600u16).step_by(4).flat_map(|width| [false, true].map(|continues| (continues, width)));
+        for (continues, width) in all {
+            let lines = set(continues, f32::from(width));
+            for (i, (at, galley)) in lines.runs.iter().enumerate() {
+                let end = at.x + galley.size().x;
+                assert!(end <= lines.size.x + 0.01, "{width}: {} ends at {end}", galley.text());
+                let goes_on = lines.runs.get(i + 1).is_some_and(|(next, _)| next.y == at.y);
+                assert!(goes_on || !galley.text().contains('·'), "{width}: {:?}", galley.text());
+            }
+            let breaks = lines.runs.iter().any(|(at, _)| at.y > 0.0);
+            let ends = lines.runs.iter().any(|(_, galley)| galley.text() == ",");
+            assert_eq!(ends, breaks && continues, "{width}");
         }
     }
 

@@ -163,7 +163,7 @@ impl Footer {
         }
         let (corners, width) = &self.captions;
         for (side, at) in self.sides.iter().zip(corners) {
-            let words = Lines::even(ui, &side.parts, CAPTION * height, palette.text, *width).closed();
+            let words = Lines::even(ui, &side.parts, CAPTION * height, palette.text, *width);
             words.paint(ui, place.min + at.to_vec2(), palette.text);
         }
         if let Some(top) = self.numbers {

@@ -203,7 +203,7 @@ impl Stage {
         let padding = padding(self.whole);
         ui.painter().rect_filled(self.caption, CornerRadius { ne: 8, ..CornerRadius::ZERO }, palette.panel);
         let width = self.whole.width() - 2.0 * padding.x;
-        let words = Lines::even(ui, &self.parts, CAPTION * height, palette.text, width).closed();
+        let words = Lines::even(ui, &self.parts, CAPTION * height, palette.text, width);
         words.paint(ui, self.caption.min + padding, palette.text);
         if !self.equation.is_empty() {
             ui.painter().rect_filled(self.plate, 8.0, palette.panel);

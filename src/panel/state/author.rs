@@ -138,7 +138,12 @@ impl Session {
                     draft.name = text;
                 }
             }
-            ModelCommand::Create => self.requested.extend(self.authoring.create(registry)),
+            ModelCommand::Create => {
+                if let Some(effect) = self.authoring.create(registry) {
+                    self.view.examples_open = false;
+                    self.request(effect);
+                }
+            }
             ModelCommand::Cancel => self.authoring.draft = None,
             ModelCommand::EditShown => self.edit_shown(registry),
             ModelCommand::CheckLaws => {

@@ -320,6 +320,8 @@ impl Session {
         let comparison = Comparison { layout, with, ..self.document.comparison };
         self.edit_here(Edit::Views { variants: all, comparison, step: "Add a view" }, registry);
         self.view.active = with.min(self.document.variants.len());
+        // The views need the room.
+        self.view.examples_open = false;
     }
 
     fn remove_view(&mut self, view: usize, registry: &Registry) {

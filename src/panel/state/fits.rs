@@ -163,6 +163,7 @@ impl Session {
         let layout = if comparison.layout == Layout::Single { Layout::SideBySide } else { comparison.layout };
         let comparison = Comparison { layout, with, ..comparison };
         self.edit_here(Edit::Views { variants: all, comparison, step: "Show a fit" }, registry);
+        self.view.examples_open = false;
         self.look(registry);
     }
 }

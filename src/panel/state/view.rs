@@ -223,6 +223,10 @@ impl View {
             _ => {}
         }
         if open {
+            if place == Place::Bottom {
+                // The user goes on; with both, the picture would be lower than the strip.
+                self.examples_open = false;
+            }
             self.front = place;
         }
     }

@@ -7,7 +7,10 @@ use lights_camera_models::{
     document::Edit,
     panel::{
         preview::{self, Preview, Source},
-        state::{Action, Answer, Effect, Pick, Question, Session, ViewChange},
+        state::{
+            Action, Answer, CompareCommand, EXPLAIN_TAB, Effect, ModelCommand, PLOTS_TAB, Pick, Question,
+            SHADER_TAB, Session, ViewChange,
+        },
     },
     parameter::Outside,
     reference::{self, LightSamples, Settings},
@@ -82,6 +85,41 @@ fn the_strip_stands_below_the_picture_and_escape_closes_it() {
     bench.key(Key::Escape, Modifiers::NONE);
     assert!(!bench.session.view.examples_open);
     assert_eq!(bench.area.rect, whole);
+}
+
+#[test]
+fn the_strip_closes_for_good_when_the_user_goes_on() {
+    let start = || {
+        let mut bench = Bench::new(Session::default());
+        bench.size = vec2(1280.0, 720.0);
+        bench.apply(Action::View(ViewChange::Examples(true)));
+        assert!(bench.find("Example: Default scene").is_some());
+        bench
+    };
+    let is_closed =
+        |bench: &Bench| !bench.session.view.examples_open && bench.find("Example: Default scene").is_none();
+    for tab in [EXPLAIN_TAB, PLOTS_TAB, SHADER_TAB] {
+        let mut bench = start();
+        bench.apply(Action::View(ViewChange::BottomTab(tab.to_owned())));
+        assert!(is_closed(&bench), "{tab}");
+        bench.apply(Action::View(ViewChange::Bottom(false)));
+        assert!(is_closed(&bench), "{tab} is closed");
+        // Who asks for it gets it.
+        bench.apply(Action::View(ViewChange::Examples(true)));
+        assert!(!is_closed(&bench), "{tab}");
+    }
+    let mut bench = start();
+    bench.apply(Action::Compare(CompareCommand::Add));
+    assert!(is_closed(&bench), "a second view");
+    bench.apply(Action::Compare(CompareCommand::Remove(1)));
+    assert!(is_closed(&bench), "one view again");
+    let mut bench = start();
+    bench.apply(Action::Model(ModelCommand::New));
+    bench.apply(Action::Model(ModelCommand::Cancel));
+    assert!(!is_closed(&bench), "nothing has begun");
+    bench.apply(Action::Model(ModelCommand::New));
+    bench.apply(Action::Model(ModelCommand::Create));
+    assert!(is_closed(&bench), "a model");
 }
 
 #[test]

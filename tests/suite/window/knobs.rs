@@ -1,6 +1,9 @@
 //! The lines of the controls: visible without scrolling, or with a sign that there are more.
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Shape, accesskit::Role, vec2};
+use bevy_egui::egui::{
+    Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Rect, Shape, TouchPhase, accesskit::Role,
+    vec2,
+};
 use lights_camera_models::{
     document::{Edit, Selection},
     panel::{
@@ -9,7 +12,7 @@ use lights_camera_models::{
     },
     parameter::{Value, Values},
     registry::Registry,
-    scene::{Background, Display, Light, Part, Scene},
+    scene::{Background, Display, Light, Part, Scene, examples::EXAMPLES},
 };
 
 use crate::window::panels::{Bench, Seen};
@@ -99,6 +102,39 @@ fn scroll_bars(bench: &mut Bench) -> Vec<Rect> {
         _ => None,
     };
     bench.shapes().iter().filter_map(bar).collect()
+}
+
+#[test]
+fn the_properties_begin_at_the_top_for_another_document_or_part() {
+    let mut bench = laptop("disney");
+    bench.size.y = 500.0;
+    bench.settle();
+    let top = |bench: &Bench| bench.field("Name").rect.top();
+    let scroll = |bench: &mut Bench| {
+        let at = bench.ctx.content_rect().lerp_inside(vec2(0.86, 0.55));
+        let (unit, phase, modifiers) = (MouseWheelUnit::Point, TouchPhase::Move, Modifiers::NONE);
+        bench.frame(vec![Event::PointerMoved(at)]);
+        bench.frame(vec![Event::MouseWheel { unit, delta: vec2(0.0, -120.0), phase, modifiers }]);
+        (0..10).for_each(|_| bench.settle());
+        top(bench)
+    };
+    let first = top(&bench);
+    let scrolled = scroll(&mut bench);
+    assert!(scrolled < first - 60.0, "{scrolled} after {first}");
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "clearcoat", Value::Number(0.25))));
+    assert!((top(&bench) - scrolled).abs() < 1.0, "after an edit");
+    bench.apply(Action::Undo);
+    assert!((top(&bench) - scrolled).abs() < 1.0, "after undo");
+    bench.apply(Action::Select(Selection::Object(0)));
+    assert!((top(&bench) - scrolled).abs() < 1.0, "the same part");
+    bench.apply(Action::Select(Selection::Observer));
+    bench.apply(Action::Select(Selection::Object(0)));
+    assert!((top(&bench) - first).abs() < 1.0, "another part: {}", top(&bench));
+    assert!(scroll(&mut bench) < first - 60.0);
+    let other = EXAMPLES.iter().position(|example| example.name == "Default scene").expect("shipped");
+    bench.apply(Action::OpenExample(other));
+    assert_ne!(bench.session.document.reflection_model, "disney");
+    assert!((top(&bench) - first).abs() < 1.0, "another document: {}", top(&bench));
 }
 
 #[test]
