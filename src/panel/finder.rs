@@ -180,7 +180,7 @@ fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> 
         let title = found.title.to_lowercase();
         let own = match title.rsplit_once(": ") {
             Some((_, own)) if NAMED.iter().any(|kind| found.id.starts_with(kind)) => own,
-            _ => &title,
+            _ => title.as_str(),
         };
         match own == name {
             true if found.id.starts_with("model.") => 3 * FIRST,
