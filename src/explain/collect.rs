@@ -142,6 +142,7 @@ impl Model {
         Self {
             id: entry.declaration.id,
             declaration: entry.declaration,
+            equation: entry.declaration.equation_of(entry.passage(values)),
             settings: entry.parameters.iter().map(setting).collect(),
             surface: Asked(surface),
             interpreted: entry.is_interpreted(),
@@ -150,14 +151,34 @@ impl Model {
     }
 
     /// The parts of the equation. Those of light along a path in a body are only there for surfaces that have an inside.
-    pub(super) fn parts(&self) -> impl Iterator<Item = &'static EquationPart> {
+    pub(super) fn parts(&self) -> impl Iterator<Item = &EquationPart> {
         let outside = self.declaration.solid && self.surface.0.interior().is_none();
-        self.declaration.equation.iter().filter(move |part| !(part.along_path && outside))
+        self.equation.iter().filter(move |part| !(part.along_path && outside))
     }
 
     /// True if the parameter with this name has one of these choices.
     pub(super) fn chooses(&self, name: &str, ids: &[&str]) -> bool {
         let setting = self.settings.iter().find(|setting| setting.parameter.name == name);
         setting.is_some_and(|setting| matches!(&setting.value, Value::Choice(id) if ids.contains(&&**id)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{reflection::Term, registry::Registry};
+
+    #[test]
+    fn the_equation_of_an_opaque_surface_has_no_transmitted_term() {
+        let registry = Registry::builtin();
+        let entry = registry.model("openpbr").expect("built in");
+        for weight in [0.0, 1.0] {
+            let mut values = Values::default();
+            values.set("transmission_weight", Value::Number(weight));
+            let surface = entry.instantiate(&values, Encoding::Srgb);
+            let model = Model::of(entry, &values, Encoding::Srgb, surface);
+            let named = model.parts().any(|part| part.text.contains(Term::Transmitted.symbol()));
+            assert_eq!(named, weight > 0.0, "{:?}", model.equation);
+        }
     }
 }

@@ -128,7 +128,7 @@ impl Model {
                 "linear": setting.linear.map(triple),
             })
         };
-        let equation = self.declaration.equation.iter().map(|part| part.text);
+        let equation = self.equation.iter().map(|part| part.text);
         json!({
             "id": self.id,
             "name": self.declaration.name,

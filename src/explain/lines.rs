@@ -263,7 +263,7 @@ impl Model {
 
 /// The definitions of a term in the equation.
 fn parts(model: &Model, term: Term) -> impl Iterator<Item = &'static str> {
-    let of_term = model.declaration.equation.iter().filter(move |part| part.term == term && !part.along_path);
+    let of_term = model.equation.iter().filter(move |part| part.term == term && !part.along_path);
     of_term.flat_map(|part| mathematics::definitions(part.text))
 }
 

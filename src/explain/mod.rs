@@ -30,7 +30,7 @@ use crate::{
         probe::{Probe, probe},
         visible,
     },
-    reflection::{Declaration, Surface},
+    reflection::{Declaration, EquationPart, Surface},
     registry::Registry,
     scene::{Display, Scene},
     shading,
@@ -221,6 +221,8 @@ pub struct Model {
     pub id: &'static str,
     /// Name, source, equation.
     pub declaration: &'static Declaration,
+    /// The parts of its equation, of an opaque surface without the transmitted term.
+    pub equation: Vec<EquationPart>,
     /// Parameters of the model.
     pub settings: Vec<Setting>,
     /// The model with these parameters, which can be evaluated for other directions and for quantities of its

@@ -454,7 +454,7 @@ fn directions(out: &mut Writer, seen: &Seen, geometry: &Geometry) {
 /// measured, only where the model uses them.
 fn angles(out: &mut Writer, seen: &Seen, geometry: &Geometry) {
     let d = seen.model.declaration;
-    let texts = d.equation.iter().map(|part| part.text).chain(d.quantities.iter().map(|q| q.text));
+    let texts = seen.model.equation.iter().map(|part| part.text).chain(d.quantities.iter().map(|q| q.text));
     let around = d.anisotropic || texts.clone().any(|text| text.contains('φ'));
     let named = |symbol: &str| texts.clone().any(|text| text.contains(symbol));
     let all: Vec<_> = geometry

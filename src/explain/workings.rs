@@ -115,7 +115,7 @@ impl<'a> Workings<'a> {
         }
         known.extend(of_terms(terms).map(|(term, value)| (term.symbol().to_owned(), colour(value))));
         let declaration = model.declaration;
-        let parts = declaration.equation.iter().filter(|part| !part.along_path).flat_map(|part| {
+        let parts = model.equation.iter().filter(|part| !part.along_path).flat_map(|part| {
             let of = |text| Definition { term: part.term, text, quantity: None };
             mathematics::definitions(part.text).into_iter().map(of)
         });

@@ -29,8 +29,13 @@ const PADDING: f32 = 8.0;
 /// The part of the window above it, and the part that its list takes.
 const ABOVE: f32 = 0.09;
 const LIST: f32 = 0.58;
-/// The rank above every other, of a model by another of its names; twice that by its very name.
+/// The rank above every other, of a model by another of its names; twice that of what is called so exactly, and three times
+/// that of a model by its very name.
 const FIRST: i32 = 10_000;
+/// What a title gains that begins with the search: more than a short one does.
+const BEGINS: i32 = 100;
+/// The beginnings of the ids of what has its menu in front of its name.
+const NAMED: [&str; 3] = ["example.", "lesson.", "model."];
 /// Number of the latest commands that come first.
 const RECENT: usize = 5;
 
@@ -171,18 +176,23 @@ fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> 
     let name = search.trim().to_lowercase();
     // Who types another name of a model looks for the model, not for a scene whose title has the word.
     let is_model = |found: &Found| found.unsaid.iter().any(|(text, _)| text.to_lowercase() == name);
-    let is_named = |found: &Found| {
+    let first = |found: &Found| {
         let title = found.title.to_lowercase();
-        found.id.starts_with("model.") && title.rsplit(": ").next() == Some(&*name)
+        let own = match title.rsplit_once(": ") {
+            Some((_, own)) if NAMED.iter().any(|kind| found.id.starts_with(kind)) => own,
+            _ => title.as_str(),
+        };
+        match own == name {
+            true if found.id.starts_with("model.") => 3 * FIRST,
+            true => 2 * FIRST,
+            false if is_model(found) => FIRST,
+            false if own.starts_with(&name) => BEGINS,
+            false => 0,
+        }
     };
     let fits = |found: &'f Found| {
-        let first = match is_model(found) {
-            _ if is_named(found) => 2 * FIRST,
-            true => FIRST,
-            false => 0,
-        };
         let more: Vec<_> = found.said.iter().chain(&found.unsaid).map(|(text, _)| text.as_str()).collect();
-        Some((rank(&found.title, &more.join(" "), search)? + first, found))
+        Some((rank(&found.title, &more.join(" "), search)? + first(found), found))
     };
     let mut found: Vec<_> = all.iter().filter_map(fits).collect();
     leave_out_chance(&mut found);

@@ -2,7 +2,10 @@
 
 use std::ops::BitOr;
 
-use super::Declaration;
+use super::{Declaration, EquationPart, Term};
+
+/// The transmitted term at the end of the sum of the terms.
+const SUMMAND: &str = " + I_t";
 
 /// The passage of light through surfaces, for which a renderer must be ready. Most models
 /// [declare](Declaration::passage) it; if it depends on the parameters, a shader contains only the code that its
@@ -51,6 +54,22 @@ impl Declaration {
     pub const fn passage(&self) -> Passage {
         Passage { transmits: self.transmits, sharp: self.sharp, solid: self.solid }
     }
+
+    /// The parts of the equation of surfaces with this passage: of opaque ones, if light passes through others of the
+    /// model, those without the transmitted term.
+    #[must_use]
+    pub fn equation_of(&self, passage: Passage) -> Vec<EquationPart> {
+        let opaque = self.transmits && passage == Passage::NONE;
+        let part = |part: &EquationPart| match part.term {
+            Term::Transmitted if opaque => None,
+            Term::Total if opaque => {
+                let text = part.text.strip_suffix(SUMMAND).unwrap_or(part.text);
+                Some(EquationPart { text, ..*part })
+            }
+            _ => Some(*part),
+        };
+        self.equation.iter().filter_map(part).collect()
+    }
 }
 
 #[cfg(test)]
@@ -70,6 +89,25 @@ mod tests {
         let all = [Passage::NONE, Passage::SHEET, Passage::BODY, Passage::SHEET | Passage::BODY];
         assert_eq!(all.map(Passage::bits), [0, 3, 5, 7]);
         assert_eq!(Passage::NONE | Passage::SHEET, Passage::SHEET);
+    }
+
+    #[test]
+    fn the_equation_of_an_opaque_surface_has_no_transmitted_term() {
+        let symbol = Term::Transmitted.symbol();
+        let mut varied = 0;
+        for model in Registry::builtin().models() {
+            let d = model.declaration;
+            for passage in model.passages() {
+                let parts = d.equation_of(passage);
+                let opaque = passage == Passage::NONE;
+                assert!(opaque || parts == d.equation, "{}", d.id);
+                let named =
+                    |part: &EquationPart| part.term == Term::Transmitted || part.text.contains(symbol);
+                assert!(!opaque || !parts.iter().any(named), "{}: {parts:?}", d.id);
+                varied += usize::from(parts != d.equation);
+            }
+        }
+        assert!(varied > 0);
     }
 
     #[test]

@@ -22,7 +22,7 @@ use crate::{
     },
     optics::{TermSelection, colour::srgb_encode},
     parameter::{Parameter, Value, json as value, layout, stride},
-    reflection::{Ambient, EquationPart, ModelEntry, OnPages, Passage, Term},
+    reflection::{Ambient, ModelEntry, OnPages, Passage},
     registry::Registry,
     scene::{Scene, variant::LETTERS},
     shading::ShadingEntry,
@@ -344,18 +344,10 @@ fn model(
     })
 }
 
-/// The parts of the equation of a model. Of a surface that stays opaque, since it has no knobs for transmission, they are those without
-/// that term.
+/// The parts of the equation of a model. A surface that stays opaque has no knobs for transmission.
 fn parts(of_model: &Program) -> Vec<Json> {
-    let opaque = of_model.model.passage_varies() && of_model.passage == Passage::NONE;
-    let summand = format!(" + {}", Term::Transmitted.symbol());
-    let part = |part: &EquationPart| match part.term {
-        Term::Transmitted if opaque => None,
-        Term::Total if opaque => Some((part.term, part.text.replace(&summand, ""))),
-        term => Some((term, part.text.to_owned())),
-    };
-    let all = of_model.model.declaration.equation.iter().filter_map(part);
-    all.map(|(term, text)| json!({ "term": term.id(), "html": equation(&text) })).collect()
+    let all = of_model.model.declaration.equation_of(of_model.passage).into_iter();
+    all.map(|part| json!({ "term": part.term.id(), "html": equation(part.text) })).collect()
 }
 
 /// The settings under which the specular response of a model is its lobe alone, with F = 1 and without

@@ -12,7 +12,7 @@ pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
     };
     rows::heading(ui, "From light to the code on the display");
     if explanation.seen.is_some() || explanation.lamp.is_some() {
-        rows::told(ui, "light of the pixel", steps.light, explanation.error_of(|steps| steps.light), false);
+        rows::measured_step(ui, "light of the pixel", steps.light, explanation.error_of(|steps| steps.light));
         let (ev, factor) = (rows::short(display.exposure), rows::short(steps.exposure));
         step(ui, &format!("exposure {ev} EV, × {factor}"), |steps| steps.exposed);
     } else if explanation.shows_backdrop() {

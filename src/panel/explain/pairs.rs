@@ -37,14 +37,14 @@ fn angles_at(letter: &str) -> impl Iterator<Item = &'static str> {
 
 /// True if the equation of a model uses a letter for a quantity of the model, and thus not for a vector.
 fn is_own(model: &Model, letter: &str) -> bool {
-    definition(model.declaration.equation, letter).is_some()
+    definition(&model.equation, letter).is_some()
         || model.settings.iter().any(|setting| same_symbol(setting.parameter.symbol, letter))
 }
 
 /// True if a vector belongs to the explanation of a model: always for normal, light and viewer; for half vector and
 /// mirror direction if the equation uses them or an angle to them. An undeclared equation may use any vector.
 pub(super) fn belongs(model: &Model, letter: &str) -> bool {
-    let equation = model.declaration.equation;
+    let equation = &model.equation;
     if !matches!(letter, "H" | "R") || equation.is_empty() || is_own(model, letter) {
         return true;
     }

@@ -16,6 +16,8 @@ use crate::{
 
 /// Number of digits shown.
 pub(super) const DIGITS: usize = 3;
+/// What a number with its standard error is.
+const MEASURED: &str = "The integral and its standard error, from sixteen parts of the samples";
 /// Number of digits in a tooltip.
 const ALL: usize = 8;
 /// Font size of a symbol in a row.
@@ -194,6 +196,13 @@ pub(super) fn step(ui: &mut Ui, what: &str, v: Vec3, error: Option<Vec3>) {
     line(ui, name, Some(v), shown).on_hover_text(all_within(v, error));
 }
 
+/// A step whose standard error, if any, stands beside it.
+pub(super) fn measured_step(ui: &mut Ui, what: &str, v: Vec3, error: Option<Vec3>) {
+    let Some(error) = error else { return step(ui, what, v, None) };
+    let (name, shown) = (theme::small(ui, format!("{what}:")), raised(&explain::measured(v, error)));
+    line(ui, name, Some(v), text(ui, shown)).on_hover_text(MEASURED);
+}
+
 /// Sets a line spacing smaller than that of widgets.
 pub(super) fn close(ui: &mut Ui) {
     ui.spacing_mut().item_spacing.y = 3.0;
@@ -222,8 +231,7 @@ pub(super) fn told(ui: &mut Ui, before: &str, v: Vec3, error: Option<Vec3>, bold
 /// A label and a colour with its standard error, rounded to the digits that the error justifies.
 pub(super) fn measured(ui: &mut Ui, before: &str, v: Vec3, error: Vec3, bold: bool) {
     let (name, shown) = (text(ui, before), value_text(ui, raised(&explain::measured(v, error)), bold));
-    let tip = "The integral and its standard error, from sixteen parts of the samples";
-    line(ui, name, Some(v), shown).on_hover_text(tip);
+    line(ui, name, Some(v), shown).on_hover_text(MEASURED);
 }
 
 fn value_text(ui: &Ui, shown: String, bold: bool) -> RichText {

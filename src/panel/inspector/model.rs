@@ -11,8 +11,8 @@ use crate::{
         shader,
         state::{CodeCommand, SHADER_TAB},
     },
-    reflection::ModelEntry,
-    scene::shines_from_everywhere,
+    reflection::{EquationPart, ModelEntry, Passage},
+    scene::{Object, shines_from_everywhere},
     shading::ShadingEntry,
     text::facts,
 };
@@ -66,12 +66,25 @@ pub(super) fn missing_model(ui: &mut Ui, id: &str, context: &mut PanelContext<'_
     ui.add_space(6.0);
 }
 
-pub(super) fn equation(ui: &mut Ui, model: &ModelEntry) {
+/// The parts of the equation of an object with a model. A knob that makes it transparent adds some only once the pointer
+/// lets go of it: no knob may move under the hand.
+pub(super) fn parts(ctx: &Context, model: &ModelEntry, object: &Object) -> Vec<EquationPart> {
+    let (id, name) = (Id::new("passage of the equation"), model.declaration.id);
+    let held = ctx.input(|i| i.pointer.any_down());
+    let known = ctx.data(|d| d.get_temp::<(&'static str, Passage)>(id));
+    let known = known.filter(|(of, _)| held && *of == name).map(|(_, passage)| passage);
+    let passage = known.unwrap_or_else(|| model.passage(&object.material));
+    ctx.data_mut(|d| d.insert_temp(id, (name, passage)));
+    model.declaration.equation_of(passage)
+}
+
+/// These parts of the equation of a model.
+pub(super) fn equation(ui: &mut Ui, model: &ModelEntry, parts: &[EquationPart]) {
     // Custom models need not declare one.
-    if model.declaration.equation.is_empty() {
+    if parts.is_empty() {
         return;
     }
-    maths::equation(ui, model.declaration.equation, |symbol| meaning(model, symbol));
+    maths::equation(ui, parts, |symbol| meaning(model, symbol));
     ui.add_space(4.0);
 }
 
@@ -93,9 +106,9 @@ pub(in crate::panel) fn meaning(model: &ModelEntry, symbol: &str) -> Option<Stri
 }
 
 /// The choice of the term that the picture shows, where there is one: among those of the equation above it.
-pub(super) fn terms(ui: &mut Ui, model: &ModelEntry, context: &mut PanelContext<'_>) {
+pub(super) fn terms(ui: &mut Ui, parts: &[EquationPart], context: &mut PanelContext<'_>) {
     let session = context.session();
-    let written: Vec<_> = model.declaration.equation.iter().filter_map(|p| p.term.alone()).collect();
+    let written: Vec<_> = parts.iter().filter_map(|p| p.term.alone()).collect();
     let mut options = session.offered_terms(context.registry());
     options.retain(|t| written.is_empty() || *t == TermSelection::All || written.contains(t));
     if options.len() < 3 {

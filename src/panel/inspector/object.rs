@@ -1,7 +1,7 @@
 //! The properties of an object.
 
 use super::{
-    model::{edit_code, equation, missing_model, model_author, model_name, stage, terms},
+    model::{edit_code, equation, missing_model, model_author, model_name, parts, stage, terms},
     part::{header, knob_of, section, type_knob, vector},
     row,
     variant::marked,
@@ -110,8 +110,9 @@ impl ObjectPanel<'_> {
                     model_author(ui, model);
                     edit_code(ui, model.declaration.id, context);
                 });
-                equation(ui, model);
-                terms(ui, model, context);
+                let parts = parts(ui.ctx(), model, object);
+                equation(ui, model, &parts);
+                terms(ui, &parts, context);
                 if model.declaration.measured {
                     fits::buttons(ui, context);
                 }

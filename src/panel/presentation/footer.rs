@@ -3,15 +3,10 @@
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::{BODY, Block, CAPTION, Definition, columns, padding, sides};
+use super::{BODY, Block, CAPTION, Definition, columns, definitions, padding, sides};
 use crate::{
     caption::{Part, single},
-    panel::{
-        caption::Lines,
-        keys,
-        maths::{self, Sizes},
-        prelude::*,
-    },
+    panel::{caption::Lines, keys, maths::Sizes, prelude::*},
     scene::comparison::Layout,
     text::sentence,
 };
@@ -68,7 +63,7 @@ impl Side {
         // With several models, an equation would seem to apply to all of them.
         let models = scene.shown().map(|o| scene.model_of(o)).collect();
         let model = single(&models).and_then(|id| registry.model(id));
-        let equation = model.map_or_else(Vec::new, |model| maths::definitions(model.declaration.equation));
+        let equation = model.map_or_else(Vec::new, |model| definitions(scene, model));
         Self { model: model.map(|model| model.declaration.id.to_owned()), equation, parts }
     }
 }

@@ -94,8 +94,7 @@ impl Stage {
         needed: Needed,
     ) -> Self {
         // None with several models, since it would seem to apply to all of them.
-        let equation =
-            model_of(session, registry).map(|model| maths::definitions(model.declaration.equation));
+        let equation = model_of(session, registry).map(|model| definitions(session.scene(), model));
         let equation = equation.unwrap_or_default();
         let parts = caption::parts(session, registry);
         // A turning camera must not move the layout: its position at the start counts.
@@ -217,6 +216,14 @@ impl Stage {
 fn model_of<'r>(session: &Session, registry: &'r Registry) -> Option<&'r ModelEntry> {
     let models = session.document.models_shown(session.active());
     models.first().and_then(|id| registry.model(id)).filter(|_| models.len() == 1)
+}
+
+/// The equation of a model, as the visible objects need it: without the transmitted term if all are opaque.
+fn definitions(scene: &Scene, model: &ModelEntry) -> Vec<Definition> {
+    let own = scene.shown().filter(|object| scene.model_of(object) == model.declaration.id);
+    let passages = own.map(|object| model.passage(&object.material));
+    let passage = passages.reduce(|all, one| all | one).unwrap_or_default();
+    maths::definitions(&model.declaration.equation_of(passage))
 }
 
 /// Shows the equation of a model in columns from a corner on.

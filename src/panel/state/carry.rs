@@ -16,7 +16,7 @@ use crate::{
         usage::unused,
     },
     registry::Registry,
-    scene::{Object, Part, Repetition, Scene},
+    scene::{Object, Part, Repetition, Scene, limits},
     text::{listed, plural},
 };
 
@@ -322,11 +322,17 @@ fn becomes(one: &Carried) -> &'static str {
     if one.from.len() == 1 { "becomes" } else { "become" }
 }
 
+/// A value as knobs write it.
+fn shown(p: &Parameter, value: &Value) -> String {
+    p.kind.number_of(value).map_or_else(|| value.to_string(), limits::number)
+}
+
 /// "clear coat 0.5 becomes coat 0.125".
 fn with_values(one: &Carried, material: &Values) -> String {
-    let from: Vec<_> = one.from.iter().map(|p| format!("{} {}", p.label, material.get(p))).collect();
+    let from: Vec<_> =
+        one.from.iter().map(|p| format!("{} {}", p.label, shown(p, &material.get(p)))).collect();
     let limit = if one.limited { ", the nearest that it allows" } else { "" };
-    format!("{} {} {} {}{limit}", listed(&from, "and"), becomes(one), one.to.label, one.value)
+    format!("{} {} {} {}{limit}", listed(&from, "and"), becomes(one), one.to.label, shown(one.to, &one.value))
 }
 
 /// "OpenPBR has no place for subsurface; it comes back with Disney."
@@ -410,6 +416,14 @@ mod tests {
         let _ = session.apply(Action::Edit(edit), &registry);
         choose(&mut session, &registry, "openpbr");
         assert_eq!(value(&session, "coat_weight"), Some(number(0.25)));
+    }
+
+    #[test]
+    fn carried_values_are_said_as_knobs_write_them() {
+        let (mut session, registry) = begin("disney", 1, &[("clearcoat", 0.123_456)]);
+        choose(&mut session, &registry, "openpbr");
+        let said = last(&session);
+        assert!(said.contains("clear coat 0.1235 becomes coat 0.0309"), "{said}");
     }
 
     #[test]

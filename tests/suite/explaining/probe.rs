@@ -1,6 +1,6 @@
 //! The panel that explains a pixel: which pixel, the numbers of the picture, and the overlay.
 
-use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
 use glam::{Quat, Vec3};
 use lights_camera_models::{
     channel::DebugChannel,
@@ -79,6 +79,33 @@ fn light_with_extent_has_its_error_and_a_choice_of_samples() {
     bench.settle();
     assert!(bench.texts().iter().any(|text| text.contains("by 4096 samples")), "{:?}", bench.texts());
     assert!(2.0 * error(&bench) < usual, "{} of {usual}", error(&bench));
+}
+
+#[test]
+fn the_first_step_to_the_display_looks_like_the_others() {
+    let mut bench = bench(scene("phong", "phong"));
+    bench.size = vec2(1600.0, 2000.0);
+    bench.session.settings.bottom_height = 1100.0;
+    let pin = Pin::of_pixel(0, [320, 180], [640, 360], bench.session.document.view_angle());
+    bench.apply(Action::View(ViewChange::Pin(Some(pin))));
+    bench.settle();
+    let looks: Vec<_> = bench
+        .shapes()
+        .iter()
+        .filter_map(|shape| match shape {
+            Shape::Text(text) => {
+                let format = &text.galley.job.sections.first()?.format;
+                Some((text.galley.text().to_owned(), format.font_id.size, format.color))
+            }
+            _ => None,
+        })
+        .collect();
+    let of = |begin: &str| {
+        let found = looks.iter().find(|(text, ..)| text.starts_with(begin) && text.ends_with(':'));
+        let (_, size, colour) = found.unwrap_or_else(|| panic!("{begin}: {looks:?}"));
+        (*size, *colour)
+    };
+    assert_eq!(of("light of the pixel"), of("exposure 0 EV"));
 }
 
 #[test]

@@ -1,14 +1,17 @@
 //! Equations in the panel: their sizes and colours, and pictures of all of them to be looked at
 //! (`scripts/pictures`).
 
-use bevy_egui::egui::{Color32, FontFamily, Pos2, Shape, vec2};
+use bevy_egui::egui::{Color32, Event, FontFamily, Modifiers, PointerButton, Pos2, Shape, vec2};
 use lights_camera_models::{
+    document::{Edit, Selection},
     panel::{
         state::{Action, ThemeChoice, ViewChange},
         theme,
     },
+    parameter::Value as Setting,
     reflection::Term,
     registry::Registry,
+    scene::Part,
     text::{
         expression::{Expression, Scope, Value},
         mathematics::{parse, write},
@@ -70,6 +73,49 @@ fn letters(bench: &mut Bench, letter: &str) -> Vec<(FontFamily, Pos2)> {
         _ => None,
     };
     bench.shapes().iter().filter_map(run).collect()
+}
+
+/// Lets light pass through the first object, or not.
+fn pass(bench: &mut Bench, weight: f32) {
+    let value = Setting::Number(weight);
+    bench.apply(Action::Edit(Edit::material(Part::Object(0), "transmission_weight", value)));
+}
+
+#[test]
+fn an_opaque_surface_has_no_transmitted_term() {
+    let mut bench = Bench::with_model("openpbr");
+    bench.size = vec2(1280.0, 720.0);
+    bench.apply(Action::Select(Selection::Object(0)));
+    for presenting in [false, true] {
+        bench.apply(Action::View(ViewChange::Presenting(presenting)));
+        for weight in [0.0, 0.5, 0.0] {
+            pass(&mut bench, weight);
+            assert!(bench.says("I = I_d + I_s"), "{presenting}, {weight}");
+            for words in ["I_s + I_t", "I_t = |N·L|", "I_t = π"] {
+                assert_eq!(bench.says(words), weight > 0.0, "{presenting}, {weight}: {words}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_equation_keeps_its_terms_while_the_pointer_holds_a_knob() {
+    let mut bench = Bench::with_model("openpbr");
+    bench.apply(Action::Select(Selection::Object(0)));
+    let pos = bench.area.rect.center();
+    let button = |pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    bench.hover(pos);
+    bench.frame(vec![button(true)]);
+    pass(&mut bench, 0.5);
+    assert!(bench.says("I = I_d + I_s") && !bench.says("I_s + I_t"), "no knob moves under the hand");
+    bench.frame(vec![button(false)]);
+    bench.settle();
+    assert!(bench.says("I_s + I_t"));
 }
 
 #[test]

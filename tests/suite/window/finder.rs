@@ -161,6 +161,14 @@ fn scenes_lessons_models_and_parameters_are_found() {
 }
 
 #[test]
+fn what_is_called_exactly_so_comes_before_models_that_mention_it() {
+    let mut bench = bench();
+    run(&mut bench, "car paint");
+    let title = bench.session.title();
+    assert!(bench.session.questions.open.is_some() || title.contains("Car paint"), "{title}");
+}
+
+#[test]
 fn a_row_says_why_it_is_found_where_its_name_does_not() {
     let mut bench = bench();
     let mut notes = |letters: &str| {

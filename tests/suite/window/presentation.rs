@@ -13,6 +13,8 @@ use lights_camera_models::{
         maths::definitions,
         state::{Action, Clipping, CompareCommand, Effect, SCALES, Session, Severity, ViewChange},
     },
+    parameter::Values,
+    reflection::Passage,
     registry::Registry,
     scene::{Object, Part, Scene, comparison::Layout, examples::EXAMPLES},
     shader::check::ShaderProblem,
@@ -380,7 +382,7 @@ fn a_presentation_shows_every_definition_large_enough_and_hides_no_object() {
             bench.apply(Action::View(ViewChange::Scale(scale)));
             bench.apply(Action::View(ViewChange::Presenting(true)));
             let shown = definitions_shown(&bench);
-            for (_, text) in definitions(d.equation) {
+            for (_, text) in definitions(&d.equation_of(model.passage(&Values::default()))) {
                 assert!(shown.iter().any(|s| s == text), "{}: {text} is not among {shown:?}", d.id);
             }
             let height = 720.0 / bench.area.zoom;
@@ -775,9 +777,11 @@ fn an_equation_of_one_view_alone_has_its_letter_and_says_if_definitions_are_miss
     for size in [(880.0, 745.0), (600.0, 745.0), (420.0, 745.0)] {
         for model in ["strauss", "oren_nayar", "disney", "openpbr"] {
             let mut bench = with_one_equation(model, size);
-            let equation = bench.registry.model(model).expect("built in").declaration.equation;
+            let declaration = bench.registry.model(model).expect("built in").declaration;
+            // Its surface is opaque, whatever the model can do.
+            let equation = declaration.equation_of(Passage::NONE);
             let shown = definitions_shown(&bench);
-            let all = definitions(equation);
+            let all = definitions(&equation);
             let missing = all.iter().filter(|(_, text)| !shown.iter().any(|s| s == text)).count();
             let texts = bench.texts();
             assert!(texts.iter().filter(|text| *text == "B:").count() == 2, "{model}, {size:?}");
