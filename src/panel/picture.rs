@@ -58,7 +58,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let high = footer.as_ref().map_or(0.0, |footer| footer.height);
     let mut arrangement = compare::arrange(session, whole, high, 0.0);
     let needed = if presenting { Needed::so_far(ui, whole, session) } else { Needed::default() };
-    let mut over = Overlaid { context, places: Vec::new(), written: Vec::new(), sizes: Needed::default() };
+    let sizes = Needed::default();
+    let mut over = Overlaid { context, places: Vec::new(), written: Vec::new(), needed, sizes };
     let (rect, frame, pictures) = if arrangement.is_single() {
         let stage = presenting.then(|| Stage::of(ui, whole, session, registry, needed));
         let frame = stage.as_ref().map_or(whole, |stage| stage.picture);
@@ -102,6 +103,12 @@ pub fn letters_of_map(area: &PictureArea, height: f32) -> Option<f32> {
     Some(area.letters * height / area.map?.height())
 }
 
+/// Size of the letters over the pictures of a presentation of several views.
+fn letters_on_slide(ui: &Ui, cells: &[Cell], spot: PlatePlace) -> f32 {
+    let room = cells.first().map_or(0.0, |cell| cell.rect.height() + spot.above());
+    (CAPTION * ui.max_rect().height()).min(LETTER_SIZE * room)
+}
+
 /// The overlays of a picture, as far as they are painted.
 struct Overlaid<'c, 'a> {
     context: &'c mut PanelContext<'a>,
@@ -109,7 +116,8 @@ struct Overlaid<'c, 'a> {
     places: Vec<Rect>,
     /// Rectangles of badges, caption and axes.
     written: Vec<Rect>,
-    /// Room that badges, legends and the message about an error take in a presentation.
+    /// Room that badges, legends and the message about an error took so far in a presentation, and that they take.
+    needed: Needed,
     sizes: Needed,
 }
 
@@ -126,7 +134,9 @@ impl<'a> Overlaid<'_, 'a> {
         // A presentation has no marks, and its messages are as large as the rest of the text.
         self.marked(ui, rect);
         self.written.extend(labels::labels(ui, rect, view, session, registry));
-        self.written.extend(explain::vectors(ui, view, self.sight(rect)));
+        let taken = stage.map_or_else(Vec::new, |stage| stage.taken(self.needed));
+        let letters = stage.map(|_| CAPTION * whole.height());
+        self.vectors(ui, (view, rect), letters, &taken);
         ui.scope(|ui| {
             let mut placer = match stage {
                 Some(stage) => {
@@ -182,6 +192,23 @@ impl<'a> Overlaid<'_, 'a> {
         marks::Sight { rect, written: &self.context.area().written, session, registry }
     }
 
+    /// Paints the vectors of the explained point into a view: in a presentation with letters of this size, and their legend
+    /// clear of the plates that are `taken`.
+    fn vectors(&mut self, ui: &mut Ui, (view, rect): (usize, Rect), letters: Option<f32>, taken: &[Rect]) {
+        let sight = self.sight(rect);
+        let legend = match letters {
+            None => explain::vectors(ui, view, sight, taken),
+            Some(size) => {
+                let mut inside = ui.new_child(UiBuilder::new().id_salt(("vectors", view)));
+                for style in [TextStyle::Body, TextStyle::Small] {
+                    inside.style_mut().text_styles.insert(style, FontId::proportional(size));
+                }
+                explain::vectors(&inside, view, sight, taken)
+            }
+        };
+        self.written.extend(legend);
+    }
+
     /// Paints the marks of a view, and over them the handles of the selection.
     fn marked(&mut self, ui: &Ui, rect: Rect) {
         let session = self.context.session();
@@ -221,7 +248,9 @@ impl<'a> Overlaid<'_, 'a> {
         }
         for cell in cells.iter().filter(|cell| cell.rect.is_positive()) {
             // Stacked views share a rectangle.
-            self.written.extend(explain::vectors(ui, cell.view, self.sight(cell.rect)));
+            let taken = spot.map(|spot| spot.column(cell.rect, self.needed)).filter(Rect::is_positive);
+            let letters = spot.map(|spot| letters_on_slide(ui, cells, spot));
+            self.vectors(ui, (cell.view, cell.rect), letters, taken.as_slice());
         }
         let active = cells.iter().find(|cell| cell.view == session.active());
         let told = active.or(cells.first());
@@ -244,8 +273,7 @@ impl<'a> Overlaid<'_, 'a> {
         let (session, registry) = (self.context.session(), self.context.registry());
         let layout = session.document.comparison.layout;
         let palette = Palette::here(ui);
-        let room = cells.first().map_or(0.0, |cell| cell.rect.height() + spot.above());
-        let body = FontId::proportional((CAPTION * ui.max_rect().height()).min(LETTER_SIZE * room));
+        let body = FontId::proportional(letters_on_slide(ui, cells, spot));
         ui.style_mut().text_styles.insert(TextStyle::Body, body);
         let mut disk = of_disk(session);
         let mut shared: Option<Placer> = None;

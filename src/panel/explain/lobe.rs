@@ -28,6 +28,7 @@ use crate::{
         channels, command,
         kept::{Answers, Same},
         keys,
+        placer::EDGE,
         prelude::*,
         segmented,
         state::{LobeChoice, LobeScale, Pin},
@@ -177,11 +178,11 @@ fn answer(
     (asked == question || shown.position.distance(spot.position) < SAME).then(|| shown.clone())
 }
 
-/// Paints the lobes of an explained point into the picture, marking their area as occupied, and their legend. Returns
-/// the legend's rectangle.
+/// Paints the lobes of an explained point into the picture, marking their area as occupied, and their legend clear of
+/// the plates that are `taken`. Returns the legend's rectangle.
 pub(super) fn paint(
     ui: &Ui,
-    rect: Rect,
+    (rect, taken): (Rect, &[Rect]),
     explained: &Arc<Explained>,
     session: &Session,
     room: &mut Room,
@@ -204,7 +205,7 @@ pub(super) fn paint(
     };
     let (lights, count) = match found {
         Ok(found) => found,
-        Err(why) => return plate(ui, rect, sentence(&why)),
+        Err(why) => return plate(ui, rect, taken, sentence(&why)),
     };
     let lights = lights.iter().map(|lit| lit.light.index).collect();
     let question = (Same(explained.clone()), number, lights);
@@ -222,13 +223,13 @@ pub(super) fn paint(
         }
         (shown, scale)
     });
-    let Some(shown) = shown else { return plate(ui, rect, sentence("Lobe: calculating…")) };
+    let Some(shown) = shown else { return plate(ui, rect, taken, sentence("Lobe: calculating…")) };
     match (&shown.lobes, scale) {
-        (Err(why), _) => plate(ui, rect, sentence(why)),
+        (Err(why), _) => plate(ui, rect, taken, sentence(why)),
         (Ok(_), None) => None,
         (Ok(lobes), Some(scale)) => {
             surface::paint(ui, rect, session, shown.position, lobes, &scale, room);
-            plate(ui, rect, legend(lobes, count, &scale, terms))
+            plate(ui, rect, taken, legend(lobes, count, &scale, terms))
         }
     }
 }
@@ -287,8 +288,8 @@ fn legend(lobes: &[LightLobe], count: usize, scale: &Axis, terms: TermSelection)
     }
 }
 
-/// Paints a legend at the right if there is room.
-fn plate(ui: &Ui, rect: Rect, legend: Legend) -> Option<Rect> {
+/// Paints a legend if there is room.
+fn plate(ui: &Ui, rect: Rect, taken: &[Rect], legend: Legend) -> Option<Rect> {
     // In a low picture the scale would cover the middle; a sentence does not.
     if rect.width() < ROOM || legend.scale.is_some() && rect.height() < ROOM {
         return None;
@@ -296,9 +297,32 @@ fn plate(ui: &Ui, rect: Rect, legend: Legend) -> Option<Rect> {
     let left = (rect.right() - LEGEND * theme::scale_here(ui)).max(rect.left());
     let side = Rect::from_min_max(pos2(left, rect.top()), rect.max);
     let plate = channels::LaidOut::new(ui, side, &legend, usize::MAX);
-    let place = Align2::RIGHT_TOP.anchor_size(side.right_top() + vec2(-8.0, 8.0), plate.size);
-    plate.paint(ui, side, place);
+    let place = place_of(rect, plate.size, taken)?;
+    plate.paint(ui, rect, place);
     Some(place)
+}
+
+/// The place of a legend of this size: the upper right corner of a picture or, where plates have taken that, another
+/// one, above or below the plates there.
+fn place_of(rect: Rect, size: Vec2, taken: &[Rect]) -> Option<Rect> {
+    let room = rect.shrink(EDGE);
+    let is_free = |place: &Rect| !taken.iter().any(|other| other.intersects(*place));
+    let first = Align2::RIGHT_TOP.align_size_within_rect(size, room);
+    if is_free(&first) {
+        return Some(first);
+    }
+    let clear = |corner: Align2| {
+        let place = corner.align_size_within_rect(size, room);
+        let there = taken.iter().filter(|other| other.intersects(place));
+        let way = if corner.y() == Align::Min {
+            there.map(|other| other.bottom() + EDGE - place.top()).fold(0.0, f32::max)
+        } else {
+            there.map(|other| other.top() - EDGE - place.bottom()).fold(0.0, f32::min)
+        };
+        place.translate(vec2(0.0, way))
+    };
+    let corners = [Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM, Align2::LEFT_TOP, Align2::LEFT_BOTTOM];
+    corners.into_iter().map(clear).find(|place| room.contains_rect(*place) && is_free(place))
 }
 
 /// The button of the choices.
@@ -313,4 +337,34 @@ pub(super) fn button(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let key = keys::word(ui.ctx(), "next_lobe");
     let help = "The lobe of the reflection model in the picture: as a surface over the point, f towards all viewers.";
     response.on_hover_text(format!("{help} {key} goes on to the next."));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_legend_keeps_its_distance_from_the_edge_and_covers_no_plate() {
+        let picture = Rect::from_min_size(pos2(10.0, 20.0), vec2(600.0, 400.0));
+        let size = vec2(300.0, 120.0);
+        let usual = Rect::from_min_size(pos2(302.0, 28.0), size);
+        assert_eq!(place_of(picture, size, &[]), Some(usual));
+        let (left, lower) = (picture.with_max_x(250.0), picture.with_min_y(380.0));
+        assert_eq!(place_of(picture, size, &[left, lower]), Some(usual), "they are elsewhere");
+        let half = picture.with_min_x(250.0);
+        let cases = [
+            [picture.with_max_y(80.0), lower],
+            [half.with_max_y(200.0), lower],
+            [half, lower],
+            [half.with_max_y(380.0), left.with_max_y(80.0)],
+        ];
+        for taken in cases {
+            let Some(place) = place_of(picture, size.min(vec2(200.0, 120.0)), &taken) else {
+                panic!("there is room beside {taken:?}")
+            };
+            assert!(picture.shrink(EDGE).contains_rect(place), "{place:?}");
+            assert!(taken.iter().all(|other| !other.intersects(place)), "{place:?} {taken:?}");
+        }
+        assert_eq!(place_of(picture, size, &[picture]), None, "there is no room");
+    }
 }

@@ -70,9 +70,9 @@ fn arrows(spot: &Spot, lit: Option<&Lit>) -> Vec<Arrow> {
 }
 
 /// Paints the vectors of the explained point into a view, while the point is pinned or under the pointer; those of a
-/// pinned point also into the other views. The letters keep clear of the text over the picture. Returns the rectangle
-/// of the legend of the lobe.
-pub fn vectors(ui: &Ui, view: usize, sight: Sight<'_>) -> Option<Rect> {
+/// pinned point also into the other views. The letters keep clear of the text over the picture, and the legend of the
+/// lobe of the plates that are `taken`. Returns the rectangle of that legend.
+pub fn vectors(ui: &Ui, view: usize, sight: Sight<'_>, taken: &[Rect]) -> Option<Rect> {
     let Sight { rect, written, session, registry } = sight;
     let shown = session.view.pinned.is_some() || probe::is_hovered(ui.ctx());
     let explained =
@@ -81,12 +81,16 @@ pub fn vectors(ui: &Ui, view: usize, sight: Sight<'_>) -> Option<Rect> {
     let explains = session.shows_vectors();
     let name = |light: usize| session.name_of(Selection::Light(light), registry);
     let mut room = Room::default();
-    let legend = if explains { lobe::paint(ui, rect, &explained, session, &mut room, &name) } else { None };
+    let legend = match explains {
+        true => lobe::paint(ui, (rect, taken), &explained, session, &mut room, &name),
+        false => None,
+    };
     legend.iter().chain(written).for_each(|plate| room.take_plate(*plate));
     let at = ui.input(|i| i.pointer.latest_pos().filter(|_| !i.pointer.any_down()));
     let pointer = at.filter(|at| is_in_sight(ui.ctx(), rect, *at));
     let ink = Ink::new(Lens::of(session, rect));
-    let mut drawing = Drawing { ink, words: Vec::new(), rect, pointer, lit: Vec::new(), near: None };
+    let scale = theme::scale_here(ui);
+    let mut drawing = Drawing { ink, words: Vec::new(), rect, scale, pointer, lit: Vec::new(), near: None };
     if let Some(seen) = explained.explanation.seen.as_ref().filter(|_| explains) {
         drawing.seen(ui, seen);
     }
@@ -102,6 +106,8 @@ struct Drawing {
     /// Letters and angles, each with its position and the symbols it stands for.
     words: Vec<(Pos2, String, Color32, Vec<&'static str>)>,
     rect: Rect,
+    /// Scale factor of the letters.
+    scale: f32,
     pointer: Option<Pos2>,
     /// The highlighted vectors.
     lit: Vec<&'static str>,
@@ -185,7 +191,12 @@ impl Drawing {
             self.ink.disc(at, if this { radius } else { 0.7 * radius }, colour);
             let out = (at.to_vec2() - middle).normalized();
             if roomy {
-                self.words.push((at + out * 20.0, rows::short(corner.weight), WHITE, Vec::new()));
+                self.words.push((
+                    at + out * (20.0 * self.scale),
+                    rows::short(corner.weight),
+                    WHITE,
+                    Vec::new(),
+                ));
             }
         }
     }
@@ -229,7 +240,7 @@ impl Drawing {
                     self.ink.stroke(vec![origin - arm, origin + arm], width, colour);
                 }
             }
-            let at = origin + vec2(-15.0, 15.0);
+            let at = origin + vec2(-15.0, 15.0) * self.scale;
             self.words.push((at, arrow.letter.to_owned(), colour, vec![arrow.letter]));
             return;
         }
@@ -241,7 +252,8 @@ impl Drawing {
         let back = tip - head * ahead;
         let side = ahead.rot90() * (0.5 * head);
         self.ink.fill(vec![tip, back + side, back - side], colour);
-        self.words.push((tip + 12.0 * ahead, arrow.letter.to_owned(), colour, vec![arrow.letter]));
+        let at = tip + 12.0 * self.scale * ahead;
+        self.words.push((at, arrow.letter.to_owned(), colour, vec![arrow.letter]));
     }
 
     /// Arcs between the vectors, where their directions are distinct in the picture.
@@ -301,7 +313,7 @@ impl Drawing {
     fn paint(self, ui: &Ui, mut room: Room, model: Option<&Model>) {
         let painter = ui.painter_at(self.rect);
         self.ink.paint(&painter);
-        let font = FontId::new(LETTER * theme::scale_here(ui), theme::semibold());
+        let font = FontId::new(LETTER * self.scale, theme::semibold());
         // The caption of the picture is at its lower edge.
         let within = self.rect.with_max_y(self.rect.bottom() - CAPTION);
         let mut near = self.near;
@@ -310,7 +322,7 @@ impl Drawing {
             let text = painter.layout_no_wrap(word, font.clone(), colour);
             let plate = room.find(at, text.size() + vec2(8.0, 2.0), within);
             room.take_plate(plate);
-            if plate.center().distance(at) > room::APART {
+            if plate.center().distance(at) > room::APART * self.scale {
                 let line = [plate.clamp(at), at];
                 painter.line_segment(line, Stroke::new(3.0, OUTLINE.gamma_multiply(0.78)));
                 painter.line_segment(line, Stroke::new(1.0, colour));

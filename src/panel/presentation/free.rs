@@ -134,6 +134,14 @@ impl PlatePlace {
         }
     }
 
+    /// The rectangle of a column of plates over a picture; nothing if they are in a band.
+    pub(in crate::panel) fn column(self, picture: Rect, needed: Needed) -> Rect {
+        match self {
+            Self::Corner(corner, _) => corner.align_size_within_rect(needed.column, picture.shrink(EDGE)),
+            Self::Band(_) => Rect::NOTHING,
+        }
+    }
+
     /// The places over a picture, or in the band above it.
     pub(in crate::panel) fn placer(self, picture: Rect) -> Placer {
         match self {

@@ -194,6 +194,12 @@ impl Stage {
         [self.plate, self.caption]
     }
 
+    /// All rectangles that something takes: equation, caption, and the plates over the picture, which need this room.
+    pub(super) fn taken(&self, needed: Needed) -> Vec<Rect> {
+        let all = [self.plate, self.caption, self.spot.column(self.free(), needed)];
+        all.into_iter().filter(Rect::is_positive).collect()
+    }
+
     /// Paints equation and caption on backgrounds that make them readable over any picture, and sets the text size for
     /// the picture.
     pub(super) fn paint(&self, ui: &mut Ui, session: &Session, registry: &Registry) {

@@ -9,6 +9,7 @@ use crate::{
         caption::{MOST_VALUES, model_part, shading_parts, values_of},
         prelude::*,
     },
+    parameter::Parameter,
 };
 
 /// What a fact is about, in the order in which facts are said. A value has the position of its parameter.
@@ -46,18 +47,39 @@ struct Fact {
     usual: bool,
 }
 
-/// All facts about a view.
-fn facts((scene, terms): (&Scene, TermSelection), registry: &Registry) -> Vec<Fact> {
+/// The values of the only object of a scene, in the order in which its model declares them.
+fn values_said(scene: &Scene, registry: &Registry) -> Vec<(&'static Parameter, Part)> {
+    let mut objects = scene.shown();
+    match (objects.next(), objects.next()) {
+        (Some(object), None) => values_of(object, scene.model_of(object), registry),
+        _ => Vec::new(),
+    }
+}
+
+/// The names of the values of all views: in the order of the model that has most of them, then what only others have.
+fn order_of_values(views: &[(&Scene, TermSelection)], registry: &Registry) -> Vec<&'static str> {
+    let mut all: Vec<_> = views.iter().map(|(scene, _)| values_said(scene, registry)).collect();
+    all.sort_by_key(|values| Reverse(values.len()));
+    let mut names = Vec::new();
+    for (parameter, _) in all.into_iter().flatten() {
+        if !names.contains(&parameter.name) {
+            names.push(parameter.name);
+        }
+    }
+    names
+}
+
+/// All facts about a view, whose values have this order.
+fn facts((scene, terms): (&Scene, TermSelection), order: &[&str], registry: &Registry) -> Vec<Fact> {
     let mut facts = Vec::new();
     let mut say = |about, part, usual| facts.push(Fact { about, part, usual });
     say(About::Model, model_part(scene, registry), false);
     for (about, part) in [About::Shading, About::Stage].into_iter().zip(shading_parts(scene, registry)) {
         say(about, part, false);
     }
-    let mut objects = scene.shown();
-    if let (Some(object), None) = (objects.next(), objects.next()) {
-        for (parameter, part) in values_of(object, scene.model_of(object), registry) {
-            let at = registry.material_parameters().position(|known| known.name == parameter.name);
+    if let Some(object) = scene.shown().next() {
+        for (parameter, part) in values_said(scene, registry) {
+            let at = order.iter().position(|name| *name == parameter.name);
             let usual = object.material.get(parameter) == parameter.default_value();
             say(About::Value(at.unwrap_or(usize::MAX)), part, usual);
         }
@@ -76,7 +98,8 @@ fn facts((scene, terms): (&Scene, TermSelection), registry: &Registry) -> Vec<Fa
 
 /// The captions of views that show these scenes and terms. Parts about the same have the same rank in all.
 pub(super) fn alike(views: &[(&Scene, TermSelection)], registry: &Registry) -> Vec<Vec<Part>> {
-    let all: Vec<_> = views.iter().map(|view| facts(*view, registry)).collect();
+    let order = order_of_values(views, registry);
+    let all: Vec<_> = views.iter().map(|view| facts(*view, &order, registry)).collect();
     let of = |facts: &[Fact], about: About| {
         facts.iter().find(|fact| fact.about == about).map(|fact| fact.part.clone())
     };
@@ -135,6 +158,21 @@ mod tests {
         let ranks: Vec<Vec<u8>> =
             ranks.iter().map(|parts| parts.iter().map(|part| part.rank).collect()).collect();
         assert_eq!(ranks[0], ranks[1], "so that both leave out the same");
+    }
+
+    #[test]
+    fn values_have_the_order_in_which_the_model_declares_them() {
+        let a = scene("blinn_phong");
+        let b = Scene { shading_model: "phong".to_owned(), ..a.clone() };
+        let lambert = scene("lambert");
+        let declared = values_said(&a, &Registry::builtin());
+        let declared: Vec<_> = declared.iter().map(|(_, part)| line(std::slice::from_ref(part))).collect();
+        for views in [[&a, &b], [&lambert, &a]] {
+            let views = views.map(|scene| (scene, TermSelection::All));
+            let captions = said(&views);
+            let at: Vec<_> = declared.iter().filter_map(|value| captions[1].find(value.as_str())).collect();
+            assert!(at.len() > 2 && at.is_sorted(), "{declared:?}: {captions:?}");
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy_egui::egui::{Key, Modifiers, Shape, vec2};
+use bevy_egui::egui::{Key, Modifiers, Rect, Shape, vec2};
 use glam::Vec3;
 use lights_camera_models::{
     curves::{Channel, lobe::value},
@@ -323,4 +323,51 @@ fn the_legend_says_which_direction_of_a_light_with_extent_it_is_for() {
     let drawn = &lobes.lobes.as_ref().expect("a lobe")[0];
     let brightest = spot.lights[0].integral.and_then(|integral| integral.brightest).expect("it shines");
     assert!(drawn.extends && drawn.l == brightest.geometry.l);
+}
+
+/// The texts on the screen, each with the size of its letters and its place.
+fn sizes(shapes: &[Shape]) -> Vec<(String, f32, Rect)> {
+    let text = |shape: &Shape| match shape {
+        Shape::Text(text) => {
+            let size = text.galley.job.sections.first()?.format.font_id.size;
+            Some((text.galley.text().to_owned(), size, text.visual_bounding_rect()))
+        }
+        _ => None,
+    };
+    shapes.iter().filter_map(text).collect()
+}
+
+#[test]
+fn in_a_presentation_its_legend_and_the_letters_of_vectors_are_as_large_as_the_caption() {
+    for model in ["phong", "cook_torrance"] {
+        let mut bench = bench(scene(model, "phong"));
+        bench.apply(Action::View(ViewChange::Presenting(true)));
+        bench.wait_for_lobes();
+        let shapes = bench.shapes();
+        let texts = sizes(&shapes);
+        let of = |start: &str| {
+            let found = texts.iter().find(|(text, ..)| text.starts_with(start));
+            found.unwrap_or_else(|| panic!("{model}: {start} is not in {texts:?}"))
+        };
+        let (caption, title) = (of("Phong shading").1, of("Lobe: ").2);
+        let is_as_large = |size: f32| (size - caption).abs() < 0.01;
+        assert!(caption > 20.0, "{caption}");
+        for letter in ["N", "L", "V"] {
+            let found = texts.iter().any(|(text, size, _)| text == letter && is_as_large(*size));
+            assert!(found, "{model}: {letter} in {texts:?}");
+        }
+        // The smallest plate around the title.
+        let plates = shapes.iter().filter_map(|shape| match shape {
+            Shape::Rect(plate) if plate.rect.contains_rect(title) => Some(plate.rect),
+            _ => None,
+        });
+        let plate = plates.min_by(|a, b| a.area().total_cmp(&b.area())).expect("a plate");
+        assert!(bench.area.frame.shrink(7.9).contains_rect(plate), "{model}: {plate:?}");
+        let (inside, outside): (Vec<_>, Vec<_>) =
+            texts.iter().partition(|(_, _, place)| plate.expand(1.0).contains_rect(*place));
+        assert!(inside.len() >= 4, "{model}: a title and three numbers, not {inside:?}");
+        assert!(inside.iter().all(|(_, size, _)| is_as_large(*size)), "{model}: {inside:?}");
+        let covered: Vec<_> = outside.iter().filter(|(_, _, place)| place.intersects(plate)).collect();
+        assert!(covered.is_empty(), "{model}: {covered:?}");
+    }
 }
