@@ -78,6 +78,7 @@ impl ToneMapping {
 
     /// Maps one linear colour; the result is within [0, 1] up to clipping by the display.
     #[must_use]
+    #[inline]
     pub fn map(self, c: Vec3) -> Vec3 {
         let c = c.clamp(Vec3::splat(-BRIGHTEST), Vec3::splat(BRIGHTEST));
         match self {

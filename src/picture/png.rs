@@ -102,7 +102,7 @@ fn encode_all(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
-    encoder.set_compression(Compression::Fast);
+    encoder.set_compression(Compression::Fastest);
     if let Some(rate) = rate {
         encoder.set_animated(u32::try_from(pictures.len()).unwrap_or(u32::MAX), 0).map_err(plain)?;
         encoder.set_frame_delay(1, u16::try_from(rate).unwrap_or(u16::MAX)).map_err(plain)?;

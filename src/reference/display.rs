@@ -49,6 +49,7 @@ impl Encoder {
         Self { threshold, start }
     }
 
+    #[inline]
     fn encode(&self, x: f32) -> u8 {
         if x.is_nan() || x <= 0.0 {
             return 0;
@@ -150,6 +151,7 @@ impl DisplayTransform {
         [exposed, input, joined]
     }
 
+    #[inline]
     fn codes(&self, c: Vec3) -> [u8; 3] {
         [self.encoder.encode(c.x), self.encoder.encode(c.y), self.encoder.encode(c.z)]
     }

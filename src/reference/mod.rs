@@ -317,7 +317,7 @@ impl Drawing<'_> {
 
     /// The picture: the result of `finish` for the light, which is 0 where there is neither an object nor a visible light,
     /// and the row.
-    fn draw<T: Copy + Send + Sync>(&self, finish: impl Fn(Vec4, usize) -> T + Sync) -> Vec<T> {
+    fn draw<T: Copy + PartialEq + Send + Sync>(&self, finish: impl Fn(Vec4, usize) -> T + Sync) -> Vec<T> {
         match self.shot.settings.samples {
             0 | 1 => draw_sampled::<1, T>(self, finish),
             _ => draw_sampled::<4, T>(self, finish),
@@ -325,7 +325,7 @@ impl Drawing<'_> {
     }
 }
 
-fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
+fn draw_sampled<const S: usize, T: Copy + PartialEq + Send + Sync>(
     &Drawing { shot, sight, remaining, samples, end, odd, tiles: at_once }: &Drawing,
     finish: impl Fn(Vec4, usize) -> T + Sync,
 ) -> Vec<T> {
@@ -336,7 +336,14 @@ fn draw_sampled<const S: usize, T: Copy + Send + Sync>(
         return Vec::new();
     }
     let mut out = Vec::with_capacity(width * height);
-    (0..height).for_each(|row| out.resize((row + 1) * width, finish(Vec4::ZERO, row)));
+    for row in 0..height {
+        let behind = finish(Vec4::ZERO, row);
+        match out.last() {
+            // To copy a row is faster than to fill one.
+            Some(above) if *above == behind => out.extend_from_within((row - 1) * width..),
+            _ => out.resize((row + 1) * width, behind),
+        }
+    }
     let screen = Screen::new(width, height, S);
     let lights = Lights::new(scene, registry, settings.terms).sampled(samples);
     let lights = if sight.is_some() { lights.raw() } else { lights };
@@ -437,7 +444,16 @@ fn finished<const S: usize, T: Copy>(
         tile.get_or_insert_with(Tile::new).show(&lights);
     }
     let tile = tile?;
-    let pixels = tile.resolve().enumerate().map(|(at, pixel)| finish(pixel, origin[1] + at / TILE));
+    // Neighbours are often the same, bit for bit: background, and polygons of one colour.
+    let mut last = None;
+    let pixels = tile.resolve().enumerate().map(|(at, pixel)| {
+        let (row, bits) = (at / TILE, pixel.to_array().map(f32::to_bits));
+        let (.., done) = last
+            .filter(|&(above, before, _)| (above, before) == (row, bits))
+            .unwrap_or_else(|| (row, bits, finish(pixel, origin[1] + row)));
+        last = Some((row, bits, done));
+        done
+    });
     Some(Finished::Pixels(pixels.collect()))
 }
 

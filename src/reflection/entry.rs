@@ -59,23 +59,19 @@ pub struct ModelEntry {
 }
 
 /// Values that distinguish entries with the same id.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Identity {
     /// See [`ModelEntry::version`].
     version: u64,
-    /// See [`ModelEntry::declared`].
-    declared: u64,
+    /// See [`ModelEntry::declared`]. Calculated when it is first asked for: a start of the program would wait for that of
+    /// every model, and a command asks for none.
+    declared: Arc<OnceLock<u64>>,
 }
 
 impl Identity {
-    fn new(declaration: &Declaration, parameters: &[Parameter]) -> Self {
+    fn new() -> Self {
         static VERSIONS: AtomicU64 = AtomicU64::new(1);
-        let mut hasher = DefaultHasher::new();
-        // The text of the shader is compared where it is composed. Parameters contain floats, which cannot be
-        // hashed.
-        let wgsl = Source { text: "", ..declaration.wgsl };
-        format!("{:?} {parameters:?}", Declaration { wgsl, ..*declaration }).hash(&mut hasher);
-        Self { version: VERSIONS.fetch_add(1, Ordering::Relaxed), declared: hasher.finish() }
+        Self { version: VERSIONS.fetch_add(1, Ordering::Relaxed), declared: Arc::default() }
     }
 }
 
@@ -148,7 +144,7 @@ impl ModelEntry {
             on_pages: None,
             interior_on_pages: None,
             on_cpu,
-            identity: Identity::new(declaration, parameters),
+            identity: Identity::new(),
             kept: Arc::default(),
         }
     }
@@ -184,7 +180,15 @@ impl ModelEntry {
     /// A number that changes when the declaration or the parameters do, and with them the layout of rows.
     #[must_use]
     pub(crate) fn declared(&self) -> u64 {
-        self.identity.declared
+        *self.identity.declared.get_or_init(|| {
+            let mut hasher = DefaultHasher::new();
+            // The text of the shader is compared where it is composed. Parameters contain floats, which cannot be
+            // hashed.
+            let wgsl = Source { text: "", ..self.declaration.wgsl };
+            format!("{:?} {:?}", Declaration { wgsl, ..*self.declaration }, self.parameters)
+                .hash(&mut hasher);
+            hasher.finish()
+        })
     }
 
     /// The reason why the CPU cannot run the model, if any: it interprets the WGSL of custom models, but not
