@@ -1,4 +1,5 @@
-// Keeps the site for when there is no network. scripts/web puts in the version and the names of the files.
+// Keeps the site for when there is no network; start.js keeps the program. scripts/web puts in the version and the names of
+// the files.
 const CACHE = "lab-VERSION";
 const FILES = ["FILES"];
 

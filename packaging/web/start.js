@@ -41,22 +41,50 @@ addEventListener("lab-stopped", (event) => stop(event.detail));
 
 const megabytes = (bytes) => (bytes / 1e6).toFixed(1);
 
-/** The program, unpacked while it arrives. */
+/** What this browser keeps of this version of the site, see offline.js. scripts/web puts in the version. */
+const CACHE = "lab-VERSION";
+const KEPT = "lab.wasm";
+const wasm = { headers: { "Content-Type": "application/wasm" } };
+
+/** What is done with copies, where the browser keeps any: private windows and full disks do without. */
+async function keeping(action) {
+    try {
+        return await action();
+    } catch (why) {
+        console.warn(why);
+        return undefined;
+    }
+}
+
+/** The program: the copy of an earlier visit, or unpacked while it arrives, and then kept. */
 async function program() {
-    const response = await fetch("lab.bin");
+    const known = await keeping(() => caches.match(KEPT, { cacheName: CACHE }));
+    if (known) {
+        bar.removeAttribute("value");
+        return known;
+    }
+    const { default: prepare, Unpacker } = await import("./unpack.js");
+    const [response] = await Promise.all([fetch("lab.bin"), prepare()]);
     if (!response.ok) throw new Error(`lab.bin: ${response.status} ${response.statusText}`);
     const whole = Number(response.headers.get("Content-Length"));
+    const unpacker = new Unpacker();
     let done = 0;
-    const count = new TransformStream({
+    const unpack = new TransformStream({
         transform(bytes, onward) {
             done += bytes.length;
             if (whole > 0) bar.value = done / whole;
             say(`${megabytes(done)} of ${megabytes(Math.max(whole, done))} MB`);
-            onward.enqueue(bytes);
+            onward.enqueue(unpacker.more(bytes));
+        },
+        flush() {
+            const whole = unpacker.ended();
+            unpacker.free();
+            if (!whole) throw new Error("lab.bin arrived in part");
         },
     });
-    const unpacked = response.body.pipeThrough(count).pipeThrough(new DecompressionStream("gzip"));
-    return new Response(unpacked, { headers: { "Content-Type": "application/wasm" } });
+    const [now, later] = response.body.pipeThrough(unpack).tee();
+    keeping(async () => (await caches.open(CACHE)).put(KEPT, new Response(later, wasm)));
+    return new Response(now, wasm);
 }
 
 /** What stands for the graphics card where the browser does not answer within ten seconds: some never do. */

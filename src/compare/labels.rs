@@ -49,6 +49,10 @@ fn draw(canvas: &mut Canvas, area: Rect, scene: &Scene, registry: &Registry) {
     let labels = row_labels(scene, registry);
     let seen = |(i, parts): (usize, Vec<Part>)| Some((below(scene, i, area)?, parts));
     let labels: Vec<_> = labels.into_iter().filter_map(seen).take(MOST).collect();
+    if labels.is_empty() {
+        // Fonts take longer to read than a small picture takes to draw.
+        return;
+    }
     let (style, usual) = (Lettering::Regular, TEXT * canvas.scale());
     let ground = Ground::of(&scene.display);
     let room = apart(&labels, style.height(usual)).unwrap_or(f32::INFINITY);

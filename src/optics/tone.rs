@@ -73,7 +73,18 @@ impl ToneMapping {
     /// True if the curve needs a table of colours; the others are formulas.
     #[must_use]
     pub fn is_table(self) -> bool {
-        matches!(self, Self::AgX | Self::TonyMcMapface | Self::BlenderFilmic)
+        self.table().is_some()
+    }
+
+    /// The table of colours as a KTX2 file, of the curves that need one.
+    #[must_use]
+    pub(crate) fn table(self) -> Option<&'static [u8]> {
+        match self {
+            Self::AgX => Some(include_bytes!("../../assets/tone/agx.ktx2")),
+            Self::TonyMcMapface => Some(include_bytes!("../../assets/tone/tony_mc_mapface.ktx2")),
+            Self::BlenderFilmic => Some(include_bytes!("../../assets/tone/blender_filmic.ktx2")),
+            _ => None,
+        }
     }
 
     /// Maps one linear colour; the result is within [0, 1] up to clipping by the display.
@@ -101,16 +112,15 @@ impl ToneMapping {
 }
 
 // The tables (see assets/tone/README.md), read when a curve that needs one is first used.
-static AGX: LazyLock<Table> = LazyLock::new(|| table(include_bytes!("../../assets/tone/agx.ktx2")));
-static TONY_MC_MAPFACE: LazyLock<Table> =
-    LazyLock::new(|| table(include_bytes!("../../assets/tone/tony_mc_mapface.ktx2")));
-static BLENDER_FILMIC: LazyLock<Table> =
-    LazyLock::new(|| table(include_bytes!("../../assets/tone/blender_filmic.ktx2")));
+static AGX: LazyLock<Table> = LazyLock::new(|| table(ToneMapping::AgX));
+static TONY_MC_MAPFACE: LazyLock<Table> = LazyLock::new(|| table(ToneMapping::TonyMcMapface));
+static BLENDER_FILMIC: LazyLock<Table> = LazyLock::new(|| table(ToneMapping::BlenderFilmic));
 
-/// A table built into the program.
+/// The table of a curve that has one.
 #[allow(clippy::expect_used)]
-fn table(file: &[u8]) -> Table {
-    Table::from_ktx2(file).expect("the tables in assets/tone are complete; a test reads them")
+fn table(curve: ToneMapping) -> Table {
+    let table = Table::from_ktx2(curve.table().unwrap_or_default());
+    table.expect("the tables in assets/tone are complete; a test reads them")
 }
 
 /// Numbers from 0 to ∞ on a logarithmic scale around middle grey, 0.18: 0 at `min` EV from it and 1 at

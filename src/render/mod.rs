@@ -36,6 +36,7 @@ pub mod stage;
 pub mod straight;
 pub mod swap;
 pub mod tables;
+mod tone;
 pub mod trial;
 pub(crate) mod typed;
 pub mod view;

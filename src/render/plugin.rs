@@ -24,7 +24,7 @@ use super::{
     stage::{Stage, set_stages},
     straight::StraightPlugin,
     swap::swap,
-    tables,
+    tables, tone,
     typed::know_types,
     view::{self, ViewSystems},
 };
@@ -70,7 +70,14 @@ impl Plugin for ScenePlugin {
             .add_systems(LabFrame, (upload_lights, follow_scene).in_set(Upload))
             .add_systems(PostUpdate, aim.in_set(ViewSystems).before(view::fit))
             .add_plugins((live::plugin, view::plugin, tables::plugin, file_buffers::plugin, StraightPlugin))
-            .add_plugins((material::plugin, seen::plugin, mean::plugin, noise::plugin, backdrop::plugin));
+            .add_plugins((
+                material::plugin,
+                seen::plugin,
+                mean::plugin,
+                noise::plugin,
+                backdrop::plugin,
+                tone::plugin,
+            ));
         // Systems that access the same data must have a defined order.
         detect(app, LogLevel::Warn);
     }

@@ -194,16 +194,23 @@ fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
 }
 
 fn log_plugin(options: &ViewOptions) -> LogPlugin {
+    // Where Bevy has no tables of tone curves, it has the program's, and does not know.
     let (level, filter) = if options.verbose {
-        (Level::INFO, "wgpu=error,naga=warn,notify=error,bevy_render::gpu_readback=error")
+        (
+            Level::INFO,
+            "wgpu=error,naga=warn,notify=error,bevy_render::gpu_readback=error,bevy_core_pipeline::tonemapping=off",
+        )
     } else if options.quiet {
-        (Level::ERROR, "wgpu=error,naga=off,notify=error,bevy_render::gpu_readback=error")
+        (
+            Level::ERROR,
+            "wgpu=error,naga=off,notify=error,bevy_render::gpu_readback=error,bevy_core_pipeline::tonemapping=off",
+        )
     } else {
         // The status line says if the renderer runs on the CPU, and problems of a shader are reported in terms of its
         // file; the other messages silenced here are irrelevant to users.
         (
             Level::WARN,
-            "wgpu=error,naga=off,notify=error,bevy_render::renderer=error,bevy_render::gpu_readback=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error",
+            "wgpu=error,naga=off,notify=error,bevy_render::renderer=error,bevy_render::gpu_readback=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error,bevy_core_pipeline::tonemapping=off",
         )
     };
     LogPlugin { level, filter: filter.to_owned(), ..LogPlugin::default() }

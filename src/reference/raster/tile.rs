@@ -80,7 +80,13 @@ impl<const S: usize, const E: usize> Tile<S, E> {
         let most: [i64; 3] = std::array::from_fn(|e| offsets[e].iter().copied().max().unwrap_or(0));
         let step: [i64; 3] = std::array::from_fn(|e| -edges[e].1[1] * SUBPIXEL);
         let per_area = 1.0 / triangle.area as f64;
-        let w = triangle.inverse_w.map(f64::from);
+        // Nearness is linear on the screen: that of a sample is that of the pixel's centre and a difference.
+        let slope = triangle.inverse_w.map(|w| per_area * f64::from(w));
+        let nearer =
+            |at: [i64; 3]| at[0] as f64 * slope[0] + at[1] as f64 * slope[1] + at[2] as f64 * slope[2];
+        let differences: [f64; S] = std::array::from_fn(|s| nearer(offsets.map(|o| o[s])));
+        // A sample is covered if none of these and the edge functions add up to less than 0.
+        let limits: [[i64; S]; 3] = std::array::from_fn(|e| offsets[e].map(|o| o + edges[e].2));
         let wide = right - left >= 8;
 
         for y in top..=bottom {
@@ -106,28 +112,23 @@ impl<const S: usize, const E: usize> Tile<S, E> {
             for x in first..=last {
                 let here = at;
                 at = std::array::from_fn(|e| at[e] + step[e]);
-                let mut covered = [false; S];
-                let mut any = false;
-                for s in 0..S {
-                    covered[s] = (0..3).all(|e| here[e] + offsets[e][s] + edges[e].2 >= 0);
-                    any |= covered[s];
-                }
-                if !any {
+                // The sign of the least of three numbers is that of all their bits together.
+                let mut covered: [bool; S] = std::array::from_fn(|s| {
+                    (here[0] + limits[0][s]) | (here[1] + limits[1][s]) | (here[2] + limits[2][s]) >= 0
+                });
+                if covered == [false; S] {
                     continue;
                 }
                 let pixel = (y - origin[1]) * E + left + x as usize - origin[0];
                 let nearness = &mut self.nearness[pixel];
+                let centre = nearer(here);
                 let mut visible = false;
                 for s in 0..S {
+                    let near = (centre + differences[s]) as f32;
+                    covered[s] &= near > nearness[s];
                     if covered[s] {
-                        // Written out: a sum over an iterator becomes a call for each sample.
-                        let part = |e: usize| (here[e] + offsets[e][s]) as f64 * per_area * w[e];
-                        let near = (part(0) + part(1) + part(2)) as f32;
-                        covered[s] = near > nearness[s];
-                        if covered[s] {
-                            nearness[s] = near;
-                            visible = true;
-                        }
+                        nearness[s] = near;
+                        visible = true;
                     }
                 }
                 if visible {
