@@ -200,9 +200,7 @@ impl<'a> Overlaid<'_, 'a> {
             None => explain::vectors(ui, view, sight, taken),
             Some(size) => {
                 let mut inside = ui.new_child(UiBuilder::new().id_salt(("vectors", view)));
-                for style in [TextStyle::Body, TextStyle::Small] {
-                    inside.style_mut().text_styles.insert(style, FontId::proportional(size));
-                }
+                presentation::text_of_size(&mut inside, size);
                 explain::vectors(&inside, view, sight, taken)
             }
         };
@@ -273,8 +271,7 @@ impl<'a> Overlaid<'_, 'a> {
         let (session, registry) = (self.context.session(), self.context.registry());
         let layout = session.document.comparison.layout;
         let palette = Palette::here(ui);
-        let body = FontId::proportional(letters_on_slide(ui, cells, spot));
-        ui.style_mut().text_styles.insert(TextStyle::Body, body);
+        presentation::text_of_size(ui, letters_on_slide(ui, cells, spot));
         let mut disk = of_disk(session);
         let mut shared: Option<Placer> = None;
         // Sizes of plates below each other, and in rows.
