@@ -121,7 +121,10 @@ pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, r
     let text = "From straight above: area is projected solid angle, N is the middle, the rim is the horizon, the tangent points right.";
     theme::note(ui, text);
     // The integral of the samples is shown below its light.
-    discs.hemisphere.said().into_iter().for_each(|text| drop(theme::note(ui, text)));
+    for text in discs.hemisphere.said() {
+        let text = rows::unbroken(ui, &text);
+        theme::note(ui, text);
+    }
 }
 
 /// The legend of a disc: the end of its scale.
