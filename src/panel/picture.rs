@@ -760,8 +760,11 @@ struct Click {
 
 /// The badge for hidden terms of the equation in a view, which shows them all.
 fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<Sign> {
+    // A channel of geometry has no terms.
+    let of_geometry = session.channel_of(view).is_some_and(|channel| !channel.is_of_light());
     let shown = match session.terms_of(view) {
         TermSelection::All => return None,
+        _ if of_geometry => return None,
         other => other.id(),
     };
     let whose = match single(&session.document.models_shown(view)).and_then(|id| registry.model(id)) {
