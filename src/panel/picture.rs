@@ -376,16 +376,17 @@ impl<'a> Overlaid<'_, 'a> {
         let shorter = shorter_words(&session.shaders).map(str::to_owned);
         let headings = iter::once(heading.clone()).chain(shorter);
         let Some(galleys) = that_fit(ui, placer.room, headings, said, tallest) else { return Rect::NOTHING };
-        let place = placer.place(size_of(&galleys));
+        let place = placer.place(size_of(ui, &galleys));
         let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
         theme::says(&response, WidgetType::Button, format!("{heading}: {}", lines.join("; ")));
         // The rim stands out even where the picture has the colour of the plate.
         let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.panel };
         painter.rect(place, 5.0, palette.error, Stroke::new(2.0, rim), StrokeKind::Outside);
         let mut at = place.min + PADDING;
-        let sign = pos2(at.x + 8.0, at.y + 0.5 * galleys[0].rows.first().map_or(0.0, |r| r.height()));
-        icon::severity_in(&painter, sign, 8.0, Severity::Error, palette.panel);
-        at.x += SIGN;
+        let radius = SIGN[0] * theme::scale_here(ui);
+        let sign = pos2(at.x + radius, at.y + 0.5 * galleys[0].rows.first().map_or(0.0, |r| r.height()));
+        icon::severity_in(&painter, sign, radius, Severity::Error, palette.panel);
+        at.x += SIGN[1] * theme::scale_here(ui);
         for galley in galleys {
             let height = galley.size().y;
             painter.galley(at, galley, palette.panel);
@@ -499,15 +500,16 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
     Some((heading, lines))
 }
 
-/// Space around the message about a shader error, and of the sign at its left, in points.
+/// Space around the message about a shader error, in points.
 const PADDING: Vec2 = vec2(10.0, 7.0);
-const SIGN: f32 = 26.0;
+/// Radius of the sign at its left, and the space for it, in points at the usual size of text.
+const SIGN: [f32; 2] = [8.0, 26.0];
 
 /// Size of the plate of these texts.
-fn size_of(galleys: &[Arc<Galley>]) -> Vec2 {
+fn size_of(ui: &Ui, galleys: &[Arc<Galley>]) -> Vec2 {
     let height: f32 = galleys.iter().map(|g| g.size().y + 2.0).sum();
     let width = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max);
-    vec2(width + SIGN, height) + 2.0 * PADDING
+    vec2(width + SIGN[1] * theme::scale_here(ui), height) + 2.0 * PADDING
 }
 
 /// Shorter headings of the message about a shader error, down to its sign alone, for small pictures.
@@ -528,13 +530,13 @@ fn that_fit(
     lines: &[String],
     tallest: f32,
 ) -> Option<Vec<Arc<Galley>>> {
-    let room =
-        (rect.width() - 2.0 * placer::EDGE).min(560.0 * theme::scale_here(ui)) - SIGN - 2.0 * PADDING.x;
+    let scale = theme::scale_here(ui);
+    let room = (rect.width() - 2.0 * placer::EDGE).min(560.0 * scale) - SIGN[1] * scale - 2.0 * PADDING.x;
     let body = TextStyle::Body.resolve(ui.style()).size;
     let ink = Palette::here(ui).panel;
     let head = FontId::new(1.12 * body, theme::semibold());
     let fits = |galleys: &[_]| {
-        let size = size_of(galleys);
+        let size = size_of(ui, galleys);
         size.x * size.y <= PLATE * rect.area() && size.y <= tallest
     };
     let mut all =
