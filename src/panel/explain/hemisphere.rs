@@ -106,11 +106,11 @@ pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, r
         theme::note(ui, "Calculating…");
         return;
     };
+    let cell = ((ui.available_width() - 2.0 * GAP) / 3.0).clamp(24.0, LARGEST * theme::scale_here(ui));
+    let (legends, has_units) = legends(ui, &discs.scales, cell);
+    let width = diameter(ui, &legends, cell);
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
-        let cell = ((ui.available_width() - 2.0 * GAP) / 3.0).clamp(24.0, LARGEST * theme::scale_here(ui));
-        let legends = legends(ui, &discs.scales, cell);
-        let width = diameter(ui, &legends, cell);
         let short = DISCS.iter().any(|disc| theme::small_width(ui, disc.name) > cell);
         for (i, disc) in DISCS.iter().enumerate() {
             ui.vertical(|ui| {
@@ -124,6 +124,9 @@ pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, r
     });
     let text = "From straight above: area is projected solid angle, N is the middle, the rim is the horizon, the tangent points right.";
     theme::note(ui, text);
+    if !has_units {
+        theme::note(ui, format!("Light and product are in {}.", DISCS[0].unit));
+    }
     // The integral of the samples is shown below its light.
     for text in discs.hemisphere.said() {
         let text = rows::unbroken(ui, &text);
@@ -131,14 +134,14 @@ pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, r
     }
 }
 
-/// The legends of the discs, below which so much width is free: the ends of their scales, with units if there is room for
-/// them.
+/// The legends of the discs, below which so much width is free: the ends of their scales; and true if they have units, for
+/// which there must be room.
 fn legends(
     ui: &Ui,
     scales: &[Option<(String, Option<String>)>; DISCS.len()],
     cell: f32,
-) -> [String; DISCS.len()] {
-    let all = |units: bool| {
+) -> ([String; DISCS.len()], bool) {
+    let all = |units: bool| -> [String; DISCS.len()] {
         std::array::from_fn(|i| {
             let Some((white, brighter)) = &scales[i] else { return "all is black".to_owned() };
             let unit = if units { DISCS[i].unit } else { "" };
@@ -148,9 +151,9 @@ fn legends(
                 .map_or_else(|| white.clone(), |largest| format!("{white}\nbrightest: {largest}"))
         })
     };
-    let with_units: [String; DISCS.len()] = all(true);
-    let mut lines = with_units.iter().flat_map(|legend| legend.lines());
-    if lines.all(|line| theme::small_width(ui, line) <= cell) { with_units } else { all(false) }
+    let with_units = all(true);
+    let fits = |legend: &String| legend.lines().all(|line| theme::small_width(ui, line) <= cell);
+    if with_units.iter().all(fits) { (with_units, true) } else { (all(false), false) }
 }
 
 /// The diameter of discs that have so much width, with which title, names, discs and legends fit into the height of the
