@@ -1,6 +1,9 @@
 //! The heading of a view: its overrides, in one line.
 
+use std::collections::BTreeSet;
+
 use super::{
+    order::merged,
     part::{Part, line},
     said::Said,
     words::{differing, exposure, groups, shadings, spread, terms_alone},
@@ -72,7 +75,7 @@ pub(super) fn parts_of(
     {
         say(SHADING, format!("{names} shading"));
     }
-    parts.extend(values(&seen, said, registry));
+    parts.extend(values(scene, &seen, said, registry));
     // Each has a rank of its own, so that one of them is said where there is no room for all.
     let mut say = |place: u8, text: String| parts.push(Part::new(DISPLAY + place, text).continued());
     if said.over.terms.is_some() {
@@ -106,25 +109,54 @@ pub(super) fn parts_of(
     name.map(|name| Part::new(0, name)).into_iter().chain(parts).collect()
 }
 
-/// The values in a heading, ranked in the order in which models declare them.
-fn values(seen: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
+/// The names of the parameters of the models that the views show, in the order in which those declare them.
+fn declared(scene: &Scene, registry: &Registry) -> Vec<&'static str> {
+    let views = (0..=scene.variants.len()).flat_map(|view| scene.models_shown(view));
+    let mut models: Vec<&str> = Vec::new();
+    for id in views {
+        if !models.contains(&id) {
+            models.push(id);
+        }
+    }
+    let models = models.into_iter().filter_map(|id| registry.model(id));
+    merged(models.map(|model| model.parameters.iter().map(|p| p.name).collect()).collect())
+}
+
+/// The names of the parameters whose values in the scene are no defaults of a model that some view shows.
+fn unusual(scene: &Scene, said: &Said, registry: &Registry) -> BTreeSet<&'static str> {
+    let overrides = (1..=scene.variants.len()).filter_map(|view| scene.overrides(view)?.reflection_model);
+    let overrides: BTreeSet<_> = overrides.collect();
+    let shown: Vec<_> = scene.shown().collect();
+    let everywhere = overrides.iter().map(|id| (id.as_str(), shown.clone()));
+    let mut names = BTreeSet::new();
+    for (id, objects) in groups(scene).into_iter().chain(everywhere) {
+        let Some(model) = registry.model(id) else { continue };
+        let colour = |kind: &ParameterKind| matches!(kind, ParameterKind::Colour(_));
+        let own = differing(model, &objects).filter(|(p, _)| said.colours || !colour(&p.kind));
+        names.extend(own.map(|(p, _)| p.name));
+    }
+    names
+}
+
+/// The values in a heading, ranked in the order in which models declare them: those of the same parameters in all headings,
+/// as far as their models have them.
+fn values(scene: &Scene, seen: &Scene, said: &Said, registry: &Registry) -> Vec<Part> {
+    if said.over.material.0.is_empty() && !said.values {
+        return Vec::new();
+    }
+    let order = declared(scene, registry);
+    let own = if said.values { unusual(scene, said, registry) } else { BTreeSet::new() };
     let mut parts: Vec<Part> = Vec::new();
     for (id, objects) in groups(seen) {
         let Some(model) = registry.model(id) else { continue };
-        let own: Vec<_> = if said.values {
-            let colour = |kind: &ParameterKind| matches!(kind, ParameterKind::Colour(_));
-            let own = differing(model, &objects).filter(|(p, _)| said.colours || !colour(&p.kind));
-            own.map(|(p, _)| p.name).collect()
-        } else {
-            Vec::new()
-        };
         for parameter in model.parameters {
-            if !said.over.material.0.contains_key(parameter.name) && !own.contains(&parameter.name) {
+            let is_over = said.over.material.0.contains_key(parameter.name);
+            if !is_over && !own.contains(parameter.name) {
                 continue;
             }
             let part = spread(model, parameter, &objects).and_then(|spread| spread.part(parameter, ""));
-            let at = registry.material_parameters().position(|known| known.name == parameter.name);
-            let least = if said.over.material.0.contains_key(parameter.name) { DIFFERS } else { SAME };
+            let at = order.iter().position(|name| *name == parameter.name);
+            let least = if is_over { DIFFERS } else { SAME };
             let rank = least + at.map_or(MOST, |at| at.min(MOST.into()) as u8);
             let part = part.map(|part| Part { rank, ..part.continued() });
             // Several models may share a parameter.
@@ -215,6 +247,33 @@ mod tests {
                 "C · Phong, Gouraud shading, k_d 0.8, all terms, no tone mapping, 0 EV, gamma-correct, tessellation 32",
             ]
         );
+    }
+
+    #[test]
+    fn values_have_the_order_of_their_declaration_and_are_the_same_in_all_headings() {
+        let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+        let all = [("alpha", Value::Integer(9)), ("k_d", Value::Number(0.5)), ("k_a", Value::Number(0.3))];
+        scene.variants = vec![Variant { material: values(all), ..Variant::default() }];
+        for heading in headers(&scene) {
+            let at = ["k_a", "k_d", "α"].map(|symbol| heading.find(symbol).expect("it differs"));
+            assert!(at.is_sorted(), "{heading}");
+        }
+        // Those of the model with most parameters, also where the other one is A.
+        scene.reflection_model = "lambert".to_owned();
+        scene.variants[0].reflection_model = Some("phong".to_owned());
+        let b = header(&scene, 1, &Registry::builtin());
+        assert!(b.contains("k_a") && b.find("k_a") < b.find("k_d") && b.find("k_d") < b.find('α'), "{b}");
+        // What one model has by default, and the other one has not, is said of both.
+        scene.reflection_model = "disney".to_owned();
+        scene.objects[0].material = values([("roughness", Value::Number(0.3))]);
+        scene.variants[0] = Variant {
+            reflection_model: Some("openpbr".to_owned()),
+            material: values([("metallic", Value::Number(1.0))]),
+            ..Variant::default()
+        };
+        for heading in headers(&scene) {
+            assert!(heading.contains(" 0.3"), "{heading}");
+        }
     }
 
     #[test]

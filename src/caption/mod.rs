@@ -2,6 +2,7 @@
 
 mod ground;
 mod heading;
+mod order;
 mod part;
 mod rows;
 mod said;
@@ -11,6 +12,7 @@ mod words;
 
 pub use ground::Ground;
 pub use heading::{MODEL_RANK, header, header_parts, view_parts};
+pub(crate) use order::merged;
 pub use part::{Part, line};
 pub use rows::{of_copy, of_row, row_labels};
 pub use sampled::{Sampled, sampled};

@@ -44,9 +44,15 @@ pub fn buttons(ui: &mut Ui, context: &mut PanelContext<'_>) {
         context.on_click(&copy.on_hover_text(help), || Action::Model(ModelCommand::Duplicate));
         let path = shown.map_or_else(|| source_path(session.model_shown()), |d| d.wgsl.path.to_owned());
         let file = session.shaders.folders.file_of(&path);
-        let code = ui.add_enabled(file.is_some(), Button::new("Edit code")).on_disabled_hover_text(BUILT_IN);
-        let help = keys::hint(ui.ctx(), "Opens the file here, in the panel Code", "code");
-        context.on_click(&code.on_hover_text(help), || Action::Code(CodeCommand::Model));
+        // Of a built-in model it offers a copy, as it does everywhere.
+        let code = ui.add_enabled(file.is_some() || shown.is_some(), Button::new("Edit code"));
+        let help = match file {
+            Some(_) => "Opens the file here, in the panel Code",
+            None => "Opens the code here, in the panel Code, once the built-in model is copied as a file",
+        };
+        let help = keys::hint(ui.ctx(), help, "code");
+        let code = code.on_hover_text(help).on_disabled_hover_text("The file of this model is gone.");
+        context.on_click(&code, || Action::Code(CodeCommand::Model));
         let open = ui.add_enabled(file.is_some(), Button::new("Open in editor"));
         let open = open.on_disabled_hover_text(BUILT_IN);
         let help = file.map_or_else(String::new, |f| f.shown().to_string());

@@ -33,6 +33,8 @@ pub fn shown(session: &Session, view: usize, registry: &Registry) -> Option<(Deb
 const TALLEST: f32 = 0.4;
 /// The same beside other views, where pictures are small and objects large in them.
 const TALLEST_OF_SEVERAL: f32 = 0.25;
+/// The same in a presentation, where all letters are large, and where a band above the picture may be as high.
+const TALLEST_ON_SLIDE: f32 = 0.45;
 
 /// Paints the legend of a view's channel, if the view shows one; a click on it shows the picture again. Returns the
 /// legend's rectangle.
@@ -56,8 +58,12 @@ pub(super) fn legend(
         legend.title = format!("{} ({remark})", legend.title);
     }
     let rect = placer.room;
-    let beside = several && !session.view.presenting;
-    let tallest = if beside { TALLEST_OF_SEVERAL } else { TALLEST } * rect.height();
+    let part = match (session.view.presenting, several) {
+        (true, _) => TALLEST_ON_SLIDE,
+        (false, true) => TALLEST_OF_SEVERAL,
+        (false, false) => TALLEST,
+    };
+    let tallest = part * rect.height();
     let (laid_out, is_cut) = that_fits(ui, rect, &legend, &name, tallest);
     let place = placer.place(laid_out.size);
     laid_out.paint(ui, rect, place);
@@ -158,6 +164,11 @@ impl LaidOut {
         let lay_out = |text: &String| ui.painter().layout_no_wrap(text.clone(), small.clone(), ink);
         let numbers: Vec<_> = numbers.iter().map(|text| lay_out(text)).collect();
         let colours: Vec<_> = legend.colours.iter().map(|(c, text)| (*c, lay_out(text))).collect();
+        // Three numbers stand apart, however large they are.
+        let bar = match &numbers[..] {
+            [from, middle, to] => bar.max(2.0 * (from.size().x.max(to.size().x) + gap) + middle.size().x),
+            _ => bar,
+        };
         let spacing = Spacing {
             padding: [side, above],
             bar: swatch,

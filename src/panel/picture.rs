@@ -200,9 +200,7 @@ impl<'a> Overlaid<'_, 'a> {
             None => explain::vectors(ui, view, sight, taken),
             Some(size) => {
                 let mut inside = ui.new_child(UiBuilder::new().id_salt(("vectors", view)));
-                for style in [TextStyle::Body, TextStyle::Small] {
-                    inside.style_mut().text_styles.insert(style, FontId::proportional(size));
-                }
+                presentation::text_of_size(&mut inside, size);
                 explain::vectors(&inside, view, sight, taken)
             }
         };
@@ -273,8 +271,7 @@ impl<'a> Overlaid<'_, 'a> {
         let (session, registry) = (self.context.session(), self.context.registry());
         let layout = session.document.comparison.layout;
         let palette = Palette::here(ui);
-        let body = FontId::proportional(letters_on_slide(ui, cells, spot));
-        ui.style_mut().text_styles.insert(TextStyle::Body, body);
+        presentation::text_of_size(ui, letters_on_slide(ui, cells, spot));
         let mut disk = of_disk(session);
         let mut shared: Option<Placer> = None;
         // Sizes of plates below each other, and in rows.
@@ -379,16 +376,17 @@ impl<'a> Overlaid<'_, 'a> {
         let shorter = shorter_words(&session.shaders).map(str::to_owned);
         let headings = iter::once(heading.clone()).chain(shorter);
         let Some(galleys) = that_fit(ui, placer.room, headings, said, tallest) else { return Rect::NOTHING };
-        let place = placer.place(size_of(&galleys));
+        let place = placer.place(size_of(ui, &galleys));
         let response = ui.interact(place, ui.id().with("stale shader"), Sense::click());
         theme::says(&response, WidgetType::Button, format!("{heading}: {}", lines.join("; ")));
         // The rim stands out even where the picture has the colour of the plate.
         let rim = if response.hovered() || response.has_focus() { palette.text } else { palette.panel };
         painter.rect(place, 5.0, palette.error, Stroke::new(2.0, rim), StrokeKind::Outside);
         let mut at = place.min + PADDING;
-        let sign = pos2(at.x + 8.0, at.y + 0.5 * galleys[0].rows.first().map_or(0.0, |r| r.height()));
-        icon::severity_in(&painter, sign, 8.0, Severity::Error, palette.panel);
-        at.x += SIGN;
+        let radius = SIGN[0] * theme::scale_here(ui);
+        let sign = pos2(at.x + radius, at.y + 0.5 * galleys[0].rows.first().map_or(0.0, |r| r.height()));
+        icon::severity_in(&painter, sign, radius, Severity::Error, palette.panel);
+        at.x += SIGN[1] * theme::scale_here(ui);
         for galley in galleys {
             let height = galley.size().y;
             painter.galley(at, galley, palette.panel);
@@ -502,15 +500,16 @@ pub fn stale_words(status: &ShaderStatus, shown: &str) -> Option<(String, Vec<St
     Some((heading, lines))
 }
 
-/// Space around the message about a shader error, and of the sign at its left, in points.
+/// Space around the message about a shader error, in points.
 const PADDING: Vec2 = vec2(10.0, 7.0);
-const SIGN: f32 = 26.0;
+/// Radius of the sign at its left, and the space for it, in points at the usual size of text.
+const SIGN: [f32; 2] = [8.0, 26.0];
 
 /// Size of the plate of these texts.
-fn size_of(galleys: &[Arc<Galley>]) -> Vec2 {
+fn size_of(ui: &Ui, galleys: &[Arc<Galley>]) -> Vec2 {
     let height: f32 = galleys.iter().map(|g| g.size().y + 2.0).sum();
     let width = galleys.iter().map(|g| g.size().x).fold(0.0, f32::max);
-    vec2(width + SIGN, height) + 2.0 * PADDING
+    vec2(width + SIGN[1] * theme::scale_here(ui), height) + 2.0 * PADDING
 }
 
 /// Shorter headings of the message about a shader error, down to its sign alone, for small pictures.
@@ -531,13 +530,13 @@ fn that_fit(
     lines: &[String],
     tallest: f32,
 ) -> Option<Vec<Arc<Galley>>> {
-    let room =
-        (rect.width() - 2.0 * placer::EDGE).min(560.0 * theme::scale_here(ui)) - SIGN - 2.0 * PADDING.x;
+    let scale = theme::scale_here(ui);
+    let room = (rect.width() - 2.0 * placer::EDGE).min(560.0 * scale) - SIGN[1] * scale - 2.0 * PADDING.x;
     let body = TextStyle::Body.resolve(ui.style()).size;
     let ink = Palette::here(ui).panel;
     let head = FontId::new(1.12 * body, theme::semibold());
     let fits = |galleys: &[_]| {
-        let size = size_of(galleys);
+        let size = size_of(ui, galleys);
         size.x * size.y <= PLATE * rect.area() && size.y <= tallest
     };
     let mut all =
@@ -763,8 +762,11 @@ struct Click {
 
 /// The badge for hidden terms of the equation in a view, which shows them all.
 fn hidden_terms(view: usize, session: &Session, registry: &Registry) -> Option<Sign> {
+    // A channel of geometry has no terms.
+    let of_geometry = session.channel_of(view).is_some_and(|channel| !channel.is_of_light());
     let shown = match session.terms_of(view) {
         TermSelection::All => return None,
+        _ if of_geometry => return None,
         other => other.id(),
     };
     let whose = match single(&session.document.models_shown(view)).and_then(|id| registry.model(id)) {

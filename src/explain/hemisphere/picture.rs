@@ -61,17 +61,27 @@ impl Hemisphere {
         all.get((all.len().saturating_sub(1)) * 99 / 100).copied().unwrap_or(1.0)
     }
 
-    /// The value that is drawn white in a disc, and the largest where that is brighter.
+    /// The number that is drawn white in a disc, and the largest where that is brighter; `None` where all is black.
     #[must_use]
-    pub fn end_of_scale(&self, disc: &Disc) -> String {
+    pub fn numbers_of_scale(&self, disc: &Disc) -> Option<(String, Option<String>)> {
         if self.pixels.iter().flatten().all(|above| (disc.of)(above) == Vec3::ZERO) {
-            return "none, all is black".to_owned();
+            return None;
         }
         let white = self.white(disc.of);
         let largest = (disc.of)(&self.brightest).max_element().max(white);
         let [white, largest] = [white, largest].map(|v| rounded(v, 3));
+        let brighter = (largest != white).then_some(largest);
+        Some((white, brighter))
+    }
+
+    /// The value that is drawn white in a disc, and the largest where that is brighter.
+    #[must_use]
+    pub fn end_of_scale(&self, disc: &Disc) -> String {
+        let Some((white, brighter)) = self.numbers_of_scale(disc) else {
+            return "none, all is black".to_owned();
+        };
         let end = format!("{white} {}", disc.unit).trim_end().to_owned();
-        if largest == white { end } else { format!("{end}; brightest: {largest}") }
+        brighter.map_or_else(|| end.clone(), |largest| format!("{end}; brightest: {largest}"))
     }
 
     /// The three discs beside each other with their names, scales and marks.

@@ -4,10 +4,40 @@ pub use crate::text::xml::marked as escaped;
 
 use crate::text::mathematics::{Atom, parse, parse_symbol};
 
-/// An equation.
+/// An equation. Several definitions in one, with commas between them, each go to the next line as a whole.
 #[must_use]
 pub fn equation(text: &str) -> String {
-    parse(text).iter().map(atom).collect()
+    let set = |part: &str| parse(part).iter().map(atom).collect::<String>();
+    match definitions(text).as_slice() {
+        [_] => set(text),
+        all => {
+            let whole = |part: &&str| format!("<span class=\"whole\">{}</span>", set(part));
+            all.iter().map(whole).collect::<Vec<_>>().join(", ")
+        }
+    }
+}
+
+/// The definitions of an equation: it ends one at each comma outside brackets with another one behind it.
+fn definitions(text: &str) -> Vec<&str> {
+    let (mut depth, mut commas) = (0, Vec::new());
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' | '[' | '{' | '⟨' => depth += 1,
+            ')' | ']' | '}' | '⟩' => depth -= 1,
+            ',' if depth == 0 && text[at..].starts_with(", ") => commas.push(at),
+            _ => {}
+        }
+    }
+    let (mut all, mut start) = (Vec::new(), 0);
+    for (i, at) in commas.iter().enumerate() {
+        let end = commas.get(i + 1).copied().unwrap_or(text.len());
+        if text[*at..end].contains(" = ") {
+            all.push(&text[start..*at]);
+            start = at + ", ".len();
+        }
+    }
+    all.push(&text[start..]);
+    all
 }
 
 /// The symbol of a parameter.
@@ -45,6 +75,16 @@ mod tests {
         assert_eq!([equation("x^y^z"), equation("x^{y^z}")], [tower, tower]);
         assert_eq!(symbol("α_x"), "<i>α</i><sub><i>x</i></sub>");
         assert_eq!(symbol(""), "");
+    }
+
+    #[test]
+    fn each_of_several_definitions_is_kept_whole() {
+        let whole = |part: &str| format!("<span class=\"whole\">{part}</span>");
+        let [a, b] = ["<i>D</i> = <i>a</i>, <i>b</i>", "<i>r</i> = max(0, <i>c</i>)"].map(whole);
+        assert_eq!(equation("D = a, b, r = max(0, c)"), format!("{a}, {b}"));
+        for text in ["F = max(0, a = b), c", "f(a, b) = c if d, and e"] {
+            assert!(!equation(text).contains("whole"), "{text}");
+        }
     }
 
     #[test]

@@ -82,7 +82,8 @@ fn head(ui: &mut Ui, explained: &Explained, session: &Session, registry: &Regist
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         rows::chip(ui, [r, g, b], vec2(28.0, 16.0));
-        ui.label(theme::strong(ui, format!("View {letter}: red {r}, green {g}, blue {b}")));
+        let code = rows::together(&format!("red {r}, green {g}, blue {b}"));
+        ui.label(theme::strong(ui, format!("View {letter}: {code}")));
         let what = match &explained.explanation {
             Explanation { seen: Some(seen), .. } => {
                 format!("{}, {}", seen.model.declaration.name, seen.shading.name)

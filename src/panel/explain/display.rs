@@ -37,10 +37,9 @@ pub(super) fn display(ui: &mut Ui, explanation: &Explanation) {
     // From here on, display values rather than light.
     let encoded = explanation.error_of(|steps| steps.encoded);
     rows::named_within(ui, "sRGB encoding:", steps.encoded, encoded);
-    let [r, g, b] = steps.codes;
     ui.horizontal(|ui| {
-        ui.label(theme::small(ui, "× 255, rounded: the code"));
+        ui.label(theme::small(ui, "× 255, rounded:"));
         rows::chip(ui, steps.codes, vec2(28.0, 16.0));
-        ui.label(theme::strong(ui, format!("{r}, {g}, {b}")));
+        ui.label(theme::strong(ui, rows::codes(steps.codes)));
     });
 }

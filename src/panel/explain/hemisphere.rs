@@ -45,8 +45,9 @@ struct Discs {
     position: Vec3,
     hemisphere: Hemisphere,
     textures: Vec<TextureHandle>,
-    /// The ends of the scales.
-    scales: [String; DISCS.len()],
+    /// The numbers of the scales, and the ends of the scales in words.
+    scales: [Option<(String, Option<String>)>; DISCS.len()],
+    ends: [String; DISCS.len()],
 }
 
 /// The calculation of discs; none where it crashes.
@@ -68,8 +69,9 @@ fn answer(
         let discs = move || {
             let hemisphere = Hemisphere::new(&shining, &*surface, &spot, terms, SIDE);
             let textures = textures(&ctx, &hemisphere);
-            let scales = DISCS.each_ref().map(|disc| hemisphere.end_of_scale(disc));
-            Arc::new(Discs { position: spot.position, hemisphere, textures, scales })
+            let scales = DISCS.each_ref().map(|disc| hemisphere.numbers_of_scale(disc));
+            let ends = DISCS.each_ref().map(|disc| hemisphere.end_of_scale(disc));
+            Arc::new(Discs { position: spot.position, hemisphere, textures, scales, ends })
         };
         Some(move || catch(discs).ok())
     });
@@ -104,9 +106,11 @@ pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, r
         theme::note(ui, "Calculating…");
         return;
     };
+    let cell = ((ui.available_width() - 2.0 * GAP) / 3.0).clamp(24.0, LARGEST * theme::scale_here(ui));
+    let (legends, has_units) = legends(ui, &discs.scales, cell);
+    let width = diameter(ui, &legends, cell);
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
-        let (cell, width) = widths(ui, &discs.scales);
         let short = DISCS.iter().any(|disc| theme::small_width(ui, disc.name) > cell);
         for (i, disc) in DISCS.iter().enumerate() {
             ui.vertical(|ui| {
@@ -114,31 +118,54 @@ pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, r
                 let name = if short { disc.short } else { disc.name };
                 ui.add(Label::new(theme::small(ui, name)).truncate()).on_hover_text(disc.name);
                 one(ui, &discs, i, width);
-                theme::note(ui, white(&discs.scales[i]));
+                theme::note(ui, legends[i].as_str()).on_hover_text(format!("white: {}", discs.ends[i]));
             });
         }
     });
     let text = "From straight above: area is projected solid angle, N is the middle, the rim is the horizon, the tangent points right.";
     theme::note(ui, text);
+    if !has_units {
+        theme::note(ui, format!("Light and product are in {}.", DISCS[0].unit));
+    }
     // The integral of the samples is shown below its light.
-    discs.hemisphere.said().into_iter().for_each(|text| drop(theme::note(ui, text)));
+    for text in discs.hemisphere.said() {
+        let text = rows::unbroken(ui, &text);
+        theme::note(ui, text);
+    }
 }
 
-/// The legend of a disc: the end of its scale.
-fn white(scale: &str) -> String {
-    format!("white: {scale}")
+/// The legends of the discs, below which so much width is free: the ends of their scales; and true if they have units, for
+/// which there must be room.
+fn legends(
+    ui: &Ui,
+    scales: &[Option<(String, Option<String>)>; DISCS.len()],
+    cell: f32,
+) -> ([String; DISCS.len()], bool) {
+    let all = |units: bool| -> [String; DISCS.len()] {
+        std::array::from_fn(|i| {
+            let Some((white, brighter)) = &scales[i] else { return "all is black".to_owned() };
+            let unit = if units { DISCS[i].unit } else { "" };
+            let white = format!("white: {white} {unit}").trim_end().to_owned();
+            brighter
+                .as_ref()
+                .map_or_else(|| white.clone(), |largest| format!("{white}\nbrightest: {largest}"))
+        })
+    };
+    let with_units = all(true);
+    let fits = |legend: &String| legend.lines().all(|line| theme::small_width(ui, line) <= cell);
+    if with_units.iter().all(fits) { (with_units, true) } else { (all(false), false) }
 }
 
-/// The width of a disc with its words, of which three fit beside each other, and the diameter of the disc, with which
-/// title, discs and scales fit into the height of the column.
-fn widths(ui: &Ui, scales: &[String]) -> (f32, f32) {
-    let cell = ((ui.available_width() - 2.0 * GAP) / 3.0).clamp(24.0, LARGEST * theme::scale_here(ui));
-    // A scale that is too long has a second line.
-    let lines =
-        if scales.iter().any(|scale| theme::small_width(ui, &white(scale)) > cell) { 3.0 } else { 2.0 };
-    let words = ui.text_style_height(&TextStyle::Body) + lines * ui.text_style_height(&TextStyle::Small);
+/// The diameter of discs that have so much width, with which title, names, discs and legends fit into the height of the
+/// column.
+fn diameter(ui: &Ui, legends: &[String], cell: f32) -> f32 {
+    let font = TextStyle::Small.resolve(ui.style());
+    let high =
+        |legend: &String| ui.painter().layout(legend.clone(), font.clone(), Color32::WHITE, cell).size().y;
+    let legend = legends.iter().map(high).fold(0.0, f32::max);
+    let words = ui.text_style_height(&TextStyle::Body) + ui.text_style_height(&TextStyle::Small) + legend;
     let height = ui.clip_rect().height() - words - 5.0 * ui.spacing().item_spacing.y;
-    (cell, height.max(SMALLEST).min(cell))
+    height.max(SMALLEST).min(cell)
 }
 
 /// One disc with its marks. The pointer shows a direction and the light from there.

@@ -332,7 +332,9 @@ fn arriving(ui: &mut Ui, lit: &Lit) {
     };
     rows::equation(ui, Term::Total, equation, false, &name);
     for factor in lit.factors.iter().filter(|factor| !factor.from.is_empty()) {
-        theme::note(ui, format!("{} for {}", factor.meaning, factor.givens(rows::short)));
+        let givens = format!("{} for {}", factor.meaning, factor.givens(rows::short));
+        let givens = rows::unbroken(ui, &givens);
+        theme::note(ui, givens);
         let steps = factor.steps(rows::DIGITS);
         for step in &steps {
             let line = format!("{} = {} = {}", step.text, step.numbers, of_value(&step.value, rows::DIGITS));

@@ -4,7 +4,11 @@
 use bevy_egui::egui::Grid;
 
 use super::rows;
-use crate::{explain::Seen, panel::prelude::*, shading::Stage};
+use crate::{
+    explain::{Corner, Seen},
+    panel::prelude::*,
+    shading::Stage,
+};
 
 /// Shows the point of the pixel, or the pinned one, and how the shading model uses it.
 pub(super) fn point(ui: &mut Ui, seen: &Seen, pinned: bool) {
@@ -44,13 +48,34 @@ fn is_along(a: Vec3, b: Vec3) -> bool {
     a.cross(b).length() < 1e-4 * a.length() * b.length()
 }
 
-/// Shows the colours of the vertices with their weights.
+/// Gap between the columns of the vertices, in points.
+const GAP: f32 = 8.0;
+
+/// Shows the colours of the vertices with their weights: in columns, with short names if need be, if those have room.
 fn vertices(ui: &mut Ui, seen: &Seen) {
     rows::heading(ui, "Interpolated between the vertices");
-    Grid::new(ui.id().with("weights")).num_columns(3).spacing([8.0, 3.0]).show(ui, |ui| {
+    let weight = |corner: &Corner| format!("{} ×", rows::short(corner.weight));
+    let body = TextStyle::Body.resolve(ui.style());
+    let widest = |of: &dyn Fn(&Corner) -> f32| seen.corners.iter().map(of).fold(0.0, f32::max);
+    let weights = widest(&|corner| theme::width_in(ui, &weight(corner), &body));
+    let colours = widest(&|corner| rows::width_of_estimate(ui, corner.colour, seen.error_at(corner)));
+    let colours = colours.max(rows::width_of_estimate(ui, seen.light, seen.error()));
+    let fits = |is_long: &bool| {
+        let names = widest(&|corner| theme::small_width(ui, &name(corner, *is_long)));
+        names + weights + colours + 2.0 * GAP <= ui.available_width()
+    };
+    let Some(is_long) = [true, false].into_iter().find(fits) else {
         for corner in &seen.corners {
-            ui.label(theme::small(ui, format!("vertex {}", corner.vertex)));
-            ui.label(format!("{} ×", rows::short(corner.weight))).on_hover_text(rows::all(corner.weight));
+            let before = format!("{}: {}", name(corner, true), weight(corner));
+            rows::estimate(ui, &before, corner.colour, seen.error_at(corner), false);
+        }
+        rows::estimate(ui, "=", seen.light, seen.error(), true);
+        return;
+    };
+    Grid::new(ui.id().with("weights")).num_columns(3).spacing([GAP, 3.0]).show(ui, |ui| {
+        for corner in &seen.corners {
+            ui.label(theme::small(ui, name(corner, is_long)));
+            ui.label(weight(corner)).on_hover_text(rows::all(corner.weight));
             rows::estimate(ui, "", corner.colour, seen.error_at(corner), false);
             ui.end_row();
         }
@@ -59,4 +84,9 @@ fn vertices(ui: &mut Ui, seen: &Seen) {
         rows::estimate(ui, "", seen.light, seen.error(), true);
         ui.end_row();
     });
+}
+
+/// The name of a vertex, with or without the word.
+fn name(corner: &Corner, is_long: bool) -> String {
+    if is_long { format!("vertex {}", corner.vertex) } else { corner.vertex.to_string() }
 }

@@ -16,7 +16,7 @@ pub(super) fn refraction(ui: &mut Ui, seen: &Seen, session: &Session) -> bool {
         refraction.main_way().is_some() && from_the_side(ui, session)
     });
     for line in refraction.lines() {
-        let mut text = maths::prose(ui, &line, TextStyle::Body);
+        let mut text = maths::prose(ui, &rows::unbroken(ui, &line), TextStyle::Body);
         text.wrap.max_width = ui.available_width();
         let place = ui.add(Label::new(text).wrap().selectable(true)).rect;
         point::line(ui, &line, seen.position, place);

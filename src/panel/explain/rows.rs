@@ -24,6 +24,8 @@ const ALL: usize = 8;
 const SYMBOL: f32 = 14.0;
 /// Width of a vector with its symbol, in points.
 const VECTOR: f32 = 192.0;
+/// Gap between a name, a sample and a value, in points.
+const BETWEEN: f32 = 6.0;
 /// Indentation of a line that follows from the one above, in points.
 pub(super) const INDENT: f32 = 14.0;
 
@@ -104,7 +106,45 @@ pub(super) fn sample(ui: &mut Ui, light: Vec3) {
 }
 
 fn text(ui: &Ui, text: impl Into<String>) -> RichText {
-    RichText::new(text).color(Palette::here(ui).text)
+    let text: String = text.into();
+    RichText::new(unbroken(ui, &text)).color(Palette::here(ui).text)
+}
+
+/// The text without breaks within triples of numbers, as far as the width of a line has room for each.
+pub(super) fn unbroken(ui: &Ui, text: &str) -> String {
+    let bound = bound(text);
+    let font = theme::bold(ui);
+    let fits = |word: &str| theme::width_in(ui, word, &font) <= ui.available_width();
+    if bound == text || !bound.split(' ').all(fits) { text.to_owned() } else { bound }
+}
+
+/// A space at which no line ends.
+const BOUND: &str = "\u{a0}";
+
+/// The text with spaces at which no line ends within triples of numbers, and between `±` and what follows it.
+fn bound(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, (inside, after))) =
+        rest.split_once('(').and_then(|(before, tail)| Some((before, tail.split_once(')')?)))
+    {
+        let parts: Vec<_> = inside.split(", ").collect();
+        let is_triple = parts.len() == 3 && parts.iter().all(|part| !part.contains([' ', '(']));
+        let inside = if is_triple { parts.join(&format!(",{BOUND}")) } else { inside.to_owned() };
+        out += &format!("{before}({inside})");
+        rest = after;
+    }
+    (out + rest).replace("± ", &format!("±{BOUND}"))
+}
+
+/// The text without spaces at which a line could end.
+pub(super) fn together(text: &str) -> String {
+    text.replace(' ', BOUND)
+}
+
+/// The three numbers of a code, between which no line ends.
+pub(super) fn codes([r, g, b]: [u8; 3]) -> String {
+    together(&format!("{r}, {g}, {b}"))
 }
 
 /// A symbol, an equals sign and a value, with all digits in the tooltip.
@@ -151,17 +191,34 @@ pub(super) fn vectors(ui: &mut Ui, model: &Model, all: &[(&str, Vec3)]) {
     }
 }
 
-/// A line of a name, a sample of light and a value, each as far as there is one.
+/// A line of a name, a sample of light and a value, each as far as there is one. The sample stays beside its numbers.
 fn line(ui: &mut Ui, name: RichText, light: Option<Vec3>, shown: RichText) -> Response {
     let row = ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        if !name.is_empty() {
+        ui.spacing_mut().item_spacing.x = BETWEEN;
+        let is_alone = name.is_empty();
+        if !is_alone {
             ui.label(name);
         }
-        light.into_iter().for_each(|light| sample(ui, light));
+        if let Some(light) = light {
+            let first = shown.text().split(' ').next().unwrap_or_default();
+            if !is_alone && width_beside_sample(ui, first) > ui.available_size_before_wrap().x {
+                ui.end_row();
+            }
+            sample(ui, light);
+        }
         ui.add(Label::new(shown).selectable(true));
     });
     row.response
+}
+
+/// Width of a sample of light with numbers beside it, in bold at most.
+fn width_beside_sample(ui: &Ui, shown: &str) -> f32 {
+    SYMBOL * theme::scale_here(ui) + BETWEEN + theme::width_in(ui, shown, &theme::bold(ui))
+}
+
+/// Width of a colour with its sample in one line, rounded to the digits that a standard error justifies.
+pub(super) fn width_of_estimate(ui: &Ui, v: Vec3, error: Option<Vec3>) -> f32 {
+    width_beside_sample(ui, &short_within(v, error))
 }
 
 /// A name and a value.
@@ -172,7 +229,8 @@ pub(super) fn named(ui: &mut Ui, name: &str, shown: &str, all: &str) -> Response
 
 /// A name and three numbers.
 pub(super) fn named_triple(ui: &mut Ui, name: &str, v: Vec3, unit: &str) -> Response {
-    named(ui, name, &format!("{}{unit}", short_triple(v)), &rounded_triple(v, ALL))
+    let shown = format!("{}{}", short_triple(v), together(unit));
+    named(ui, name, &shown, &rounded_triple(v, ALL))
 }
 
 /// A name and three numbers, rounded to the digits that their standard errors justify.
@@ -235,7 +293,7 @@ pub(super) fn measured(ui: &mut Ui, before: &str, v: Vec3, error: Vec3, bold: bo
 }
 
 fn value_text(ui: &Ui, shown: String, bold: bool) -> RichText {
-    if bold { theme::strong(ui, shown) } else { text(ui, shown) }
+    if bold { theme::strong(ui, unbroken(ui, &shown)) } else { text(ui, shown) }
 }
 
 /// Looks up the meaning of a symbol.
@@ -330,6 +388,25 @@ pub(super) fn fold(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_line_ends_within_a_triple_or_after_a_sign_of_an_error() {
+        let spaced = |text: &str| bound(text).replace(BOUND, "_");
+        for (text, expected) in [
+            ("(0.1, 2·10⁻⁷, −3)", "(0.1,_2·10⁻⁷,_−3)"),
+            (
+                "= (1, 2, 3) × 0.5 = (0.5, 1, 1.5) ± (0.1, 0.2, 0.3)",
+                "= (1,_2,_3) × 0.5 = (0.5,_1,_1.5) ±_(0.1,_0.2,_0.3)",
+            ),
+            ("0.5 ± 0.1", "0.5 ±_0.1"),
+            ("light (the brighter, of two, is meant)", "light (the brighter, of two, is meant)"),
+            ("max(0, (1, 2, 3)) and (", "max(0, (1, 2, 3)) and ("),
+            ("none", "none"),
+        ] {
+            assert_eq!(spaced(text), expected);
+        }
+        assert_eq!(codes([1, 22, 255]).replace(BOUND, "_"), "1,_22,_255");
+    }
 
     #[test]
     fn powers_are_raised() {

@@ -60,9 +60,9 @@ fn change(ui: &mut Ui, explained: &Explained, context: &mut PanelContext<'_>) {
     let after = explained.explanation.code();
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        let code = |ui: &mut Ui, [r, g, b]: [u8; 3]| {
-            rows::chip(ui, [r, g, b], vec2(28.0, 16.0));
-            ui.label(theme::strong(ui, format!("{r}, {g}, {b}")));
+        let code = |ui: &mut Ui, codes: [u8; 3]| {
+            rows::chip(ui, codes, vec2(28.0, 16.0));
+            ui.label(theme::strong(ui, rows::codes(codes)));
         };
         ui.label("before");
         code(ui, before);

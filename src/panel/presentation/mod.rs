@@ -200,8 +200,8 @@ impl Stage {
         all.into_iter().filter(Rect::is_positive).collect()
     }
 
-    /// Paints equation and caption on backgrounds that make them readable over any picture, and sets the text size for
-    /// the picture.
+    /// Paints equation and caption on backgrounds that make them readable over any picture, and sets the size of all text
+    /// over the picture.
     pub(super) fn paint(&self, ui: &mut Ui, session: &Session, registry: &Registry) {
         let palette = Palette::here(ui);
         let height = self.whole.height();
@@ -215,7 +215,14 @@ impl Stage {
             let model = model_of(session, registry);
             columns(ui, &self.block, &self.equation, model, self.plate.min + padding, height);
         }
-        ui.style_mut().text_styles.insert(TextStyle::Body, FontId::proportional(CAPTION * height));
+        text_of_size(ui, CAPTION * height);
+    }
+}
+
+/// Sets the size of all text over a picture, the smallest included: it is read from afar.
+pub(super) fn text_of_size(ui: &mut Ui, size: f32) {
+    for style in [TextStyle::Body, TextStyle::Small] {
+        ui.style_mut().text_styles.insert(style, FontId::proportional(size));
     }
 }
 

@@ -3,7 +3,7 @@
 use std::{cmp::Reverse, collections::BTreeSet};
 
 use crate::{
-    caption::{Part, exposure, terms_alone},
+    caption::{Part, exposure, merged, terms_alone},
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     panel::{
         caption::{MOST_VALUES, model_part, shading_parts, values_of},
@@ -56,17 +56,12 @@ fn values_said(scene: &Scene, registry: &Registry) -> Vec<(&'static Parameter, P
     }
 }
 
-/// The names of the values of all views: in the order of the model that has most of them, then what only others have.
+/// The names of the values of all views, in the order in which their models declare them.
 fn order_of_values(views: &[(&Scene, TermSelection)], registry: &Registry) -> Vec<&'static str> {
-    let mut all: Vec<_> = views.iter().map(|(scene, _)| values_said(scene, registry)).collect();
-    all.sort_by_key(|values| Reverse(values.len()));
-    let mut names = Vec::new();
-    for (parameter, _) in all.into_iter().flatten() {
-        if !names.contains(&parameter.name) {
-            names.push(parameter.name);
-        }
-    }
-    names
+    let of_view = |(scene, _): &(&Scene, TermSelection)| {
+        values_said(scene, registry).into_iter().map(|(parameter, _)| parameter.name).collect()
+    };
+    merged(views.iter().map(of_view).collect())
 }
 
 /// All facts about a view, whose values have this order.

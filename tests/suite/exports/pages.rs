@@ -456,6 +456,37 @@ fn a_page_holds_every_view_with_a_switch() {
 }
 
 #[test]
+fn a_page_cuts_and_breaks_no_name_and_offers_the_first_view_only_once_it_shows_another() {
+    let Some(browser) = Browser::start() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("page.html");
+    for name in ["compare_tone_mappings.json", "compare_phong_blinn_phong.json"] {
+        fs::write(&file, page(&scene(&shipped(name))).expect("a page")).expect("written");
+        for (width, height) in [(1280, 720), (390, 844)] {
+            browser.resize(width, height);
+            browser.open(&file, "renderer=webgl");
+            let what = format!("{name} in {width} × {height}");
+            let cut = "return [...document.querySelectorAll('#views span')]
+                .filter((e) => e.scrollWidth > e.clientWidth).map((e) => e.textContent)";
+            assert_eq!(browser.run(cut), json!([]), "{what}");
+            let words = "const all = [...document.querySelectorAll('h1 .whole, #model .whole')];
+                const high = (e) => e.getBoundingClientRect().height > 1.5 * parseFloat(getComputedStyle(e).lineHeight);
+                return [all.length > 0, all.filter(high).map((e) => e.textContent)]";
+            assert_eq!(browser.run(words), json!([true, []]), "{what}");
+            let is_hidden = || browser.run("return document.getElementById('view').offsetParent === null");
+            assert_eq!(is_hidden(), json!(true), "{what}");
+            browser.run(
+                "document.getElementById('picture').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft' }))",
+            );
+            assert_eq!(is_hidden(), json!(false), "{what}");
+            browser.run("document.getElementById('view').click()");
+            assert_eq!(is_hidden(), json!(true), "{what}");
+            browser.settle();
+        }
+    }
+}
+
+#[test]
 fn a_view_that_no_page_can_hold_is_left_out_and_that_is_said() {
     let scene = scene(&shipped("compare_tone_mappings.json"));
     let export = export(&scene, &Registry::builtin()).expect("a page of the others");

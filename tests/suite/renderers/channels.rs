@@ -11,7 +11,7 @@ use lights_camera_models::{
         colours::{BELOW, NAN, TOWARDS},
     },
     explain::{Explainer, Inside},
-    optics::{colour::luminance, tone::ToneMapping, viridis::viridis},
+    optics::{TermSelection, colour::luminance, tone::ToneMapping, viridis::viridis},
     panel::{
         state::{Action, Session, ViewChange},
         wires,
@@ -454,6 +454,20 @@ fn every_view_has_a_channel_of_its_own() {
     assert_eq!(shown, [Some(DebugChannel::NDotV), Some(DebugChannel::Normals)]);
     bench.session.opened(Path::new("other.json").to_owned(), Scene::default());
     assert_eq!(bench.session.channel_of(0), None, "another scene begins with its picture");
+}
+
+#[test]
+fn terms_are_said_to_be_hidden_only_where_the_picture_has_them() {
+    let mut bench = Bench::with_model("phong");
+    bench.size = bevy_egui::egui::vec2(1280.0, 720.0);
+    bench.apply(Action::View(ViewChange::Terms(TermSelection::Diffuse)));
+    for channel in DebugChannel::ALL.iter().copied().map(Some).chain([None]) {
+        bench.apply(Action::View(ViewChange::Channel(channel)));
+        bench.settle();
+        let has_terms = channel.is_none_or(DebugChannel::is_of_light);
+        assert_eq!(bench.says("Only the diffuse term"), has_terms, "{channel:?}");
+    }
+    assert!(DebugChannel::Luminance.is_of_light() && !DebugChannel::Depth.is_of_light());
 }
 
 #[test]

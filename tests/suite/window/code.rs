@@ -1,6 +1,6 @@
 //! The editor in the window, by keyboard alone.
 
-use bevy_egui::egui::{self, Color32, Event, Key, Modifiers, Shape, accesskit::Role};
+use bevy_egui::egui::{self, Color32, Event, Key, Modifiers, PointerButton, Shape, accesskit::Role};
 use lights_camera_models::{
     panel::{
         command::{all, with_keys},
@@ -357,6 +357,26 @@ fn the_place_found_that_is_selected_stands_out() {
         let [all, filled] = places(&mut bench);
         assert!(all > 2 && filled == 1, "{all} {filled}");
     }
+}
+
+#[test]
+fn the_list_of_models_offers_to_copy_a_built_in_one_whose_code_is_to_be_edited() {
+    let mut bench = Bench::with_model("phong");
+    bench.apply(Action::View(ViewChange::Chooser(true)));
+    bench.settle();
+    let above = bench.find("New model…").expect("below the list").rect;
+    let in_list = |seen: &&Seen| seen.label == "Edit code" && (seen.rect.top() - above.top()).abs() < 1.0;
+    let button = bench.tree.iter().find(in_list).expect("beside the others");
+    assert!(!button.disabled, "{button:?}");
+    let at = button.rect.center();
+    bench.click_at(at, PointerButton::Primary);
+    assert!(!bench.session.view.chooser_open);
+    let note = bench.session.messages.last().expect("a message").clone();
+    assert!(note.text.contains("copy the model as a file"), "{}", note.text);
+    let (label, action) = note.offer.expect("a button beside it");
+    assert_eq!(label, "Duplicate as a file…");
+    bench.apply(*action);
+    assert_eq!(bench.session.authoring.draft.as_ref().and_then(|draft| draft.of.as_deref()), Some("phong"));
 }
 
 #[test]

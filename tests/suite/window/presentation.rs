@@ -518,6 +518,73 @@ fn badges_legends_banner_and_hint_of_a_presentation_hide_no_object() {
 }
 
 #[test]
+fn the_sign_of_the_message_about_a_shader_error_grows_with_its_letters() {
+    let ratios = [false, true].map(|presenting| {
+        let mut bench = shipped("default.json", 100);
+        let problem = ShaderProblem {
+            file: "mine.wgsl".to_owned(),
+            line: 3,
+            column: 5,
+            source: "    return lobe(l, v);".to_owned(),
+            message: "no definition in scope for identifier: `lobe`".to_owned(),
+        };
+        bench.session.shaders.troubles =
+            vec![Trouble { problem, path: None, stale: vec!["Mine".to_owned()] }];
+        bench.apply(Action::View(ViewChange::Presenting(presenting)));
+        bench.settle();
+        let plate = bench.tree.iter().find(|seen| seen.label.starts_with("Showing"));
+        let plate = plate.expect("a message").rect;
+        let (mut letters, mut sign) = (0.0f32, 0.0f32);
+        for shape in bench.shapes() {
+            match shape {
+                Shape::Text(text) if plate.contains_rect(text.visual_bounding_rect()) => {
+                    let size = text.galley.job.sections.first().map_or(0.0, |s| s.format.font_id.size);
+                    letters = letters.max(size);
+                }
+                Shape::Circle(circle) if plate.contains(circle.center) => sign = sign.max(circle.radius),
+                _ => {}
+            }
+        }
+        assert!(letters > 10.0 && (letters > 20.0) == presenting, "{letters}");
+        sign / letters
+    });
+    assert!(ratios[0] > 0.4 && (ratios[1] - ratios[0]).abs() < 0.01, "{ratios:?}");
+}
+
+#[test]
+fn all_of_the_legend_of_a_channel_is_as_large_as_the_caption_of_a_presentation() {
+    for (file, scale) in [("default.json", 100), ("default.json", 200), ("compare_gouraud_phong.json", 150)] {
+        for channel in [DebugChannel::Normals, DebugChannel::Depth, DebugChannel::NDotL] {
+            let what = format!("{file}, {scale} %, {}", channel.name());
+            let mut bench = shipped(file, scale);
+            bench.apply(Action::View(ViewChange::Channel(Some(channel))));
+            bench.apply(Action::View(ViewChange::Presenting(true)));
+            bench.settle();
+            let caption = 0.036 * 720.0 / bench.area.zoom;
+            let plate = bench.tree.iter().find(|seen| seen.label.starts_with("Channel: "));
+            let plate = plate.unwrap_or_else(|| panic!("{what}: no legend")).rect;
+            let texts = bench.shapes().into_iter().filter_map(|shape| match shape {
+                Shape::Text(text) if plate.contains_rect(text.visual_bounding_rect()) => {
+                    let section = text.galley.job.sections.first()?;
+                    let (words, size) = (text.galley.text().to_owned(), section.format.font_id.size);
+                    Some((words, size, text.visual_bounding_rect()))
+                }
+                _ => None,
+            });
+            let texts: Vec<_> = texts.collect();
+            assert!(texts.len() > 1, "{what}: a title and more, not {texts:?}");
+            for (i, (words, size, place)) in texts.iter().enumerate() {
+                assert!((size - caption).abs() < 0.01, "{what}: {words} has the size {size}, not {caption}");
+                let covers =
+                    |(_, _, other): &&(String, f32, egui::Rect)| other.shrink(0.5).intersects(*place);
+                let over = texts[..i].iter().find(covers);
+                assert!(over.is_none(), "{what}: {words} over {over:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn three_views_of_a_presentation_show_a_teapot_whole() {
     for (size, scale) in [((1920.0, 1080.0), 100), ((1280.0, 720.0), 100), ((1280.0, 720.0), 200)] {
         let mut bench = shipped("portrait.json", scale);

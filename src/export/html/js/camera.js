@@ -24,6 +24,11 @@ class Camera {
     Object.assign(this, this.start);
   }
 
+  // True if it is not where it began.
+  get hasMoved() {
+    return Object.keys(this.start).some((name) => this[name] !== this.start[name]);
+  }
+
   get direction() {
     const level = Math.cos(this.pitch);
     return [Math.sin(this.yaw) * level, Math.sin(this.pitch), -Math.cos(this.yaw) * level];

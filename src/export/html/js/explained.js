@@ -49,9 +49,8 @@ class Explained {
     const { camera, size, scene } = page;
     const point = this.points[scene.letter];
     const changed = this.isChanged(scene);
-    const moved = Object.keys(camera.start).some((name) => camera[name] !== camera.start[name]);
     this.remark.hidden = !changed;
-    this.cross.hidden = !point || changed || moved || bare !== null;
+    this.cross.hidden = !point || changed || camera.hasMoved || bare !== null;
     if (this.cross.hidden) return;
     const aspect = size[0] / size[1];
     const slope = camera.slope(aspect, !bare);

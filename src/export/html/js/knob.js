@@ -19,6 +19,11 @@ function markup(tag, html, attributes = {}) {
   return made;
 }
 
+// A text in which no line ends after a dash within a word: “Blinn–Phong”, “192–198”.
+function kept(text) {
+  return text.split(/(\S*–\S*)/).map((part, i) => (i % 2 ? element('span', { class: 'whole' }, part) : part));
+}
+
 const hex = (colour) => `#${colour.map((c) => c.toString(16).padStart(2, '0')).join('')}`;
 const fromHex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16));
 const shown = (number) => String(Number(number.toPrecision(4)));

@@ -303,6 +303,7 @@ async function main() {
     fail('This browser is too old to unpack the scene.');
     return;
   }
+  for (const words of document.querySelectorAll('h1, header p')) words.replaceChildren(...kept(words.textContent));
   const [text, meshes] = await Promise.all([unpack('scene-data'), unpack('mesh-data')]);
   const data = JSON.parse(new TextDecoder().decode(text));
   const shared = new Shared(data, meshes);
@@ -317,10 +318,18 @@ async function main() {
   const panel = new Panel(views, changed, (scene) => page.show(scene));
   page.starting = page.start();
   if (!(await page.starting)) return;
-  listen(picture, page.camera, () => page.draw(), (x, y) => panel.select(page.pickAt(x, y)));
-  document.getElementById('view').addEventListener('click', () => {
-    page.camera.reset();
+  // Without a use it would only cover the picture.
+  const back = document.getElementById('view');
+  const turned = () => {
+    back.hidden = !page.camera.hasMoved;
     page.draw();
+  };
+  listen(picture, page.camera, turned, (x, y) => panel.select(page.pickAt(x, y)));
+  back.addEventListener('click', () => {
+    page.camera.reset();
+    turned();
+    // The button has vanished.
+    picture.focus({ preventScroll: true });
   });
   new ResizeObserver(() => page.draw()).observe(picture);
   page.draw();

@@ -117,10 +117,10 @@ class Panel {
     const { model } = this.selected;
     const parts = model.equation.map(({ term, html }) => markup('div', html, { class: `part ${term}` }));
     this.model.replaceChildren(
-      element('h2', {}, model.name),
-      element('p', { class: 'summary' }, model.summary),
+      element('h2', {}, ...kept(model.name)),
+      element('p', { class: 'summary' }, ...kept(model.summary)),
       ...(parts.length > 0 ? [element('div', { class: 'equation', role: 'math', 'aria-label': 'Equation' }, ...parts)] : []),
-      ...(model.source || model.author ? [element('p', { class: 'source' }, model.source || model.author)] : []),
+      ...(model.source || model.author ? [element('p', { class: 'source' }, ...kept(model.source || model.author))] : []),
     );
     document.getElementById('shader').textContent = this.selected.program.wgsl;
     this.showKnobs();
