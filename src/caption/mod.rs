@@ -13,6 +13,7 @@ mod words;
 pub use ground::Ground;
 pub use heading::{MODEL_RANK, header, header_parts, view_parts};
 pub(crate) use order::merged;
+pub(crate) use part::closing;
 pub use part::{Part, line};
 pub use rows::{of_copy, of_row, row_labels};
 pub use sampled::{Sampled, sampled};

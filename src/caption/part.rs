@@ -47,6 +47,11 @@ impl Part {
     }
 }
 
+/// What remains of a separator at the end of a line: a comma, but no dot, which looks like a mistake where nothing follows.
+pub(crate) fn closing(joint: &str) -> &str {
+    joint.trim_end_matches([' ', '·'])
+}
+
 /// Parts of a caption as one text.
 #[must_use]
 pub fn line(parts: &[Part]) -> String {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Caption, Part};
+use super::{Caption, Part, closing};
 use crate::lettering::Lettering;
 
 /// Maximum number of lines for the facts.
@@ -207,8 +207,8 @@ fn broken(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for (i, part) in parts.iter().enumerate() {
         let joint = i.checked_sub(1).map_or("", |before| part.joint(&parts[before]));
-        // A continued line ends with the separator between parts.
-        let open = |next: &Part| Lettering::Regular.width(px, next.joint(part).trim_end());
+        // Room for the comma at the end of a line.
+        let open = |next: &Part| Lettering::Regular.width(px, closing(next.joint(part)));
         let more = parts.get(i + 1).map_or(0, open);
         let mut own = Line::default();
         own.part(part, px);
@@ -224,7 +224,7 @@ fn broken(parts: &[Part], px: f32, room: u32) -> Vec<Line> {
             }
             last => {
                 if let Some(line) = last {
-                    line.push(Lettering::Regular, joint.trim_end(), px);
+                    line.push(Lettering::Regular, closing(joint), px);
                 }
                 lines.push(own);
             }
@@ -266,6 +266,11 @@ mod tests {
                         line.runs.last().map_or(0, |run| run.left + run.lettering.width(14.0, &run.text));
                     assert_eq!(end, line.width);
                 }
+                assert!(
+                    !text(&lines).iter().any(|line| line.ends_with('·')),
+                    "{room}, {n}: {:?}",
+                    text(&lines)
+                );
                 let all = text(&lines).join("");
                 let shown = all.matches("k_d").count();
                 assert!(shown == n || all.contains('…'), "{room}, {n}: {all}");
@@ -286,7 +291,7 @@ mod tests {
             "{lines:?}"
         );
         let lines = text(&facts(&parts(40), 14.0, 320));
-        assert!(lines[0].ends_with([',', '·']) && lines[2].ends_with(", … · AgX"), "{lines:?}");
+        assert!(lines[1].ends_with(',') && lines[2].ends_with(", … · AgX"), "{lines:?}");
     }
 
     #[test]

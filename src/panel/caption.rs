@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::{maths, prelude::*};
 pub use crate::caption::Part;
 use crate::{
-    caption::{display, line, single, terms_alone, value},
+    caption::{closing, display, line, single, terms_alone, value},
     optics::TermSelection,
     parameter::Parameter,
     reflection::usage,
@@ -149,11 +149,6 @@ impl Evened {
         }
         self.0.push(even);
     }
-}
-
-/// What remains of a separator at the end of a line: a comma, but no dot, which looks like a mistake where nothing follows.
-fn closing(joint: &str) -> &str {
-    joint.trim_end_matches([' ', '·'])
 }
 
 /// A caption laid out in lines.

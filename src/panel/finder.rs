@@ -29,13 +29,6 @@ const PADDING: f32 = 8.0;
 /// The part of the window above it, and the part that its list takes.
 const ABOVE: f32 = 0.09;
 const LIST: f32 = 0.58;
-/// The rank above every other, of a model by another of its names; twice that of what is called so exactly, and three times
-/// that of a model by its very name.
-const FIRST: i32 = 10_000;
-/// What a title gains that begins with the search: more than a short one does.
-const BEGINS: i32 = 100;
-/// The beginnings of the ids of what has its menu in front of its name.
-const NAMED: [&str; 3] = ["example.", "lesson.", "model."];
 /// Number of the latest commands that come first.
 const RECENT: usize = 5;
 
@@ -173,30 +166,16 @@ fn listed<'f>(ctx: &Context, all: &'f [Found]) -> Vec<(&'static str, &'f Found)>
 
 /// The entries that match the typed text, best first.
 fn ranked<'f>(all: &'f [Found], search: &str) -> Vec<(&'static str, &'f Found)> {
-    let name = search.trim().to_lowercase();
-    // Who types another name of a model looks for the model, not for a scene whose title has the word.
-    let is_model = |found: &Found| found.unsaid.iter().any(|(text, _)| text.to_lowercase() == name);
-    let first = |found: &Found| {
-        let title = found.title.to_lowercase();
-        let own = match title.rsplit_once(": ") {
-            Some((_, own)) if NAMED.iter().any(|kind| found.id.starts_with(kind)) => own,
-            _ => title.as_str(),
-        };
-        match own == name {
-            true if found.id.starts_with("model.") => 3 * FIRST,
-            true => 2 * FIRST,
-            false if is_model(found) => FIRST,
-            false if own.starts_with(&name) => BEGINS,
-            false => 0,
-        }
-    };
+    let texts =
+        |all: &'f [(String, String)]| -> Vec<&'f str> { all.iter().map(|(text, _)| text.as_str()).collect() };
     let fits = |found: &'f Found| {
-        let more: Vec<_> = found.said.iter().chain(&found.unsaid).map(|(text, _)| text.as_str()).collect();
-        Some((rank(&found.title, &more.join(" "), search)? + first(found), found))
+        let said = texts(&found.said).join(" ");
+        Some((rank(&found.title, &texts(&found.unsaid), &said, search)?, found))
     };
     let mut found: Vec<_> = all.iter().filter_map(fits).collect();
     leave_out_chance(&mut found);
-    found.sort_by_key(|(rank, found)| (-rank, found.off));
+    // Who types the name of a model looks for the model, not for a scene that is called so too.
+    found.sort_by_key(|(rank, found)| (-rank, found.off, !found.id.starts_with("model.")));
     found.into_iter().map(|(_, found)| (found.heading, found)).collect()
 }
 

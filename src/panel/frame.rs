@@ -76,7 +76,7 @@ pub fn show(
     let palette = Palette::of(&session.settings);
     lesson::point::show(&ctx, &palette);
     focus::show(&ctx, &palette, area.frame);
-    effects.extend(apply(&ctx, &mut session, actions, area, registry));
+    effects.extend(apply(&ctx, &mut session, actions, registry));
     effects.retain(|effect| !dialogs.start(&ctx, effect, &session, registry));
     modal::end(ui, asks, dialog(&session, panels, dialogs));
     effects
@@ -204,13 +204,11 @@ fn around(ui: &mut Ui, panels: &mut Panels, context: &mut PanelContext<'_>) {
     panels.show(ui, Place::Strip, context);
 }
 
-/// Applies the actions of a frame with pictures in this area. Returns the effects, among them the dialog that others want;
-/// texts are copied.
+/// Applies the actions of a frame. Returns the effects, among them the dialog that others want; texts are copied.
 fn apply(
     ctx: &Context,
     session: &mut impl DerefMut<Target = Session>,
     actions: Vec<Action>,
-    area: &PictureArea,
     registry: &Registry,
 ) -> Vec<Effect> {
     let mut effects = Vec::new();
@@ -219,7 +217,6 @@ fn apply(
             continue;
         }
         let action = explain::placed(ctx, session, action);
-        session.facts.aspect = area.aspect();
         effects.extend(session.apply(action, registry));
     }
     // Asked in each frame: it compares the focus with that of the frame before.

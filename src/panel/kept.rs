@@ -36,11 +36,28 @@ where
     K: Clone + PartialEq + Send + Sync + 'static,
     T: Clone + Send + Sync + 'static,
 {
-    if let Some((_, known)) = ctx.data(|d| d.get_temp::<(K, T)>(id)).filter(|(of, _)| *of == key) {
+    of_keys(ctx, id, (key, ()), true, make)
+}
+
+/// The value under an id, made again whenever its first key changes, and its second one while that counts.
+pub(super) fn of_keys<K, S, T>(
+    ctx: &Context,
+    id: Id,
+    (first, second): (K, S),
+    counts: bool,
+    make: impl FnOnce() -> T,
+) -> T
+where
+    K: Clone + PartialEq + Send + Sync + 'static,
+    S: Clone + PartialEq + Send + Sync + 'static,
+    T: Clone + Send + Sync + 'static,
+{
+    let stays = |(of, by, _): &(K, S, T)| *of == first && (!counts || *by == second);
+    if let Some((.., known)) = ctx.data(|d| d.get_temp::<(K, S, T)>(id)).filter(stays) {
         return known;
     }
     let made = make();
-    ctx.data_mut(|d| d.insert_temp(id, (key, made.clone())));
+    ctx.data_mut(|d| d.insert_temp(id, (first, second, made.clone())));
     made
 }
 

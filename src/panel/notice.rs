@@ -64,8 +64,43 @@ fn moment(severity: Option<Severity>) -> f64 {
     }
 }
 
+/// A time that something waits for, at which the panels are redrawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Wait {
+    /// The time, in seconds.
+    until: f64,
+    /// Time at which the window is woken, in seconds.
+    wakes: f64,
+}
+
+impl Default for Wait {
+    /// One that has long been over.
+    fn default() -> Self {
+        Self { until: f64::NEG_INFINITY, wakes: 0.0 }
+    }
+}
+
+impl Wait {
+    /// Lets it last so many seconds from now on.
+    pub(super) fn begin(&mut self, now: f64, seconds: f64) {
+        self.until = now + seconds;
+    }
+
+    pub(super) fn lasts(&self, now: f64) -> bool {
+        self.until > now
+    }
+
+    /// Wakes the window when it is over. One that begins anew meanwhile is woken twice, and not once for each beginning.
+    pub(super) fn wake(&mut self, ctx: &Context, now: f64) {
+        if self.wakes <= now {
+            self.wakes = self.until + 0.05;
+            wake(ctx, self.wakes - now);
+        }
+    }
+}
+
 /// Redraws the panels after a number of seconds: nothing else wakes an idle window.
-pub(super) fn wake(ctx: &Context, seconds: f64) {
+fn wake(ctx: &Context, seconds: f64) {
     let (ctx, wait) = (ctx.clone(), Duration::from_secs_f64(seconds.max(0.0)));
     platform::later(wait, move || ctx.request_repaint());
 }

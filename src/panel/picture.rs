@@ -1,6 +1,9 @@
 //! The overlays of the picture: badges, caption, axes, hints.
 
-use std::iter;
+use std::{
+    hash::{DefaultHasher, Hash as _, Hasher as _},
+    iter,
+};
 
 use bevy_egui::egui::FontFamily;
 
@@ -601,26 +604,30 @@ fn yielding(
     (session, view): (&Session, usize),
     (picture, views): (Rect, f32),
 ) -> (Vec<Sign>, bool) {
-    let all = [front.as_slice(), of_view.as_slice()].concat();
-    if all.is_empty() {
-        return (all, false);
+    if front.is_empty() && of_view.is_empty() {
+        return (front, false);
     }
-    let texts = || all.iter().flat_map(|(badge, _)| iter::once(&badge.text).chain(&badge.shorter));
-    // A share that follows the picture makes no other badge of it.
-    let without_numbers = |text: &String| text.replace(|c: char| c.is_ascii_digit() || c == '.', "");
-    let words: Vec<_> = texts().map(without_numbers).collect();
-    let lengths: Vec<_> = texts().map(String::len).collect();
+    let all = || front.iter().chain(&of_view);
+    // In each frame, so without copies of the texts.
+    let [mut words, mut lengths] = [DefaultHasher::new(), DefaultHasher::new()];
+    for text in all().flat_map(|(badge, _)| iter::once(&badge.text).chain(&badge.shorter)) {
+        // A share that follows the picture makes no other badge of it.
+        let letters = text.chars().filter(|c| !c.is_ascii_digit() && *c != '.');
+        letters.chain(['\n']).for_each(|c| c.hash(&mut words));
+        text.len().hash(&mut lengths);
+    }
     let shown = (session.document.revision(), session.active());
     let type_size = (theme::bold(ui), ui.pixels_per_point());
-    let key = (words, [front.len(), of_view.len()], [picture, placer.room], views, shown, type_size);
+    let counts = [front.len(), of_view.len()];
+    let key = (words.finish(), counts, [picture, placer.room], views, shown, type_size);
     let id = Id::new(("words of badges", view));
-    let wording = resting::choice(ui.ctx(), id, session, (key, (lengths, placer.clone())), || {
+    let wording = resting::choice(ui.ctx(), id, session, (key, (lengths.finish(), placer.clone())), || {
+        let all: Vec<_> = all().cloned().collect();
         wording(ui, placer, (&all, of_view.len()), (session, picture, views))
     });
     match wording {
-        Wording::Whole => (all, false),
-        Wording::Short => (all, true),
         Wording::Gathered => (with_one(&front, &of_view), true),
+        _ => (front.into_iter().chain(of_view).collect(), wording == Wording::Short),
     }
 }
 

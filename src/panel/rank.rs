@@ -4,6 +4,12 @@
 /// More words of a search than a name has are left out.
 const MOST: usize = 12;
 
+/// The rank of what is called exactly as the search, above every other.
+const NAMED: i32 = 100_000;
+/// What another name adds that is exactly the search: who types it means this, not what has the word in its name.
+const ALSO_NAMED: i32 = 10_000;
+/// What a name adds that begins with the search: more than a short one does.
+const BEGINS: i32 = 100;
 /// The rank of a word that is said beside the name.
 const SAID: i32 = 20;
 /// Amount by which letters with gaps rank behind everything else.
@@ -60,10 +66,21 @@ pub(super) fn leave_out_chance<T>(found: &mut Vec<(i32, T)>) {
     }
 }
 
-/// The score of a search against a name, or else what more there is to say; below 0 if it takes letters with gaps, `None` if a
-/// word of the search fits nothing.
-pub(super) fn rank(name: &str, more: &str, search: &str) -> Option<i32> {
-    let (own, more) = (words(name), words(more));
+/// The score of a search against a name, or else other names and what more there is to say; below 0 if it takes letters with
+/// gaps, `None` if a word of the search fits nothing.
+pub(super) fn rank(name: &str, others: &[&str], more: &str, search: &str) -> Option<i32> {
+    let (lower, typed) = (name.to_lowercase(), search.trim().to_lowercase());
+    if lower == typed {
+        return Some(NAMED);
+    }
+    let whole = if others.iter().any(|other| other.to_lowercase() == typed) {
+        ALSO_NAMED
+    } else if lower.starts_with(&typed) {
+        BEGINS
+    } else {
+        0
+    };
+    let (own, more) = (words(name), words(&format!("{} {more}", others.join(" "))));
     let (mut all, mut gaps) = (0, false);
     for word in words(search).into_iter().take(MOST) {
         let said = || more.iter().any(|other| other.starts_with(&word)).then_some(SAID);
@@ -75,17 +92,19 @@ pub(super) fn rank(name: &str, more: &str, search: &str) -> Option<i32> {
     }
     all -= if gaps { GAPS } else { 0 };
     // Of those that fit alike, the shorter.
-    Some(all - own.iter().map(|word| word.chars().count() as i32).sum::<i32>().min(60))
+    Some(all + whole - own.iter().map(|word| word.chars().count() as i32).sum::<i32>().min(60))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::cmp::Reverse;
+
     use super::*;
 
     /// The names that a search finds, the best first.
     fn found<'a>(names: &[&'a str], search: &str) -> Vec<&'a str> {
         let mut all: Vec<_> =
-            names.iter().filter_map(|name| rank(name, "", search).map(|rank| (rank, *name))).collect();
+            names.iter().filter_map(|name| rank(name, &[], "", search).map(|rank| (rank, *name))).collect();
         all.sort_by_key(|(rank, _)| -rank);
         all.into_iter().map(|(_, name)| name).collect()
     }
@@ -106,19 +125,35 @@ mod tests {
 
     #[test]
     fn what_more_there_is_to_say_counts_less_than_a_name() {
-        let by_name = rank("PNG", "", "png").expect("found");
-        let said = rank("Save the picture…", "Write a PNG file", "png").expect("found");
+        let by_name = rank("PNG", &[], "", "png").expect("found");
+        let said = rank("Save the picture…", &[], "Write a PNG file", "png").expect("found");
         assert!(by_name > said);
-        assert_eq!(rank("Save", "Write a file", "ng"), None);
+        assert_eq!(rank("Save", &[], "Write a file", "ng"), None);
         // Where it is said, letters with gaps do not count.
-        assert_eq!(rank("Phong", "pin", "pin"), rank("Lobes", "pin", "pin"));
+        assert_eq!(rank("Phong", &[], "pin", "pin"), rank("Lobes", &[], "pin", "pin"));
+    }
+
+    #[test]
+    fn what_has_the_very_name_comes_first_then_what_is_also_called_so_then_what_begins_so() {
+        let all: [(&str, &[&str]); 5] = [
+            ("Flakes of steel", &[]),
+            ("Steel, brushed, oiled and etched", &[]),
+            ("Alloy", &["Steel"]),
+            ("Steel", &[]),
+            ("Old steel", &[]),
+        ];
+        let mut found = all.map(|(name, others)| (rank(name, others, "", " steel "), name));
+        found.sort_by_key(|(rank, _)| Reverse(*rank));
+        let expected = ["Steel", "Alloy", "Steel, brushed, oiled and etched", "Old steel", "Flakes of steel"];
+        assert_eq!(found.map(|(_, name)| name), expected);
+        assert!(rank("Steel", &[], "", "Old steel").is_none(), "only a part of it");
     }
 
     #[test]
     fn nothing_typed_is_too_much() {
         for search in ["α", "ﬃ𝄞", "\u{0}\u{202e}", &"a ".repeat(2000), &"x".repeat(20_000)] {
-            let _ = rank("Blinn–Phong, normalised", "Blinn 1977 α_x", search);
+            let _ = rank("Blinn–Phong, normalised", &["Blinn"], "Blinn 1977 α_x", search);
         }
-        assert!(rank("Phong", "shininess α", "α").is_some());
+        assert!(rank("Phong", &[], "shininess α", "α").is_some());
     }
 }

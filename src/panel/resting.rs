@@ -2,7 +2,7 @@
 
 use glam::Quat;
 
-use super::{notice, prelude::*};
+use super::{notice::Wait, prelude::*};
 
 /// Time after its latest movement at which the camera rests, in seconds.
 const REST: f64 = 0.3;
@@ -11,13 +11,11 @@ const REST: f64 = 0.3;
 type Position = (Vec3, Quat);
 
 /// The camera, as last seen.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Seen {
-    position: Position,
-    /// Time of its latest movement, in seconds.
-    moved: f64,
-    /// Time at which the window is woken to see it rest, in seconds.
-    wakes: f64,
+    position: Option<Position>,
+    /// The time until it rests.
+    moves: Wait,
 }
 
 /// The choice under an id, made again if its key changes and, once the camera rests, if the camera or what is known by it
@@ -35,34 +33,24 @@ where
     T: Clone + Send + Sync + 'static,
 {
     let position = (session.facts.eye, session.facts.camera);
-    let (rests, seen) = (rests(ctx, position), (position, known));
-    let before = ctx.data(|d| d.get_temp::<(K, (Position, S), T)>(id));
-    let stays = |(of, by, _): &(K, (Position, S), T)| *of == key && (!rests || *by == seen);
-    if let Some((.., made)) = before.filter(stays) {
-        return made;
-    }
-    let made = make();
-    ctx.data_mut(|d| d.insert_temp(id, (key, seen, made.clone())));
-    made
+    kept::of_keys(ctx, id, (key, (position, known)), rests(ctx, position), make)
 }
 
 /// True if the camera has not moved for a moment, and nothing is held that could move it on. Otherwise the window is woken
 /// when the moment is over.
 fn rests(ctx: &Context, position: Position) -> bool {
     let (now, held) = ctx.input(|i| (i.time, i.pointer.any_down()));
-    let known: Option<Seen> = kept::get(ctx);
+    let mut seen: Seen = kept::get(ctx);
     // One that has never been seen to move rests.
-    let mut seen = known.unwrap_or(Seen { position, moved: f64::NEG_INFINITY, wakes: 0.0 });
-    if seen.position != position {
-        seen = Seen { position, moved: now, ..seen };
+    if seen.position.replace(position).is_some_and(|before| before != position) {
+        seen.moves.begin(now, REST);
     }
-    let left = seen.moved + REST - now;
-    if left > 0.0 && seen.wakes <= now {
-        notice::wake(ctx, left + 0.05);
-        seen.wakes = now + left + 0.05;
+    let moves = seen.moves.lasts(now);
+    if moves {
+        seen.moves.wake(ctx, now);
     }
-    kept::set(ctx, Some(seen));
-    left <= 0.0 && !held
+    kept::set(ctx, seen);
+    !moves && !held
 }
 
 #[cfg(test)]

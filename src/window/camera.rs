@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     document::{Edit, Selection},
-    panel::state::{Action, CameraChange, Session, Steer, Together},
+    panel::state::{Action, CameraChange, PictureArea, Session, Steer, Together},
     registry::Registry,
     render::{camera::PictureCamera, entities::CurrentScene},
     scene::{Observer, Scene, observer::rotation},
@@ -145,15 +145,17 @@ fn keep_at_observer(
     }
 }
 
-/// Reports the position of the camera to the panels.
+/// Reports the position of the camera, and the shape of what it shows, to the panels.
 fn feed_viewpoint(
     mut session: ResMut<Session>,
+    area: Option<Res<PictureArea>>,
     cameras: Query<(&Transform, &PictureCamera), With<WindowView>>,
 ) {
     if let Some((transform, picture)) = cameras.iter().next() {
         let facts = &mut session.bypass_change_detection().facts;
         (facts.camera, facts.eye) = (transform.rotation, transform.translation);
         facts.camera_is_free = !picture.follows_observer;
+        facts.aspect = area.and_then(|area| area.aspect());
     }
 }
 
@@ -302,6 +304,8 @@ impl CameraControl<'_, '_> {
 
 #[cfg(test)]
 mod tests {
+    use bevy_egui::egui::{Pos2, Rect, vec2};
+
     use super::*;
 
     #[test]
@@ -354,6 +358,27 @@ mod tests {
         let place = app.world().get::<Transform>(camera).expect("it has a place").translation;
         let across = place.distance(Vec3::new(8.0, 5.0, 5.0)) * (0.5 * fov).tan() * aspect;
         assert!((0.4..0.6).contains(&(1.5 / across)), "{}", 1.5 / across);
+    }
+
+    #[test]
+    fn the_panels_know_where_the_camera_is_and_the_shape_of_the_pictures() {
+        let mut app = App::new();
+        app.init_resource::<Session>().init_resource::<PictureArea>();
+        let place = Transform::from_xyz(1.0, 2.0, 3.0);
+        app.world_mut().spawn((
+            WindowView,
+            PictureCamera { follows_observer: false, fits_width: false },
+            place,
+        ));
+        app.add_systems(Update, feed_viewpoint);
+        app.update();
+        assert_eq!(app.world().resource::<Session>().facts.aspect, None, "there is no picture yet");
+        let frame = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 400.0));
+        app.insert_resource(PictureArea { frame, ..default() });
+        app.update();
+        let facts = &app.world().resource::<Session>().facts;
+        assert_eq!((facts.eye, facts.aspect), (place.translation, Some(1.5)));
+        assert!(facts.camera_is_free);
     }
 
     #[test]

@@ -12,6 +12,7 @@ use super::{
     texts::Texts,
 };
 use crate::{
+    caption::view_parts,
     export::{
         ExportError, Progress, Request,
         bodies::Body,
@@ -105,7 +106,7 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
             }
             made => made?,
         };
-        json["name"] = json!(scene.view_name(i));
+        json["name"] = json!(name_of(scene, (i, *terms), registry));
         json["letter"] = json!(LETTERS.get(i));
         if let (Some(pixel), Some(letter)) = (request.point, LETTERS.get(i)) {
             let (point, note) = explained::point(&of_view, pixel)?;
@@ -138,6 +139,13 @@ pub fn data(request: &Request, progress: &Progress) -> Result<Data, ExportError>
         |((list, id), script): (&(&str, &str), &&str)| format!("{list}[{}] = {script};\n", json!(id));
     let script = shared.scripts.iter().map(script).collect();
     Ok(Data { scene: data, meshes: shared.meshes.bytes, notes: shared.notes, points, script })
+}
+
+/// The name of a view: its own, or the first words that the window has for it, such as its model.
+fn name_of(scene: &Scene, (view, terms): (usize, TermSelection), registry: &Registry) -> String {
+    let own = view.checked_sub(1).and_then(|i| scene.variants.get(i)?.name.clone());
+    let first = || Some(view_parts(scene, (view, terms), registry).first()?.words());
+    own.or_else(first).unwrap_or_default()
 }
 
 /// Takes one view of a scene apart.
@@ -469,23 +477,36 @@ fn parameter(p: &Parameter, at: usize) -> Json {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{caption::header, scene::Variant};
+
+    /// The views of a scene in the form that the page reads.
+    fn views(scene: &Scene) -> Json {
+        let registry = &Registry::builtin();
+        let request = Request { scene, registry, stem: "scene", size: (64, 36), object: 0, point: None };
+        let data = data(&request, &Progress::NONE).unwrap_or_else(|error| panic!("{error:?}"));
+        data.scene["views"].clone()
+    }
+
+    #[test]
+    fn every_view_has_its_own_name_or_that_of_the_window() {
+        let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
+        let other = Variant { reflection_model: Some("blinn_phong".to_owned()), ..Variant::default() };
+        scene.variants = vec![other.clone(), Variant { name: Some("Mine".to_owned()), ..other }];
+        let made = views(&scene);
+        let names = [0_usize, 1, 2].map(|i| made[i]["name"].as_str().unwrap_or_default());
+        assert_eq!(names, ["Phong", "Blinn–Phong", "Mine"]);
+        for (view, name) in names.into_iter().enumerate() {
+            let heading = header(&scene, view, &Registry::builtin());
+            assert!(heading.starts_with(&format!("{} · {name}", LETTERS[view])), "{heading}");
+        }
+    }
 
     #[test]
     fn the_equation_has_no_term_without_knobs() {
-        let registry = Registry::builtin();
         let equation = |weight: f32| {
             let mut scene = Scene { reflection_model: "openpbr".to_owned(), ..Scene::default() };
             scene.objects[0].material.set("transmission_weight", Value::Number(weight));
-            let request = Request {
-                scene: &scene,
-                registry: &registry,
-                stem: "scene",
-                size: (64, 36),
-                object: 0,
-                point: None,
-            };
-            let data = data(&request, &Progress::NONE).unwrap_or_else(|error| panic!("{error:?}"));
-            data.scene["views"][0]["models"][0]["equation"].to_string()
+            views(&scene)[0]["models"][0]["equation"].to_string()
         };
         let (opaque, clear) = (equation(0.0), equation(1.0));
         assert!(

@@ -15,7 +15,7 @@ use crate::{
     panel::{
         kept,
         marks::{self, Asked, Lens, Sight},
-        notice,
+        notice::Wait,
         state::{Action, HandleMode, Session},
         theme,
         together::together,
@@ -127,12 +127,10 @@ fn take(
 struct Woken {
     /// The selection, and the kind of handles.
     what: (Selection, HandleMode),
-    /// Time of the reason, in seconds.
-    at: f64,
     /// True if another part or another kind of handles was chosen, which shows them wherever the pointer is.
     chosen: bool,
-    /// Time at which the window is woken to let them fade, in seconds.
-    wakes: f64,
+    /// The time until they fade.
+    stays: Wait,
 }
 
 /// Opacity of the handles of a view: they fade when the pointer rests or leaves the picture, so that nothing covers it.
@@ -144,17 +142,15 @@ fn opacity(ui: &Ui, view: Id, rect: Rect, what: (Selection, HandleMode), in_use:
     let key = view.with("woken");
     let known: Option<Woken> = ui.data(|data| data.get_temp(key));
     // A newly opened window shows the picture without handles.
-    let mut woken = known.unwrap_or(Woken { what, at: f64::NEG_INFINITY, chosen: false, wakes: 0.0 });
-    if woken.what != what {
-        woken = Woken { what, at: now, chosen: true, ..woken };
-    } else if over && moved || in_use {
-        woken = Woken { what, at: now, chosen: false, ..woken };
+    let mut woken = known.unwrap_or(Woken { what, chosen: false, stays: Wait::default() });
+    let chosen = woken.what != what;
+    if chosen || over && moved || in_use {
+        (woken.what, woken.chosen) = (what, chosen);
+        woken.stays.begin(now, REST);
     }
-    let left = woken.at + REST - now;
-    let shown = in_use || (left > 0.0 && (over || woken.chosen));
-    if shown && !in_use && woken.wakes <= now {
-        notice::wake(ui.ctx(), left + 0.05);
-        woken.wakes = now + left + 0.05;
+    let shown = in_use || (woken.stays.lasts(now) && (over || woken.chosen));
+    if shown && !in_use {
+        woken.stays.wake(ui.ctx(), now);
     }
     if known != Some(woken) {
         ui.data_mut(|data| data.insert_temp(key, woken));

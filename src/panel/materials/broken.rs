@@ -17,7 +17,7 @@ const SIGNS: f32 = 36.0;
 
 /// True if a search may mean a file.
 pub(super) fn is_named(broken: &Broken, search: &str) -> bool {
-    rank(&file_name(&broken.path), &broken.problems.join(" "), search).is_some()
+    rank(&file_name(&broken.path), &[], &broken.problems.join(" "), search).is_some()
 }
 
 fn file_name(path: &Path) -> String {

@@ -348,7 +348,7 @@ fn found(all: &[Material], search: &str, registry: &Registry) -> Vec<usize> {
         let texts: Vec<_> = texts.into_iter().flatten().chain([model_name(m, registry)]).collect();
         texts.join(" ")
     };
-    let fits = |(i, m): (usize, &Material)| Some((rank(&m.name, &more(m), search)?, i));
+    let fits = |(i, m): (usize, &Material)| Some((rank(&m.name, &[], &more(m), search)?, i));
     let mut found: Vec<_> = all.iter().enumerate().filter_map(fits).collect();
     leave_out_chance(&mut found);
     found.sort_by_key(|(rank, _)| -rank);

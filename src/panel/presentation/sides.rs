@@ -47,8 +47,11 @@ struct Fact {
     usual: bool,
 }
 
+/// The values of a view, each with its parameter.
+type Values = Vec<(&'static Parameter, Part)>;
+
 /// The values of the only object of a scene, in the order in which its model declares them.
-fn values_said(scene: &Scene, registry: &Registry) -> Vec<(&'static Parameter, Part)> {
+fn values_said(scene: &Scene, registry: &Registry) -> Values {
     let mut objects = scene.shown();
     match (objects.next(), objects.next()) {
         (Some(object), None) => values_of(object, scene.model_of(object), registry),
@@ -57,15 +60,17 @@ fn values_said(scene: &Scene, registry: &Registry) -> Vec<(&'static Parameter, P
 }
 
 /// The names of the values of all views, in the order in which their models declare them.
-fn order_of_values(views: &[(&Scene, TermSelection)], registry: &Registry) -> Vec<&'static str> {
-    let of_view = |(scene, _): &(&Scene, TermSelection)| {
-        values_said(scene, registry).into_iter().map(|(parameter, _)| parameter.name).collect()
-    };
-    merged(views.iter().map(of_view).collect())
+fn order_of_values(views: &[Values]) -> Vec<&'static str> {
+    let names = |values: &Values| values.iter().map(|(parameter, _)| parameter.name).collect();
+    merged(views.iter().map(names).collect())
 }
 
-/// All facts about a view, whose values have this order.
-fn facts((scene, terms): (&Scene, TermSelection), order: &[&str], registry: &Registry) -> Vec<Fact> {
+/// All facts about a view with these values, which have this order.
+fn facts(
+    (scene, terms): (&Scene, TermSelection),
+    (values, order): (Values, &[&str]),
+    registry: &Registry,
+) -> Vec<Fact> {
     let mut facts = Vec::new();
     let mut say = |about, part, usual| facts.push(Fact { about, part, usual });
     say(About::Model, model_part(scene, registry), false);
@@ -73,7 +78,7 @@ fn facts((scene, terms): (&Scene, TermSelection), order: &[&str], registry: &Reg
         say(about, part, false);
     }
     if let Some(object) = scene.shown().next() {
-        for (parameter, part) in values_said(scene, registry) {
+        for (parameter, part) in values {
             let at = order.iter().position(|name| *name == parameter.name);
             let usual = object.material.get(parameter) == parameter.default_value();
             say(About::Value(at.unwrap_or(usize::MAX)), part, usual);
@@ -93,8 +98,10 @@ fn facts((scene, terms): (&Scene, TermSelection), order: &[&str], registry: &Reg
 
 /// The captions of views that show these scenes and terms. Parts about the same have the same rank in all.
 pub(super) fn alike(views: &[(&Scene, TermSelection)], registry: &Registry) -> Vec<Vec<Part>> {
-    let order = order_of_values(views, registry);
-    let all: Vec<_> = views.iter().map(|view| facts(*view, &order, registry)).collect();
+    let values: Vec<_> = views.iter().map(|(scene, _)| values_said(scene, registry)).collect();
+    let order = order_of_values(&values);
+    let facts_of = |(view, values)| facts(view, (values, &order), registry);
+    let all: Vec<_> = views.iter().copied().zip(values).map(facts_of).collect();
     let of = |facts: &[Fact], about: About| {
         facts.iter().find(|fact| fact.about == about).map(|fact| fact.part.clone())
     };

@@ -316,10 +316,23 @@ impl Session {
         let copied = self.document.overrides(self.active()).unwrap_or_default();
         all.push(Variant { name: None, ..copied });
         let with = all.len();
+        self.show_views(all, with, layout, "Add a view", registry);
+        self.view.active = with.min(self.document.variants.len());
+    }
+
+    /// Sets the views and the one that is compared with view A, in this layout, or beside each other if it shows one
+    /// alone.
+    pub(super) fn show_views(
+        &mut self,
+        variants: Vec<Variant>,
+        with: usize,
+        layout: Layout,
+        step: &'static str,
+        registry: &Registry,
+    ) {
         let layout = if layout == Layout::Single { Layout::SideBySide } else { layout };
         let comparison = Comparison { layout, with, ..self.document.comparison };
-        self.edit_here(Edit::Views { variants: all, comparison, step: "Add a view" }, registry);
-        self.view.active = with.min(self.document.variants.len());
+        self.edit_here(Edit::Views { variants, comparison, step }, registry);
         // The views need the room.
         self.view.examples_open = false;
     }

@@ -19,7 +19,7 @@ pub struct Facts {
     pub eye: Vec3,
     /// True if the camera has left the observer.
     pub camera_is_free: bool,
-    /// The ratio of width to height of the pictures on screen when the latest action began; `None` if there were none.
+    /// The ratio of width to height of the pictures on screen; `None` if there are none.
     pub aspect: Option<f32>,
     /// Views, view A first, in whose picture an object looks as before because its shader is not ready.
     pub compiling: [bool; MAX_VARIANTS + 1],

@@ -2,7 +2,7 @@
 
 use super::{CompareCommand, Effect, Session, Severity};
 use crate::{
-    document::{Edit, Selection},
+    document::Selection,
     matching::{
         Measure, digits,
         each::{Matched, Ranking},
@@ -10,8 +10,7 @@ use crate::{
     },
     registry::Registry,
     scene::{
-        Comparison, Scene, Variant,
-        comparison::Layout,
+        Scene, Variant,
         variant::{LETTERS, MAX_VARIANTS},
     },
 };
@@ -159,11 +158,7 @@ impl Session {
             all.push(Variant { based_on: None, ..variant });
         }
         let with = if fits.view == 0 { place + 1 } else { fits.view };
-        let comparison = self.document.comparison;
-        let layout = if comparison.layout == Layout::Single { Layout::SideBySide } else { comparison.layout };
-        let comparison = Comparison { layout, with, ..comparison };
-        self.edit_here(Edit::Views { variants: all, comparison, step: "Show a fit" }, registry);
-        self.view.examples_open = false;
+        self.show_views(all, with, self.document.comparison.layout, "Show a fit", registry);
         self.look(registry);
     }
 }

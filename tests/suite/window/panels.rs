@@ -235,6 +235,8 @@ impl Bench {
         let mut output = self.ctx.run_ui(input, |ui| {
             effects.extend(panel::show(ui, &mut *session, area, registry, panels, dialogs, world));
         });
+        // As the camera of the window does.
+        self.session.facts.aspect = self.area.aspect();
         self.panels.take_queued().into_iter().for_each(|command| command(&mut self.world));
         self.effects.extend(effects);
         if let Some(update) = output.platform_output.accesskit_update.take() {
