@@ -67,7 +67,7 @@ async function program() {
     const [response] = await Promise.all([fetch("lab.bin"), prepare()]);
     if (!response.ok) throw new Error(`lab.bin: ${response.status} ${response.statusText}`);
     const whole = Number(response.headers.get("Content-Length"));
-    const unpacker = new Unpacker();
+    const unpacker = Unpacker.new();
     let done = 0;
     const unpack = new TransformStream({
         transform(bytes, onward) {

@@ -4,6 +4,7 @@
 use std::io::{self, Read, Write};
 
 use lzma_rust2::{Action, LzmaOptions, LzmaStream, LzmaWriter, Status};
+#[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// How far back repetitions are looked for, in bytes. The page needs as much memory for a moment.
@@ -24,17 +25,16 @@ pub fn pack(mut from: impl Read, to: impl Write) -> io::Result<()> {
 }
 
 /// Unpacks a program piece by piece.
-#[wasm_bindgen]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
 pub struct Unpacker {
     stream: LzmaStream,
     ended: bool,
 }
 
-#[wasm_bindgen]
+#[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
 impl Unpacker {
     /// Before the first piece.
     #[must_use]
-    #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
         // In KiB. What asks for more is not packed by this.
         Self { stream: LzmaStream::new_mem_limit(2 * (REACH >> 10), None), ended: false }

@@ -81,8 +81,9 @@ impl Laboratory {
     }
 
     pub fn wait_for_picture(&self) {
-        self.browser
-            .wait("return document.getElementById('before')?.hidden ?? false", |hidden| hidden == true);
+        // Where no picture comes, the page says why.
+        let shown = "const of = (id) => document.getElementById(id); return of('before')?.hidden || of('said')?.textContent";
+        self.browser.wait(shown, |shown| *shown == true);
         self.frames();
     }
 

@@ -90,3 +90,15 @@ fn what_the_browser_does_not_copy_is_not_said_to_be_copied() {
     let said = lab.messages();
     assert!(said.contains("Copied the link to this scene."), "{said}");
 }
+
+#[test]
+fn a_second_visit_loads_no_program() {
+    let Some(laboratory) = Laboratory::open() else { return };
+    let kept = "return caches.match('lab.wasm').then((known) => known?.headers.get('Content-Type') ?? null)";
+    laboratory.browser.wait(kept, |kind| kind == "application/wasm");
+    let loaded =
+        "return performance.getEntriesByType('resource').some(({ name }) => name.endsWith('lab.bin'))";
+    assert_eq!(laboratory.browser.run(loaded), true, "the first one does");
+    laboratory.visit("");
+    assert_eq!(laboratory.browser.run(loaded), false);
+}
