@@ -170,14 +170,16 @@ fn rows(to: &mut List) {
 
 fn models(to: &mut List) {
     let model = |id: &'static str, name: &'static str, what| {
-        command(id, name, Action::Model(what)).group(Group::CustomModels)
+        // From a text of the panel Code, too.
+        command(id, name, Action::Model(what)).group(Group::CustomModels).anywhere()
     };
     to.add(model("new_model", "New reflection model…", ModelCommand::New).keys("Ctrl+Shift+N"));
     let duplicate = model("duplicate_model", "Duplicate the model as a file…", ModelCommand::Duplicate);
     to.add(duplicate.keys("Ctrl+Shift+D"));
     let open = model("edit_model", "Open the model in an editor", ModelCommand::EditShown).keys("Ctrl+E");
     to.menu(Menu::new("Code"), |to| {
-        let code = |id, name, what| command(id, name, Action::Code(what)).group(Group::CustomModels);
+        let code =
+            |id, name, what| command(id, name, Action::Code(what)).group(Group::CustomModels).anywhere();
         to.add(open);
         to.add(code("code", "Edit the code of the model", CodeCommand::Model).keys("Ctrl+Shift+E").at_desk());
         to.add(
