@@ -334,6 +334,20 @@ fn after_a_choice_about_another_version_keys_are_for_the_text() {
 }
 
 #[test]
+fn the_question_about_another_version_says_whether_there_are_changes_here() {
+    let mut bench = with_scene();
+    types(&mut bench, "x");
+    // Once the text has followed the document.
+    (0..3).for_each(|_| bench.settle());
+    bench.session.code.open[0].theirs = Some(Theirs::Changed("{}".into()));
+    bench.settle();
+    assert!(bench.says("and you have changed scene.json"), "{:?}", bench.tree);
+    bench.key(Key::Z, CTRL);
+    assert!(bench.says("scene.json is as it was before") && bench.find("Take theirs").is_some());
+    assert!(!bench.says("you have changed"));
+}
+
+#[test]
 fn words_are_offered_one_in_a_line_within_the_editor_and_the_window() {
     for size in [egui::vec2(1280.0, 720.0), egui::vec2(700.0, 480.0)] {
         let mut bench = Bench::new(Session::default());
