@@ -170,12 +170,12 @@ fn rows(to: &mut List) {
 
 fn models(to: &mut List) {
     let model = |id: &'static str, name: &'static str, what| {
-        // From a text of the panel Code, too.
-        command(id, name, Action::Model(what)).group(Group::CustomModels).anywhere()
+        command(id, name, Action::Model(what)).group(Group::CustomModels)
     };
-    to.add(model("new_model", "New reflection model…", ModelCommand::New).keys("Ctrl+Shift+N"));
+    // From within a text of the panel Code, too, as those of that panel below.
+    to.add(model("new_model", "New reflection model…", ModelCommand::New).keys("Ctrl+Shift+N").anywhere());
     let duplicate = model("duplicate_model", "Duplicate the model as a file…", ModelCommand::Duplicate);
-    to.add(duplicate.keys("Ctrl+Shift+D"));
+    to.add(duplicate.keys("Ctrl+Shift+D").anywhere());
     let open = model("edit_model", "Open the model in an editor", ModelCommand::EditShown).keys("Ctrl+E");
     to.menu(Menu::new("Code"), |to| {
         let code =
