@@ -63,7 +63,7 @@ pub(super) fn object_type<'a>(id: &'a str, registry: &Registry) -> &'a str {
     registry.shape(id).map_or(id, |entry| entry.declaration.name)
 }
 
-/// "lamp" → "lamp 2", "lamp 2" → "lamp 3": the next free number.
+/// "lamp" → "lamp 2", "lamp 2" → "lamp 3", "B1" → "B2": the next free number.
 pub fn free_name(scene: &Scene, name: &str) -> String {
     FreeNames::of(scene).next(name)
 }
@@ -85,13 +85,19 @@ impl<'a> FreeNames<'a> {
 
     /// The name of a copy: with the next number that is free.
     pub fn next(&mut self, name: &str) -> String {
-        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
-        let stem = if stem.is_empty() { name } else { stem };
-        let first = self.next.get(stem).copied().unwrap_or(2);
-        let with = |n: usize| format!("{stem} {n}");
+        let cut = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        let stem = match cut.trim_end() {
+            "" => format!("{name} "),
+            // As in "B1", without a space.
+            _ if cut.len() < name.len() && !cut.ends_with(char::is_whitespace) => cut.to_owned(),
+            stem => format!("{stem} "),
+        };
+        let first = self.next.get(&stem).copied().unwrap_or(2);
+        let with = |n: usize| format!("{stem}{n}");
         let n = (first..).find(|n| !self.given.contains(with(*n).as_str())).unwrap_or(first);
-        self.next.insert(stem.to_owned(), n + 1);
-        with(n)
+        let name = with(n);
+        self.next.insert(stem, n + 1);
+        name
     }
 }
 
@@ -219,6 +225,19 @@ impl Document {
 mod tests {
     use super::*;
     use crate::scene::{Light, Object};
+
+    #[test]
+    fn a_copy_has_the_next_free_number_written_as_in_the_original() {
+        let named = |name: &str| Object { name: Some(name.to_owned()), ..Object::default() };
+        let scene = Scene { objects: ["B1", "B2", "lamp 2", "7"].map(named).to_vec(), ..Scene::default() };
+        for (name, copy) in
+            [("B1", "B3"), ("lamp", "lamp 3"), ("lamp 2", "lamp 3"), ("lamp  2", "lamp 3"), ("7", "7 2")]
+        {
+            assert_eq!(free_name(&scene, name), copy, "{name}");
+        }
+        let mut names = FreeNames::of(&scene);
+        assert_eq!(["B1", "B2", "lamp 2"].map(|name| names.next(name)), ["B3", "B4", "lamp 3"]);
+    }
 
     #[test]
     fn a_scene_names_its_parts_as_a_new_document_of_it_does() {

@@ -140,7 +140,8 @@ fn latest(ui: &mut Ui, beside: f32, context: &mut PanelContext<'_>) {
     let room = (all - beside - gap).max(NEWS * all) - button;
     let colour = Palette::here(ui).text;
     let galley = theme::elided(ui, &message.text, TextStyle::Small, colour, room);
-    let label = ui.add(Label::new(galley));
+    // Its own tooltip would be a second one.
+    let label = ui.add(Label::new(galley).show_tooltip_when_elided(false));
     label.on_hover_text(&message.text);
     if let Some((text, action)) = &message.offer {
         let button = ui.add(Button::new(theme::small(ui, *text).color(colour)).small());

@@ -91,9 +91,18 @@ fn question(open: &OpenCode, session: &Session) -> Option<(String, Vec<(&'static
     Some(match &open.theirs {
         None => (format!("{name} cannot be used: {}.", check::refused(open, session)?), Vec::new()),
         Some(Theirs::Changed(_)) => {
-            let text = match open.of {
-                CodeOf::Scene => format!("The scene was changed elsewhere, and you have changed {name}."),
-                CodeOf::File(_) => format!("Another program has changed {name}, and you have too."),
+            // What was changed here may have been undone since.
+            let text = match (&open.of, open.text != open.base) {
+                (CodeOf::Scene, true) => {
+                    format!("The scene was changed elsewhere, and you have changed {name}.")
+                }
+                (CodeOf::Scene, false) => {
+                    format!("The scene was changed elsewhere; {name} is as it was before.")
+                }
+                (CodeOf::File(_), true) => format!("Another program has changed {name}, and you have too."),
+                (CodeOf::File(_), false) => {
+                    format!("Another program has changed {name}; here it is as it was before.")
+                }
             };
             let see = match open.shows_difference {
                 true => ("Back to the text", CodeCommand::Difference(false)),

@@ -4,6 +4,7 @@ use bevy_egui::egui::{Event, Modifiers};
 
 use super::{
     super::{
+        modal,
         prelude::*,
         state::{CODE_TAB, CodeCommand},
     },
@@ -102,9 +103,16 @@ pub(in crate::panel) fn keys(ctx: &Context, session: &Session) -> Vec<Action> {
         return Vec::new();
     };
     let Some(at) = focus(ctx, id, &typing.bar) else { return Vec::new() };
-    let (mut actions, mut asked) = (Vec::new(), Vec::new());
+    let (mut actions, mut asked, mut waits) = (Vec::new(), Vec::new(), Vec::new());
+    let mut typed = false;
     ctx.input_mut(|input| {
         for event in std::mem::take(&mut input.events) {
+            // While frames are slow, several keys come in one.
+            if typed && depends(&event, at) || !waits.is_empty() && follows(&event) {
+                waits.push(event);
+                continue;
+            }
+            typed |= changes(&event);
             match meant(&event, &typing, at) {
                 Meant::Itself => input.events.push(event),
                 Meant::Text(text) => input.events.push(Event::Text(text)),
@@ -122,6 +130,7 @@ pub(in crate::panel) fn keys(ctx: &Context, session: &Session) -> Vec<Action> {
             input.events.retain(|event| !matches!(event, Event::Text(text) if text == " "));
         }
     });
+    modal::wait(ctx, waits);
     if asked.contains(&Ask::Escape) {
         ctx.memory_mut(|memory| memory.request_focus(id));
     }
@@ -159,6 +168,35 @@ fn focus(ctx: &Context, text: Id, bar: &[Id]) -> Option<Focus> {
 /// A press of a key alone.
 fn press(key: Key) -> Event {
     Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE }
+}
+
+/// True for what changes a text. A new line and an indentation are left out: held down, a key is not to lag behind.
+fn changes(event: &Event) -> bool {
+    match event {
+        Event::Text(_) | Event::Paste(_) | Event::Cut | Event::Ime(_) => true,
+        Event::Key { key, pressed: true, .. } => matches!(key, Key::Backspace | Key::Delete),
+        _ => false,
+    }
+}
+
+/// True for what depends on the text as the keys before it leave it, which is known in the next frame only. Not so Esc:
+/// egui has taken the focus away by then.
+fn depends(event: &Event, at: Focus) -> bool {
+    let writes = at == Focus::Text;
+    match event {
+        Event::Text(text) => writes && matches!(text.as_str(), "}" | "]"),
+        Event::Key { key: Key::Enter, pressed: true, .. } => true,
+        Event::Key { key, pressed: true, modifiers, .. } => {
+            writes && (*key == Key::Tab || modifiers.command && *key != Key::Escape)
+        }
+        _ => false,
+    }
+}
+
+/// True for what comes after a key that waits.
+fn follows(event: &Event) -> bool {
+    let is_escape = matches!(event, Event::Key { key: Key::Escape, .. });
+    !is_escape && (modal::is_typed(event) || matches!(event, Event::Cut | Event::Copy | Event::Ime(_)))
 }
 
 /// The meaning of an event in the editor.

@@ -58,6 +58,35 @@ fn found_look(selected: bool, palette: &Palette) -> (Color32, Stroke) {
     }
 }
 
+/// The byte of another version of a text that is beside the same as a byte of this one. Within what has changed, it stays
+/// as far from the start, as nearly as it can.
+fn moved(from: &str, to: &str, at: usize) -> usize {
+    let alike = |all: &mut dyn Iterator<Item = (char, char)>| -> usize {
+        all.take_while(|(a, b)| a == b).map(|(a, _)| a.len_utf8()).sum()
+    };
+    let at = at.min(from.len());
+    let before = alike(&mut from.chars().zip(to.chars()));
+    if at <= before {
+        return at;
+    }
+    let behind = alike(&mut from[before..].chars().rev().zip(to[before..].chars().rev()));
+    if at + behind >= from.len() {
+        return to.len() - (from.len() - at);
+    }
+    to.floor_char_boundary(at.clamp(before, to.len() - behind))
+}
+
+/// Puts the cursor of a text, and the other end of what is selected, at these bytes.
+fn put_cursor(ctx: &Context, open: &OpenCode, ends: [usize; 2]) {
+    let mut state = TextEditState::load(ctx, id_of(open)).unwrap_or_default();
+    if state.cursor.char_range().is_none() {
+        return;
+    }
+    let [end, start] = ends.map(|at| CCursor::new(character(&open.text, at)));
+    state.cursor.set_char_range(Some(CCursorRange::two(start, end)));
+    state.store(ctx, id_of(open));
+}
+
 impl CodePanel {
     /// Takes in another text, or one that something else has changed, which undoing brings back.
     pub(super) fn take_in(&mut self, ctx: &Context, open: &OpenCode, session: &Session) {
@@ -65,8 +94,11 @@ impl CodePanel {
         match same.filter(|(number, _)| *number == open.number) {
             Some((_, text)) if Arc::ptr_eq(&text, &open.text) => return,
             Some((number, text)) => {
+                let now = self.cursor.map(|at| moved(&text, &open.text, at));
                 let before = State { text, cursor: self.cursor };
                 self.steps.entry(number).or_default().record(before, &open.text, None);
+                self.cursor = now;
+                put_cursor(ctx, open, now);
             }
             None => {
                 let state = TextEditState::load(ctx, id_of(open)).unwrap_or_default();
@@ -395,6 +427,21 @@ mod tests {
         for (text, length) in all {
             assert_eq!(word_length(text.chars()), length, "{text}");
         }
+    }
+
+    #[test]
+    fn a_place_stays_beside_what_it_is_beside_when_the_text_changes_elsewhere() {
+        let (from, to) = ("one\ntwo\nthree", "one\né\ntwo\nthree");
+        for (at, c) in from.char_indices().chain([(from.len(), ' ')]) {
+            let now = moved(from, to, at);
+            assert_eq!(now, if at <= 4 { at } else { at + "é\n".len() }, "{c} at {at}");
+            assert_eq!(moved(to, from, now), at, "and back");
+        }
+        // In what was replaced, it stays within what is there now.
+        assert_eq!(moved("a(bcdef)g", "a(é)g", 7), 4);
+        assert_eq!(moved("a(bcdef)g", "a(é)g", 4), 4);
+        assert_eq!(moved("a(bcdef)g", "a(é)g", 3), 2);
+        assert_eq!(moved("abc", "", 9), 0);
     }
 
     #[test]

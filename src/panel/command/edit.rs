@@ -172,12 +172,14 @@ fn models(to: &mut List) {
     let model = |id: &'static str, name: &'static str, what| {
         command(id, name, Action::Model(what)).group(Group::CustomModels)
     };
-    to.add(model("new_model", "New reflection model…", ModelCommand::New).keys("Ctrl+Shift+N"));
+    // From within a text of the panel Code, too, as those of that panel below.
+    to.add(model("new_model", "New reflection model…", ModelCommand::New).keys("Ctrl+Shift+N").anywhere());
     let duplicate = model("duplicate_model", "Duplicate the model as a file…", ModelCommand::Duplicate);
-    to.add(duplicate.keys("Ctrl+Shift+D"));
+    to.add(duplicate.keys("Ctrl+Shift+D").anywhere());
     let open = model("edit_model", "Open the model in an editor", ModelCommand::EditShown).keys("Ctrl+E");
     to.menu(Menu::new("Code"), |to| {
-        let code = |id, name, what| command(id, name, Action::Code(what)).group(Group::CustomModels);
+        let code =
+            |id, name, what| command(id, name, Action::Code(what)).group(Group::CustomModels).anywhere();
         to.add(open);
         to.add(code("code", "Edit the code of the model", CodeCommand::Model).keys("Ctrl+Shift+E").at_desk());
         to.add(

@@ -116,7 +116,8 @@ pub(super) fn hemisphere(ui: &mut Ui, explained: &Arc<Explained>, seen: &Seen, r
             ui.vertical(|ui| {
                 ui.set_width(cell);
                 let name = if short { disc.short } else { disc.name };
-                ui.add(Label::new(theme::small(ui, name)).truncate()).on_hover_text(disc.name);
+                let label = Label::new(theme::small(ui, name)).truncate().show_tooltip_when_elided(false);
+                ui.add(label).on_hover_text(disc.name);
                 one(ui, &discs, i, width);
                 theme::note(ui, legends[i].as_str()).on_hover_text(format!("white: {}", discs.ends[i]));
             });

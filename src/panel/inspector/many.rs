@@ -14,7 +14,7 @@ use crate::{
         state::Effect,
     },
     parameter::{Parameter, Value},
-    reflection::{ModelEntry, ungrouped},
+    reflection::{ModelEntry, ungrouped, usage::unused},
     scene::{Field, Key, Light, Object, limits, part::Fields as _, rows::Variable},
     text::capitalised,
 };
@@ -79,6 +79,14 @@ struct Shared {
     key: Key,
     what: What,
     common: Common,
+    /// Why none of the parts uses it, if so.
+    off: Option<String>,
+}
+
+impl Shared {
+    fn new(key: Key, what: What, common: Common) -> Self {
+        Self { key, what, common, off: None }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -150,7 +158,7 @@ impl All {
                 let positions = positions.chain(objects.iter().map(|object| Some(object.position)));
                 let field = positions.collect::<Option<Vec<_>>>().and_then(|all| {
                     let common = Common::of(all.into_iter().map(Value::from))?;
-                    Some(Shared { key: Object::position.into(), what: What::Field(Object::position), common })
+                    Some(Shared::new(Object::position.into(), What::Field(Object::position), common))
                 });
                 vec![("Position", Group::none(field.into_iter().collect()))]
             }
@@ -204,7 +212,7 @@ impl All {
 
     /// The knob of a value. Returns the edit that sets it in all parts.
     fn knob(&self, ui: &mut Ui, one: &Shared, session: &Session, registry: &Registry) -> Option<Edit> {
-        let Shared { key, what, common } = one;
+        let Shared { key, what, common, off } = one;
         match what {
             What::Model => {
                 let model = model(ui, common, session, registry)?;
@@ -228,7 +236,9 @@ impl All {
                 let new = field_knob(ui, field, common, self.limits(field, session, registry))?;
                 Some((field.label(), new))
             }
-            What::Parameter(p) => parameter_knob(ui, *key, p, common, registry).map(|new| (p.label, new)),
+            What::Parameter(p) => {
+                parameter_knob(ui, (*key, *p, off.as_deref()), common, registry).map(|new| (p.label, new))
+            }
         }
         .map(|(label, new)| {
             let scene = session.scene();
@@ -284,21 +294,29 @@ fn own_value(scene: &Scene, part: Part, key: Key, registry: &Registry) -> Option
 fn field(field: Field, values: impl Iterator<Item = Option<Value>>) -> Option<Shared> {
     let all = values.collect::<Option<Vec<_>>>()?;
     let common = Common::of(all.into_iter())?;
-    Some(Shared { key: field.into(), what: What::Field(field), common })
+    Some(Shared::new(field.into(), What::Field(field), common))
 }
 
-/// Parameters, with what these parts have of them.
+/// Parameters, with what these parts have of them. `off` tells why a part does not use one.
 fn parameters<T: Copy>(
     all: impl Iterator<Item = &'static Parameter>,
     parts: &[T],
     key: fn(&'static str) -> Key,
     get: impl Fn(T, &Parameter) -> Value,
+    off: impl Fn(T, &'static Parameter) -> Option<String>,
 ) -> Vec<Shared> {
+    let off = |p: &'static Parameter| {
+        // Only such a condition can be unmet, and there may be thousands of parts.
+        p.used_when?;
+        let mut reasons = parts.iter().map(|part| off(*part, p));
+        let first = reasons.next()??;
+        reasons.all(|reason| reason.is_some()).then_some(first)
+    };
     let shared = |p: &'static Parameter| {
         let common = Common::of(parts.iter().map(|part| get(*part, p)))?;
         // Files are chosen one by one.
         let shown = !matches!(common.value, Value::File(_));
-        shown.then(|| Shared { key: key(p.name), what: What::Parameter(p), common })
+        shown.then(|| Shared { off: off(p), ..Shared::new(key(p.name), What::Parameter(p), common) })
     };
     all.filter_map(shared).collect()
 }
@@ -306,20 +324,21 @@ fn parameters<T: Copy>(
 fn of_objects(objects: &[&Object], scene: &Scene, registry: &Registry) -> Sections {
     let mut models: Vec<&str> = objects.iter().map(|object| scene.model_of(object)).collect();
     let common = Common::of(models.iter().map(|id| Value::from((*id).to_owned())));
-    let model =
-        common.map(|common| Shared { key: Object::reflection_model.into(), what: What::Model, common });
+    let model = common.map(|common| Shared::new(Object::reflection_model.into(), What::Model, common));
     models.sort_unstable();
     models.dedup();
     let models: Option<Vec<_>> = models.into_iter().map(|id| registry.model(id)).collect();
-    let material = models.map(|models| of_material(&models, objects));
+    let material = models.map(|models| of_material(&models, objects, scene));
     let object_type = Common::of(objects.iter().map(|o| Value::from(o.object_type.clone())));
     let shape = object_type.as_ref().and_then(|common| registry.shape(common.word()?));
-    let shape = shape
-        .map(|shape| parameters(shape.parameters.iter(), objects, Key::Own, |object, p| object.shape.get(p)));
+    let shape = shape.map(|shape| {
+        let off = |object: &Object, p: &'static Parameter| unused(shape.parameters, p, &object.shape);
+        parameters(shape.parameters.iter(), objects, Key::Own, |object, p| object.shape.get(p), off)
+    });
     let fields = [Object::visible, Object::size, Object::position, Object::rotation];
     let fields = fields.into_iter().filter_map(|of| field(of, objects.iter().map(|o| o.value(of.into()))));
     let place = object_type
-        .map(|common| Shared { key: Object::object_type.into(), what: What::Type, common })
+        .map(|common| Shared::new(Object::object_type.into(), What::Type, common))
         .into_iter()
         .chain(shape.into_iter().flatten())
         .chain(fields);
@@ -331,11 +350,16 @@ fn of_objects(objects: &[&Object], scene: &Scene, registry: &Registry) -> Sectio
 }
 
 /// The parameters that all of these models have, in the groups of the first.
-fn of_material(models: &[&ModelEntry], objects: &[&Object]) -> Vec<Group> {
+fn of_material(models: &[&ModelEntry], objects: &[&Object], scene: &Scene) -> Vec<Group> {
     let Some((first, rest)) = models.split_first() else { return Vec::new() };
     let in_all = |p: &&'static Parameter| rest.iter().all(|model| model.parameter(p.name).is_some());
+    let off = |object: &Object, p: &'static Parameter| {
+        let id = scene.model_of(object);
+        let model = models.iter().find(|model| model.declaration.id == id)?;
+        unused(model.parameters, p, &object.material)
+    };
     let values = |all: &mut dyn Iterator<Item = &'static Parameter>| {
-        parameters(all.filter(in_all), objects, Key::Material, |object, p| object.material.get(p))
+        parameters(all.filter(in_all), objects, Key::Material, |object, p| object.material.get(p), off)
     };
     let all = first.parameters;
     let mut groups = Group::none(values(&mut ungrouped(first.groups, all)));
@@ -363,11 +387,12 @@ fn of_lights(lights: &[&Light], registry: &Registry) -> Sections {
         _ => None,
     };
     let own = entry.map(|entry| {
-        parameters(entry.parameters.iter(), lights, Key::Own, |light, p| light.parameters.get(p))
+        let off = |light: &Light, p: &'static Parameter| unused(entry.parameters, p, &light.parameters);
+        parameters(entry.parameters.iter(), lights, Key::Own, |light, p| light.parameters.get(p), off)
     });
     let fields = [of(Light::enabled), strength, colour].into_iter().flatten();
     let first = light_type
-        .map(|common| Shared { key: Light::light_type.into(), what: What::Type, common })
+        .map(|common| Shared::new(Light::light_type.into(), What::Type, common))
         .into_iter()
         .chain(fields)
         .chain(own.into_iter().flatten());
@@ -411,11 +436,10 @@ fn field_knob(ui: &mut Ui, field: &Field, common: &Common, limits: [limits::Limi
     }
 }
 
-/// The knob of a parameter.
+/// The knob of a parameter, disabled for a reason.
 fn parameter_knob(
     ui: &mut Ui,
-    key: Key,
-    p: &'static Parameter,
+    (key, p, off): (Key, &'static Parameter, Option<&str>),
     common: &Common,
     registry: &Registry,
 ) -> Option<Value> {
@@ -424,10 +448,10 @@ fn parameter_knob(
         Key::Own(name) => format!("shape {name}"),
     };
     if common.is_one() {
-        return knob::parameter_knob(ui, &salt, p, &common.value, None);
+        return knob::parameter_knob(ui, &salt, p, &common.value, off);
     }
     let Parameter { symbol, label, unit, help, .. } = *p;
-    let caption = Caption { salt: &salt, symbol, label, unit, help, ..Caption::default() };
+    let caption = Caption { salt: &salt, symbol, label, unit, help, disabled: off, ..Caption::default() };
     match &common.value {
         Value::Colour(rgb) => colours(ui, &caption, *rgb),
         Value::Choice(_) => {

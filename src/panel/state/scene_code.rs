@@ -13,7 +13,7 @@ use crate::{
         load::{self, Defaults},
         save,
     },
-    text::place::Place,
+    text::{place::Place, sentence},
 };
 
 impl Session {
@@ -73,7 +73,7 @@ impl Session {
             Err(problems) => {
                 let said = |(at, what): &(Place, String)| format!("line {}: {what}", at.line);
                 let first = problems.first().map_or_else(String::new, said);
-                let text = format!("The scene was not changed; its JSON has an error in {first}.");
+                let text = sentence(&format!("The scene was not changed; its JSON has an error in {first}"));
                 self.say(Severity::Warning, text);
             }
         }

@@ -248,6 +248,77 @@ fn enter_indents_and_a_bracket_goes_back() {
 }
 
 #[test]
+fn the_cursor_stays_at_its_place_while_the_text_follows_the_scene() {
+    let mut bench = with_scene();
+    bench.key(Key::End, CTRL);
+    let before = open(&bench).text.clone();
+    bench.apply(Action::AddObject("cube".to_owned()));
+    // Once the document rests.
+    (0..6).for_each(|_| bench.settle());
+    let after = open(&bench).text.clone();
+    assert_ne!(after, before);
+    types(&mut bench, "x");
+    assert_eq!(*open(&bench).text, *format!("{after}x"));
+}
+
+#[test]
+fn keys_that_come_in_one_frame_do_what_they_do_one_by_one() {
+    let press =
+        |key, modifiers| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+    let letters = |text: &str| Event::Text(text.to_owned());
+    let sequences = [
+        vec![letters("{"), press(Key::Enter, Modifiers::NONE), letters("a")],
+        vec![letters("\"va"), press(Key::Tab, Modifiers::NONE), letters("1")],
+        vec![letters("x"), press(Key::Z, CTRL), letters("y")],
+        vec![letters("a"), press(Key::Backspace, Modifiers::NONE), letters("{"), letters("]")],
+    ];
+    for events in sequences {
+        let [slow, fast] = [true, false].map(|slow| {
+            let mut bench = with_scene();
+            bench.key(Key::ArrowRight, Modifiers::NONE);
+            let frames: Vec<_> = if slow {
+                events.iter().map(|event| vec![event.clone()]).collect()
+            } else {
+                vec![events.clone()]
+            };
+            for frame in frames {
+                bench.frame(frame);
+                bench.settle();
+            }
+            open(&bench).text.clone()
+        });
+        assert_eq!(fast, slow, "{events:?}");
+    }
+}
+
+#[test]
+fn keys_that_open_texts_and_new_models_work_within_a_text() {
+    let mut bench = Bench::new(Session::default());
+    bench.session.code.open.push(OpenCode {
+        of: CodeOf::File("/lab/models/a.wgsl".into()),
+        name: "a.wgsl".to_owned(),
+        text: "// a".into(),
+        base: "// a".into(),
+        crlf: false,
+        theirs: None,
+        shows_difference: false,
+        replaced: None,
+        closing: false,
+        number: 99,
+    });
+    bench.session.code.goto = Some((99, 1));
+    bench.apply(Action::View(ViewChange::BottomTab("code".to_owned())));
+    types(&mut bench, "x");
+    assert_eq!(&*open(&bench).text, "x// a");
+    bench.key(Key::J, CTRL | Modifiers::SHIFT);
+    assert_eq!(open(&bench).of, CodeOf::Scene);
+    types(&mut bench, "x");
+    assert!(open(&bench).is_unsaved(), "the text has the focus");
+    bench.key(Key::N, CTRL | Modifiers::SHIFT);
+    assert!(bench.session.authoring.draft.is_some());
+}
+
+#[test]
 fn after_a_choice_about_another_version_keys_are_for_the_text() {
     let mut bench = with_scene();
     types(&mut bench, "x");
@@ -260,6 +331,20 @@ fn after_a_choice_about_another_version_keys_are_for_the_text() {
     bench.settle();
     assert!(text.is_some() && bench.find("Keep mine").is_none());
     assert_eq!(bench.ctx.memory(|memory| memory.focused()), text);
+}
+
+#[test]
+fn the_question_about_another_version_says_whether_there_are_changes_here() {
+    let mut bench = with_scene();
+    types(&mut bench, "x");
+    // Once the text has followed the document.
+    (0..3).for_each(|_| bench.settle());
+    bench.session.code.open[0].theirs = Some(Theirs::Changed("{}".into()));
+    bench.settle();
+    assert!(bench.says("and you have changed scene.json"), "{:?}", bench.tree);
+    bench.key(Key::Z, CTRL);
+    assert!(bench.says("scene.json is as it was before") && bench.find("Take theirs").is_some());
+    assert!(!bench.says("you have changed"));
 }
 
 #[test]

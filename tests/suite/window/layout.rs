@@ -284,6 +284,12 @@ fn the_last_message_is_whole_where_there_is_room() {
     bench.settle();
     let selected = bench.find("Sphere 1 selected · F1 keys").expect("shown").rect;
     assert!(selected.width() > 60.0 && selected.right() <= 1280.0 / 1.5, "{selected:?}");
+    // One tooltip says the rest.
+    let long = words.repeat(9);
+    let all = |bench: &mut Bench| bench.texts().iter().filter(|text| **text == long).count();
+    let (before, at) = (all(&mut bench), bench.find(&long).expect("shown").rect.center());
+    bench.hover(at);
+    assert_eq!(all(&mut bench), before + 1);
 }
 
 #[test]

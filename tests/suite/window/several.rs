@@ -189,6 +189,20 @@ fn the_material_of_several_has_the_groups_of_its_model() {
     assert!(bench.find(METALLIC.label).is_none());
 }
 
+#[test]
+fn knobs_that_none_of_several_uses_are_disabled() {
+    let mut bench = bench();
+    bench.size = vec2(1800.0, 3000.0);
+    bench.apply(Action::ChooseModel("microfacet".to_owned()));
+    bench.apply(Action::SelectAlike(Alike::Kind));
+    let microfacet = bench.registry.model("microfacet").expect("built in");
+    let label = microfacet.parameter("gamma").expect("it has one").label;
+    assert!(bench.field(label).disabled, "no distribution is GTR");
+    let set = Edit::material(Part::Object(1), "distribution", Value::Choice("gtr".into()));
+    bench.apply(Action::Edit(set));
+    assert!(!bench.field(label).disabled, "one of them uses it");
+}
+
 /// The points of the marks of selection in the picture.
 fn brackets(bench: &mut Bench) -> Vec<Pos2> {
     let blue = ColorMode::Solid(Color32::from_rgb(0x7c, 0xc8, 0xff));
