@@ -224,6 +224,24 @@ mod tests {
     }
 
     #[test]
+    fn a_measurement_is_named_by_its_file() {
+        let registry = Registry::builtin();
+        let file = |name: &str| {
+            let parameter = registry.material_parameter("merl_file").expect("declared");
+            parameter.kind.parse(name).expect("every name is one of a file")
+        };
+        let mut scene = Scene { reflection_model: "measured_merl".to_owned(), ..Scene::default() };
+        scene.objects = vec![object("", None, &[("merl_file", file("merl/alum-bronze.binary"))])];
+        assert_eq!(facts(&scene, 0), "Measured (MERL) · Gouraud shading · alum-bronze.binary");
+        // A view that has another one says so in its heading, as does A.
+        let mut other = Variant::default();
+        other.material.set("merl_file", file("paint, red.binary"));
+        scene.variants = vec![other];
+        let headings = [0, 1].map(|view| header(&scene, view, &registry));
+        assert_eq!(headings, ["A · alum-bronze.binary", "B · “paint, red.binary”"]);
+    }
+
+    #[test]
     fn several_views_share_what_is_the_same_in_all() {
         let mut scene = Scene { reflection_model: "phong".to_owned(), ..Scene::default() };
         scene.objects =

@@ -112,9 +112,9 @@ impl Spread {
             }
         };
         let unit = parameter.suffix();
-        let text = match (parameter.kind.options(), symbol) {
-            ([], "") => format!("{} {before}{text}{unit}", parameter.label),
-            ([], _) => format!("{before}{text}{unit}"),
+        let text = match symbol {
+            "" if !is_named(parameter) => format!("{} {before}{text}{unit}", parameter.label),
+            _ if !is_named(parameter) => format!("{before}{text}{unit}"),
             // A name with a comma would look like two.
             _ if text.contains(',') => format!("“{text}”"),
             _ => text,
@@ -156,11 +156,15 @@ pub(super) fn differing<'a>(
     })
 }
 
+/// True if the values of a parameter have names, which need no symbol: choices and files.
+fn is_named(parameter: &Parameter) -> bool {
+    !parameter.kind.options().is_empty() || parameter.kind.format().is_some()
+}
+
 /// The symbol of a parameter and its value in words.
 pub(crate) fn value(parameter: &'static Parameter, value: &Value) -> Option<(&'static str, String)> {
     let text = parameter.kind.caption(parameter.label, value)?;
-    // The names of choices need no symbol.
-    Some((if parameter.kind.options().is_empty() { parameter.symbol } else { "" }, text))
+    Some((if is_named(parameter) { "" } else { parameter.symbol }, text))
 }
 
 /// A value in words as a part of its own: with its symbol, or with its name where the words alone do not say what they

@@ -12,6 +12,10 @@ const WIDE: f64 = 50.0;
 /// Step of derivatives, as a fraction of the range: far above the rounding of the models' 32 bits.
 const STEP: f64 = 2e-4;
 
+/// Half the distance of the two values of a derivative that tells whether parameters do the same: their rounding would count as a
+/// difference if they were nearer.
+const SPAN: f64 = 2e-3;
+
 /// A coordinate: a number of a parameter, scaled to 0–1.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
@@ -79,6 +83,16 @@ impl Axis {
         }
     }
 
+    /// Legal values below and above another, for a difference between them; at an end of the range, one of them is the value itself.
+    pub(super) fn around(&self, value: f64) -> [f64; 2] {
+        let at = self.coordinate(value);
+        [-1.0, 1.0].map(|sign: f64| {
+            let there = self.value(at + sign * SPAN);
+            // Whole numbers may be farther apart.
+            if self.whole && there == value { self.legal(value + sign) } else { there }
+        })
+    }
+
     /// A legal value next to another, for a finite difference.
     pub(super) fn beside(&self, value: f64) -> f64 {
         let at = self.coordinate(value);
@@ -118,6 +132,11 @@ mod tests {
                     let beside = axis.beside(value);
                     assert!(beside != value, "{name} {value}");
                     assert!(parameter.allows(&parameter.kind.of_numbers([beside; 3])), "{name} {beside}");
+                    let [below, above] = axis.around(value);
+                    assert!(below <= value && value <= above && below < above, "{name} {value}");
+                    for there in [below, above] {
+                        assert!(parameter.allows(&parameter.kind.of_numbers([there; 3])), "{name} {there}");
+                    }
                     seen += 1;
                 }
             }

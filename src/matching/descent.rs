@@ -139,9 +139,10 @@ impl Slope {
     }
 }
 
-/// For each of some columns of length 1 the part of it, squared, that no sum of the others reaches, inverted: how much less is known of its number
-/// since the others vary too, the variance inflation factor (D. Belsley, E. Kuh, R. Welsch 1980, *Regression Diagnostics*).
-pub(super) fn inflation(columns: &[Vec<f64>]) -> Vec<f64> {
+/// The inverse of the matrix of the normal equations of some columns of length 1. Its diagonal is for each the part of it, squared, that no sum of the
+/// others reaches, inverted: how much less is known of its number since the others vary too, the variance inflation factor
+/// (D. Belsley, E. Kuh, R. Welsch 1980, *Regression Diagnostics*). The rest of its row, divided by it, is how much of each other makes up that sum.
+pub(super) fn inverse(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
     /// Keeps the equations solvable where columns do the same: the largest factors are about its inverse.
     const LEAST: f64 = 1e-9;
     let row = |i: usize| {
@@ -150,12 +151,12 @@ pub(super) fn inflation(columns: &[Vec<f64>]) -> Vec<f64> {
         row
     };
     let matrix: Vec<Vec<f64>> = (0..columns.len()).map(row).collect();
-    let factor = |i: usize| {
+    let row = |i: usize| {
         let mut unit = vec![0.0; columns.len()];
         unit[i] = 1.0;
-        solve(matrix.clone(), unit)[i]
+        solve(matrix.clone(), unit)
     };
-    (0..columns.len()).map(factor).collect()
+    (0..columns.len()).map(row).collect()
 }
 
 /// Solves symmetric equations by A.-L. Cholesky's method. `matrix` is the lower half.
@@ -248,11 +249,15 @@ mod tests {
     fn columns_that_others_make_up_are_told_from_those_that_stand_alone() {
         let half = 0.5f64.sqrt();
         let columns = [vec![1.0, 0.0, 0.0], vec![0.0, 1.0, 0.0], vec![half, half, 0.0], vec![0.0, 0.6, 0.8]];
-        let found = inflation(&columns);
-        assert!(found[..3].iter().all(|factor| *factor > 1e8), "{found:?}");
+        let found = inverse(&columns);
+        assert!((0..3).all(|i| found[i][i] > 1e8), "{found:?}");
         // Of the last, 0.8² is its own.
-        assert!((found[3] - 1.0 / 0.64).abs() < 1e-6, "{found:?}");
-        assert!(inflation(&[]).is_empty());
+        assert!((found[3][3] - 1.0 / 0.64).abs() < 1e-6, "{found:?}");
+        // The third is made up of the first two, and of nothing of the last.
+        let parts: Vec<f64> = found[2].iter().map(|number| -number / found[2][2]).collect();
+        let expected = [half, half, -1.0, 0.0];
+        assert!(parts.iter().zip(expected).all(|(own, wanted)| (own - wanted).abs() < 1e-6), "{parts:?}");
+        assert!(inverse(&[]).is_empty());
     }
 
     #[test]

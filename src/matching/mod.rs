@@ -155,7 +155,8 @@ pub struct Match {
     pub kept: Vec<&'static str>,
     /// Those of the unchanged parameters of which no value that was tried made a difference.
     pub without_effect: Vec<&'static str>,
-    /// The free parameters of which other values, changed together, come as near, but for a hundredth of what each changes.
+    /// The free parameters of which other values, changed together, come as near: but for a hundredth of what each changes, or within a hundredth of the
+    /// error that remains.
     pub ambiguous: Vec<&'static str>,
     /// Number of times that the views were compared.
     pub evaluations: usize,

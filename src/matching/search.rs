@@ -50,9 +50,15 @@ const LONGEST: Duration = Duration::from_secs(600);
 /// A parameter keeps its value, and digits are dropped, if the error grows by at most this fraction of
 /// itself, or of the initial error.
 const GIVEN_UP: [f64; 2] = [1e-3, 1e-6];
-/// Factor of [`descent::inflation`] from which a parameter is ambiguous: a hundredth of what it changes is left when the others
-/// undo it.
+/// Factor of inflation, the diagonal of [`descent::inverse`], from which a parameter is ambiguous: a hundredth of what it changes is left
+/// when the others undo it.
 const AMBIGUOUS: f64 = 1e4;
+/// The factor where a fifth is left. From there on a parameter is ambiguous too if it can move by this part of its range, while the others follow and the
+/// error grows by less than [`HELPS`] counts.
+const FOLLOWED: f64 = 25.0;
+const LOOSE: f64 = 0.05;
+/// Part of what the only ambiguous parameter changes from which another one that undoes it is named too.
+const UNDOES: f64 = 0.1;
 /// Part of the effect of the parameter that changes most, below which the effect of another is rounding.
 const FELT: f64 = 1e-4;
 /// Errors below this count as zero: the models calculate in 32 bits.
@@ -179,12 +185,12 @@ impl<'a, T: Target> Search<'a, T> {
             // The present values may be one choice of many.
             let judged = before > NONE && !self.free.is_empty();
             let ambiguous =
-                if judged { self.ambiguous(&none).map_err(|Stop| Cancelled)? } else { Vec::new() };
+                if judged { self.ambiguous(&none, before).map_err(|Stop| Cancelled)? } else { Vec::new() };
             return Ok(self.found(Vec::new(), ambiguous, [before; 2]));
         };
         let good = (1.0 + GIVEN_UP[0]) * error + GIVEN_UP[1] * before;
         let (best, after) = self.simplified(best, good, error).map_err(|Stop| Cancelled)?;
-        let ambiguous = self.ambiguous(&best).map_err(|Stop| Cancelled)?;
+        let ambiguous = self.ambiguous(&best, after).map_err(|Stop| Cancelled)?;
         let values = self.values(&best);
         Ok(self.found(values, ambiguous, [before, after]))
     }
@@ -196,27 +202,67 @@ impl<'a, T: Target> Search<'a, T> {
         Found { values, before, after, without_effect, ambiguous, evaluations, ended }
     }
 
-    /// The parameters of which other values give the same, if others of them change too, such as a weight and the colour
-    /// that it scales: what each of their numbers changes, the other numbers undo, but for a hundredth.
-    fn ambiguous(&mut self, best: &Point) -> Result<Vec<&'static str>, Stop> {
+    /// The parameters of which other values give nearly the same, if others of them change too, such as a weight and the colour
+    /// that it scales: what each of their numbers changes, the other numbers undo, but for a hundredth, or but for what does not
+    /// count beside the error that remains.
+    fn ambiguous(&mut self, best: &Point, error: f64) -> Result<Vec<&'static str>, Stop> {
         let owners = self.owners();
-        let mut point = best.clone();
-        for ((number, now), (owner, _)) in point.numbers.iter_mut().zip(self.present()).zip(&owners) {
-            if !best.on[*owner] {
-                *number = now;
-            }
-        }
-        let all: Vec<usize> = (0..self.free.len()).collect();
-        let (_, _, columns) = self.slopes(&point, &all)?;
+        let columns = self.centred(best)?;
         let lengths: Vec<f64> = columns.iter().map(|c| c.iter().map(|d| d * d).sum::<f64>().sqrt()).collect();
         let longest = lengths.iter().copied().fold(0.0, f64::max);
         let felt: Vec<usize> = (0..columns.len()).filter(|i| lengths[*i] > FELT * longest).collect();
         let unit = |i: &usize| columns[*i].iter().map(|d| d / lengths[*i]).collect();
-        let factors = descent::inflation(&felt.iter().map(unit).collect::<Vec<Vec<f64>>>());
-        let ambiguous = felt.iter().zip(factors).filter(|(_, factor)| *factor > AMBIGUOUS);
-        let mut names: Vec<_> = ambiguous.map(|(i, _)| self.free[owners[*i].0].parameter.name).collect();
-        names.dedup();
-        Ok(names)
+        let inverse = descent::inverse(&felt.iter().map(unit).collect::<Vec<Vec<f64>>>());
+        // The length of a change of all differences that makes the error grow by no more than that.
+        let slack = error * (self.target.count() as f64 * (HELPS.powi(-2) - 1.0)).sqrt();
+        let is_ambiguous = |k: &usize| {
+            let factor = inverse[*k][*k];
+            let moves = slack * factor.sqrt() / lengths[felt[*k]];
+            factor > AMBIGUOUS || factor > FOLLOWED && moves > LOOSE
+        };
+        let owner = |k: usize| owners[felt[k]].0;
+        let found: Vec<usize> = (0..felt.len()).filter(is_ambiguous).collect();
+        let mut named: Vec<usize> = found.iter().map(|k| owner(*k)).collect();
+        named.dedup();
+        if named.len() == 1 {
+            // It does not change alone.
+            let undoes = |row: &[f64], k: usize, j: usize| row[j].abs() > UNDOES * row[k];
+            for k in found {
+                named.extend((0..felt.len()).filter(|j| undoes(&inverse[k], k, *j)).map(owner));
+            }
+            named.sort_unstable();
+            named.dedup();
+        }
+        Ok(named.into_iter().map(|owner| self.free[owner].parameter.name).collect())
+    }
+
+    /// What each number changes at a point, for its whole range: by differences around it, so that neither the rounding of the
+    /// models nor a bend hides that others change the same. Parameters that are not set keep their present values.
+    fn centred(&mut self, point: &Point) -> Result<Vec<Vec<f64>>, Stop> {
+        let owners = self.owners();
+        let mut point = point.clone();
+        for ((number, now), (owner, _)) in point.numbers.iter_mut().zip(self.present()).zip(&owners) {
+            if !point.on[*owner] {
+                *number = now;
+            }
+        }
+        point.on.fill(true);
+        let mut below = vec![0.0; self.count()];
+        let mut columns = vec![below.clone(); owners.len()];
+        for (i, ((owner, axis), column)) in owners.into_iter().zip(&mut columns).enumerate() {
+            let here = point.numbers[i];
+            let ends = axis.around(here);
+            let way = axis.coordinate(ends[1]) - axis.coordinate(ends[0]);
+            for (end, to) in ends.into_iter().zip([&mut below, &mut *column]) {
+                point.numbers[i] = end;
+                self.differences(&point, to)?;
+            }
+            point.numbers[i] = here;
+            column.iter_mut().zip(&below).for_each(|(to, from)| *to = (*to - from) / way);
+            let effect = &mut self.effect[owner];
+            *effect = (true, effect.1 || column.iter().any(|slope| *slope != 0.0));
+        }
+        Ok(columns)
     }
 
     /// The coordinates of a point, the differences there, and their derivatives by each number of some parameters.
@@ -816,6 +862,70 @@ mod tests {
         assert_eq!(found.ambiguous, ["k_d", "k_s"], "{found:?}");
         let found = Search::new(&mut Product, &all[..2], 2000, &Progress::NONE).run().expect("not cancelled");
         assert_eq!(found.ambiguous, [""; 0], "{found:?}");
+    }
+
+    /// Two lines, one of them bent a little, and a rest that neither of them changes.
+    struct Bent {
+        rest: f64,
+    }
+
+    impl Target for Bent {
+        fn count(&self) -> usize {
+            20
+        }
+
+        fn differences(&mut self, values: &Given, to: &mut [f64]) {
+            let get = |name: &str| {
+                values.iter().find(|(n, _)| *n == name).map_or(0.5, |(_, value)| value.numbers()[0])
+            };
+            let [k_d, k_s] = ["k_d", "k_s"].map(get);
+            for (i, to) in to.iter_mut().enumerate() {
+                let (x, sign) = (i as f64 / 20.0, if i % 2 == 0 { 1.0 } else { -1.0 });
+                let rest = if i % 4 < 2 { self.rest } else { -self.rest };
+                *to = (k_d - 0.6) * x + (k_s - 0.6) * (x + 0.02 * sign) + rest;
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_rest_of_the_error_hides_is_ambiguous() {
+        let all = [&K_D, &K_S].map(|parameter| free(parameter, Value::Number(0.5)));
+        let ambiguous = |rest: f64| {
+            let found = Search::new(&mut Bent { rest }, &all, 2000, &Progress::NONE).run();
+            found.expect("not cancelled").ambiguous
+        };
+        // The bend is a thirtieth of the line.
+        assert_eq!(ambiguous(0.0), [""; 0]);
+        assert_eq!(ambiguous(0.05), ["k_d", "k_s"]);
+    }
+
+    /// Three differences: two parameters change one each, and the third both, and hardly anything of the last.
+    struct Both;
+
+    impl Target for Both {
+        fn count(&self) -> usize {
+            3
+        }
+
+        fn differences(&mut self, values: &Given, to: &mut [f64]) {
+            let get = |name: &str| {
+                values.iter().find(|(n, _)| *n == name).map_or(0.5, |(_, value)| value.numbers()[0])
+            };
+            let [k_a, k_d, k_s] = ["k_a", "k_d", "k_s"].map(get);
+            let half = 0.5f64.sqrt();
+            to[0] = k_a - 0.3 + half * (k_s - 0.7);
+            // Its range is half as long.
+            to[1] = 2.0 * (k_d - 0.8) + half * (k_s - 0.7);
+            to[2] = 0.008 * (k_s - 0.7);
+        }
+    }
+
+    #[test]
+    fn no_parameter_is_ambiguous_alone() {
+        let all = [&K_A, &K_D, &K_S].map(|parameter| free(parameter, Value::Number(0.5)));
+        let found = Search::new(&mut Both, &all, 2000, &Progress::NONE).run().expect("not cancelled");
+        // Of k_s less than a hundredth is left, of the others a little more.
+        assert_eq!(found.ambiguous, ["k_a", "k_d", "k_s"], "{found:?}");
     }
 
     /// The same with values of one half, and a difference that none of them changes.

@@ -141,7 +141,9 @@ fn rgl_value(table: u32, l: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
     let place = rgl_cell(grid, vec2(select(0.0, across / max(whole, RGL_LEAST), whole > RGL_LEAST), up));
 
     var sum = vec3(0.0);
-    for (var k = 0u; k < 4u; k++) {
+    // With one azimuth, the other two are the same, and count nothing.
+    let near_count = select(4u, 2u, counts.x < 2u);
+    for (var k = 0u; k < near_count; k++) {
         let j = values + 3u * (slices[k] * grid.x * grid.y + u32(place.y) * grid.x + u32(place.x));
         let near = mix(rgl_colour(j), rgl_colour(j + 3u), place.z);
         let far = mix(rgl_colour(j + 3u * grid.x), rgl_colour(j + 3u * grid.x + 3u), place.z);

@@ -91,6 +91,12 @@ impl Kind for File {
         file.problem().map_or_else(String::new, |problem| format!(" that can be used: {problem}"))
     }
 
+    /// The name of the file says what it is, whatever its folder.
+    fn caption(&self, _: &str, value: &Value) -> Option<String> {
+        let Value::File(file) = value else { return None };
+        Some(file.short_name().into_owned())
+    }
+
     fn wgsl(&self) -> &'static str {
         "u32"
     }

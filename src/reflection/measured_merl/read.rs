@@ -50,8 +50,8 @@ fn numbers(bytes: &[u8]) -> Result<Vec<f32>, String> {
         header.chunks_exact(4).filter_map(|all| Some(i32::from_le_bytes(all.try_into().ok()?))).collect();
     if counts.iter().map(|count| i64::from(*count)).ne(COUNTS.iter().map(|count| *count as i64)) {
         let text = String::from_utf8_lossy(&bytes[..bytes.len().min(32)]);
-        // Most files of another kind begin with a word.
-        let readable = text.chars().take(4).all(|c| c.is_ascii_graphic() || c == ' ');
+        // Most files of another kind begin with a word, or with a bracket and a new line.
+        let readable = text.chars().take(4).all(|c| c.is_ascii_graphic() || c.is_ascii_whitespace());
         let has = if readable {
             format!("begins with {}", shortened(&text))
         } else {

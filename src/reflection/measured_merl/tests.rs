@@ -223,6 +223,10 @@ fn what_is_no_file_of_the_database_is_refused_with_the_reason() {
         said(b"solid cube\nfacet"),
         "it begins with solid cube facet; a file of the MERL database has 90 × 90 × 180 entries"
     );
+    assert_eq!(
+        said(b"{\n  \"name\": 1}"),
+        "it begins with {   \"name\": 1}; a file of the MERL database has 90 × 90 × 180 entries"
+    );
     for counts in [[90, 90, 360], [i32::MAX; 3], [-1, 0, 90], [i32::MIN; 3]] {
         let message = said(&header(counts));
         assert!(message.contains(&format!("{} × {} × {}", counts[0], counts[1], counts[2])), "{message}");

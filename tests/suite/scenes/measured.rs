@@ -215,14 +215,14 @@ fn five_models_come_back_from_their_files_with_their_parameters_within_a_hundred
                 ("ior", Value::Triple([1.6; 3])),
                 ("extinction", Value::Triple([0.0; 3])),
                 ("slope", number(0.2)),
-                ("specular_weight", number(0.5)),
+                ("specular_weight", number(0.35)),
             ],
         ),
         (
             "metallic_roughness",
             &[
                 ("base_colour", colour([200, 150, 80])),
-                ("metallic", number(0.0)),
+                ("metallic", number(0.3)),
                 ("roughness", number(0.4)),
                 ("reflectance", number(0.6)),
             ],
