@@ -574,7 +574,10 @@ fn all_of_the_legend_of_a_channel_is_as_large_as_the_caption_of_a_presentation()
             let texts: Vec<_> = texts.collect();
             assert!(texts.len() > 1, "{what}: a title and more, not {texts:?}");
             for (i, (words, size, place)) in texts.iter().enumerate() {
-                assert!((size - caption).abs() < 0.01, "{what}: {words} has the size {size}, not {caption}");
+                // A line that is a little too long for half of the window is a little smaller.
+                let least = if file == "default.json" { caption } else { 0.95 * caption };
+                let fits = (least - 0.01..caption + 0.01).contains(size);
+                assert!(fits, "{what}: {words} has the size {size}, not {caption}");
                 let covers =
                     |(_, _, other): &&(String, f32, egui::Rect)| other.shrink(0.5).intersects(*place);
                 let over = texts[..i].iter().find(covers);
