@@ -1,10 +1,16 @@
 //! What of a material goes along when an object gets another model: values of parameters that the new model has under
 //! another name, or on another scale, by [what they stand for](crate::parameter::meaning).
 //!
-//! Parameters of the same name keep their values, whatever they stand for.
+//! Parameters of the same name keep their values, whatever they stand for. The exception are metals: one that is given by
+//! n and k gets a base colour where the new model has a fraction of metal instead.
 
-use super::{ModelEntry, usage::unused};
-use crate::parameter::{Meaning, Parameter, ParameterKind, Side, Value, Values};
+use glam::Vec3;
+
+use super::{ModelEntry, cook_torrance::SPECULAR_WEIGHT, preset, usage::unused};
+use crate::{
+    optics::fresnel::normal_reflectance_rgb,
+    parameter::{EXTINCTION, IOR, Meaning, Parameter, ParameterKind, Side, Value, Values, meaning},
+};
 
 /// A value that goes along.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +25,18 @@ pub struct Carried {
     pub limited: bool,
 }
 
+impl Carried {
+    /// True if one of them alone would be another material: the fraction of metal and the base colour, which without it is
+    /// the colour of a body.
+    #[must_use]
+    pub fn belongs_with(&self, other: &Self) -> bool {
+        let is_of_metal = |one: &Self| {
+            [&meaning::METAL, &meaning::COLOUR_OF_BASE].iter().any(|part| stands_for(one.to, part))
+        };
+        is_of_metal(self) && is_of_metal(other)
+    }
+}
+
 /// What goes along, and what stays behind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Journey {
@@ -30,7 +48,8 @@ pub struct Journey {
 
 /// The journey of a material to the model `to`. `from` are the models that it came through, the one that is left first:
 /// of several values that stand for the same, that of the earliest counts. Values that are not in the material are
-/// defaults, and do not go along; what it has under the new name stays.
+/// defaults, and do not go along; what it has under the new name stays. Only the base colour gives way to that of a metal,
+/// if the material does not say yet how metallic it is.
 ///
 /// ```
 /// use lights_camera_models::{parameter::{Value, Values}, reflection::carry, registry::Registry};
@@ -45,7 +64,10 @@ pub struct Journey {
 /// ```
 #[must_use]
 pub fn journey(from: &[&ModelEntry], to: &ModelEntry, material: &Values) -> Journey {
-    let carry = |p: &'static Parameter| {
+    let of_metal = metal(from, to, material);
+    let as_metal =
+        |p: &'static Parameter| of_metal.iter().flatten().find(|one| one.to.name == p.name).cloned();
+    let by_quantity = |p: &'static Parameter| {
         let meaning = p.stands_for.filter(|_| has_place(to, p, material))?;
         let (from, quantity) = from.iter().find_map(|model| quantity(model, meaning, material))?;
         // Codes of colours are no other numbers.
@@ -56,7 +78,13 @@ pub fn journey(from: &[&ModelEntry], to: &ModelEntry, material: &Values) -> Jour
         let value = p.nearest(&wanted)?;
         Some(Carried { from, to: p, limited: value != wanted, value })
     };
+    let carry = |p| as_metal(p).or_else(|| by_quantity(p));
     let carried: Vec<_> = to.parameters.iter().filter_map(carry).collect();
+    // A metal that the new model has in its own way is not missed.
+    let is_one_anyway = is_metal(to, material);
+    let index = from.first().and_then(|model| metal_in(model, material)).map(|(index, _)| index);
+    let says_metal =
+        |p: &Parameter| stands_for(p, &meaning::METAL) || index.iter().flatten().any(|q| q.name == p.name);
     let stays = |p: &&'static Parameter| {
         let goes = || carried.iter().any(|one| one.from.iter().any(|q| q.name == p.name));
         let has_own = || {
@@ -66,7 +94,8 @@ pub fn journey(from: &[&ModelEntry], to: &ModelEntry, material: &Values) -> Jour
             to.parameters.iter().filter(alike).any(|q| material.0.contains_key(q.name))
         };
         let matters = material.get(p) != p.default_value();
-        matters && to.parameter(p.name).is_none() && !goes() && !has_own()
+        let is_metal_there = || is_one_anyway && says_metal(p);
+        matters && to.parameter(p.name).is_none() && !goes() && !has_own() && !is_metal_there()
     };
     let left = from.first().into_iter().flat_map(|model| given(model, material)).filter(stays).collect();
     Journey { carried, left }
@@ -84,6 +113,68 @@ fn given<'m>(model: &'m ModelEntry, material: &'m Values) -> impl Iterator<Item 
             && unused(model.parameters, p, material).is_none()
     };
     model.parameters.iter().filter(is_given)
+}
+
+fn stands_for(p: &Parameter, meaning: &Meaning) -> bool {
+    p.stands_for.is_some_and(|known| known.quantity == meaning.quantity)
+}
+
+/// The parameters of a model for the fraction of metal, and for the base colour, which is that of the metal.
+#[must_use]
+pub fn metal_of(model: &ModelEntry) -> Option<[&'static Parameter; 2]> {
+    let that = |meaning: &Meaning| model.parameters.iter().find(|p| stands_for(p, meaning));
+    Some([that(&meaning::METAL)?, that(&meaning::COLOUR_OF_BASE)?])
+}
+
+/// The parameters of a model for n and k, by the names that measured materials have for them, too.
+fn complex_index(model: &ModelEntry) -> Option<[&'static Parameter; 2]> {
+    Some([model.parameter(IOR.name)?, model.parameter(EXTINCTION.name)?])
+}
+
+/// The parameters by which a material is a metal with n and k in a model, and its reflectance at normal incidence.
+///
+/// Models that mix it with a matte body have a colour for each, while those with a fraction of metal have one for both. So
+/// the larger part counts, as a whole: half of the surface is enough, which is the default, since less would tint the
+/// body with the colour of the metal.
+fn metal_in(model: &ModelEntry, material: &Values) -> Option<([&'static Parameter; 2], Vec3)> {
+    let [n, k] = complex_index(model)?;
+    let (Value::Triple(index), Value::Triple(extinction)) = (material.get(n), material.get(k)) else {
+        return None;
+    };
+    let is_given = given(model, material).any(|p| p.name == k.name);
+    let share = model.parameter(SPECULAR_WEIGHT.name).map_or(1.0, |p| material.number(p));
+    // Coloured dielectrics have k below a thousandth, metals above 1.
+    let absorbs = extinction.iter().any(|k| *k >= 0.1);
+    let is_metal = is_given && share >= 0.5 && absorbs;
+    is_metal.then(|| ([n, k], normal_reflectance_rgb(index.into(), extinction.into())))
+}
+
+/// True if a material is a metal by the parameters of a model, at least in part.
+fn is_metal(model: &ModelEntry, material: &Values) -> bool {
+    let has_some = |p: &Parameter| {
+        unused(model.parameters, p, material).is_none() && material.get(p) != p.default_value()
+    };
+    metal_in(model, material).is_some() || metal_of(model).is_some_and(|[fraction, _]| has_some(fraction))
+}
+
+/// A metal with n and k in a model that has a fraction of metal instead: all of it, in the colour of the reflectance at
+/// normal incidence (A. Fresnel 1823), encoded as that of measured metals is.
+///
+/// There is no way back from a colour to n and k. Each reflectance has many pairs, and O. Gulbrandsen (2014), *Artist
+/// Friendly Metallic Fresnel*, chooses one by the colour at the edge, which the materials that would be left do not have;
+/// whoever came from n and k gets their own back.
+fn metal(from: &[&ModelEntry], to: &ModelEntry, material: &Values) -> Option<[Carried; 2]> {
+    let [fraction, colour] = metal_of(to).filter(|_| complex_index(to).is_none())?;
+    let has_effect = unused(to.parameters, colour, material).is_none();
+    if !has_effect || !has_place(to, fraction, material) {
+        return None;
+    }
+    let (index, f0) = from.iter().find_map(|model| metal_in(model, material))?;
+    let whole = fraction.stands_for?.value_of([1.0; 3], &fraction.kind)?;
+    let carried = |to: &'static Parameter, value: Value| {
+        to.allows(&value).then(|| Carried { from: index.to_vec(), to, value, limited: false })
+    };
+    Some([carried(fraction, whole)?, carried(colour, preset::colour(f0))?])
 }
 
 /// The quantity of a meaning that a material gives by the parameters of a model, and these parameters.
@@ -125,8 +216,6 @@ fn quantity(
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
     use crate::{optics::colour::Encoding, reflection::Factor, registry::Registry};
 
@@ -197,6 +286,79 @@ mod tests {
             goes("glass", "openpbr", &[("transmittance_colour", colour.clone()), ("distance", number(2.0))]),
             [("transmission_colour", colour), ("transmission_depth", number(2.0))]
         );
+    }
+
+    /// Measured n and k of gold: P. B. Johnson, R. W. Christy (1972); and more.
+    fn gold(more: &[(&'static str, Value)]) -> Vec<(&'static str, Value)> {
+        let mut all = vec![
+            ("ior", Value::Triple([0.188_36, 0.543_86, 1.331_85])),
+            ("extinction", Value::Triple([3.4034, 2.2309, 1.8693])),
+        ];
+        all.extend_from_slice(more);
+        all
+    }
+
+    #[test]
+    fn a_metal_with_n_and_k_gets_a_base_colour() {
+        // F_0 is 0.9420, 0.7044 and 0.4035, calculated by hand.
+        let metal = [("base_colour", Value::Colour([248, 218, 170])), ("metallic", number(1.0))];
+        let fresnel = |id: &'static str| ("fresnel", Value::Choice(id.into()));
+        for to in ["disney", "openpbr", "metallic_roughness"] {
+            let found = |from: &str, more: &[(&'static str, Value)]| goes(from, to, &gold(more));
+            for from in ["cook_torrance", "torrance_sparrow"] {
+                assert_eq!(found(from, &[]), metal, "{from} → {to}");
+                assert_eq!(found(from, &[("base_colour", Value::Colour([255; 3]))]), metal, "{from} → {to}");
+                assert_eq!(found(from, &[("specular_weight", number(1.0))]), metal, "{from} → {to}");
+                // Most of the surface is a body, which has its own colour.
+                assert_eq!(found(from, &[("specular_weight", number(0.4))]), [], "{from} → {to}");
+                // The material says already how metallic it is.
+                assert_eq!(found(from, &[("metallic", number(0.0))]), [], "{from} → {to}");
+            }
+            assert_eq!(found("microfacet", &[fresnel("conductor")]), metal, "{to}");
+            assert_eq!(found("microfacet", &[fresnel("schlick")]), metal, "{to}");
+            // k has no effect.
+            assert_eq!(found("microfacet", &[fresnel("dielectric")]), [], "{to}");
+        }
+    }
+
+    #[test]
+    fn without_extinction_nothing_is_metal() {
+        let clear = [("ior", Value::Triple([1.5; 3])), ("extinction", Value::Triple([0.0; 3]))];
+        for from in ["cook_torrance", "torrance_sparrow"] {
+            assert_eq!(goes(from, "disney", &clear), goes(from, "disney", &clear[..1]), "{from}");
+            let names: Vec<_> = goes(from, "disney", &clear).into_iter().map(|(name, _)| name).collect();
+            assert_eq!(names, ["specular"], "{from}");
+        }
+    }
+
+    #[test]
+    fn a_metal_is_missed_only_where_nothing_stands_for_it() {
+        let registry = Registry::builtin();
+        let model = |id: &str| registry.model(id).expect("built in");
+        let left = |from: &str, to: &str, more: &[(&'static str, Value)]| {
+            let journey = journey(&[model(from)], model(to), &material(&gold(more)));
+            journey.left.iter().map(|p| p.name).collect::<Vec<_>>()
+        };
+        assert!(left("cook_torrance", "disney", &[]).is_empty());
+        assert_eq!(left("cook_torrance", "lambert", &[]), ["ior", "extinction"]);
+        assert_eq!(left("cook_torrance", "disney", &[("metallic", number(0.0))]), ["ior", "extinction"]);
+        let metal = [("metallic", number(1.0))];
+        assert!(left("cook_torrance", "disney", &metal).is_empty());
+        assert!(left("disney", "cook_torrance", &metal).is_empty());
+        assert_eq!(left("disney", "lambert", &metal), ["metallic"]);
+    }
+
+    #[test]
+    fn a_metal_comes_from_further_back_and_as_a_whole() {
+        let registry = Registry::builtin();
+        let [lambert, cook_torrance, strauss] =
+            ["lambert", "cook_torrance", "strauss"].map(|id| registry.model(id).expect("built in"));
+        let carried = journey(&[lambert, cook_torrance], strauss, &material(&gold(&[]))).carried;
+        let [colour, fraction] = &carried[..] else { panic!("{carried:?}") };
+        assert_eq!((colour.to.name, fraction.to.name), ("base_colour", "metallic"));
+        assert!(colour.belongs_with(fraction) && fraction.belongs_with(colour));
+        let names = |one: &Carried| one.from.iter().map(|p| p.name).collect::<Vec<_>>();
+        assert_eq!([colour, fraction].map(names), [["ior", "extinction"]; 2]);
     }
 
     #[test]

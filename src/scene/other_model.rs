@@ -44,7 +44,12 @@ impl Scene {
             for i in row {
                 let Values(material) = &mut self.objects[i].material;
                 // What the row itself varies was there before.
-                material.retain(|name, _| !differing.contains(name) || before[i].0.contains_key(name));
+                for name in &differing {
+                    match before[i].0.get(name) {
+                        Some(value) => drop(material.insert(name.clone(), value.clone())),
+                        None => drop(material.remove(name)),
+                    }
+                }
             }
         }
         if has_rows {
@@ -89,6 +94,20 @@ mod tests {
         assert_eq!(coat(&scene.objects[1].material), None);
         assert_eq!(scene.variants[0].reflection_model, None);
         assert_eq!(coat(&scene.variants[0].material), Some(number(0.25)));
+        // A metal by n and k becomes one by its colour, which replaces that of the body.
+        let mut gold = Scene { reflection_model: "cook_torrance".to_owned(), ..Scene::default() };
+        gold.objects[0].material = Values::default();
+        for (name, value) in [
+            ("ior", Value::Triple([0.188_36, 0.543_86, 1.331_85])),
+            ("extinction", Value::Triple([3.4034, 2.2309, 1.8693])),
+            ("base_colour", Value::Colour([255; 3])),
+        ] {
+            gold.objects[0].material.set(name, value);
+        }
+        gold.show_with("disney", &registry);
+        let has = |name: &str| gold.objects[0].material.0.get(name).cloned();
+        assert_eq!(has("base_colour"), Some(Value::Colour([248, 218, 170])));
+        assert_eq!(has("metallic"), Some(number(1.0)));
         // The same model changes nothing.
         let before = scene.clone();
         scene.show_with("openpbr", &registry);

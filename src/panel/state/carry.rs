@@ -1,18 +1,18 @@
 //! Materials go along when objects get another model: what corresponds takes its place in the new one, and goes when
 //! that model is left, so that going back gives back what was there.
 
-use std::{
-    borrow::Cow,
-    collections::{BTreeMap, BTreeSet, HashMap},
-};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use super::{Session, Severity, Traveller};
+use super::{
+    Session, Severity, Traveller,
+    travels::{Changes, change},
+};
 use crate::{
     document::{Edit, Extent, PartId, Selection},
     parameter::{Parameter, Value, Values},
     reflection::{
         ModelEntry,
-        carry::{Carried, Journey, journey},
+        carry::{Carried, Journey, journey, metal_of},
         usage::unused,
     },
     registry::Registry,
@@ -33,10 +33,12 @@ struct Arrival {
     /// The model that it had, and its material with that.
     from: String,
     before: Values,
+    /// The material without what was carried to that model.
+    kept: Values,
     /// The model that it has.
     to: String,
-    /// The values of its material that change.
-    changes: BTreeMap<Cow<'static, str>, Option<Value>>,
+    /// The values of its material that change; until it is settled, only by what goes or is back.
+    changes: Changes,
     journey: Journey,
 }
 
@@ -79,11 +81,13 @@ impl Session {
             arrivals.extend(objects.into_iter().filter_map(|id| self.arrival(id, &model, registry)));
         }
         self.keep_rows_alike(&mut arrivals);
-        for Arrival { id, from, to, journey, .. } in &arrivals {
+        arrivals.iter_mut().for_each(Arrival::settle);
+        for Arrival { id, from, to, kept, journey, .. } in &arrivals {
             let who = Traveller::Object(*id);
             self.desk.travels.leave(who, from);
             for one in &journey.carried {
-                self.desk.travels.carry((who, one.to.name.into()), to, &one.value);
+                let place = (who, one.to.name.into());
+                self.desk.travels.carry(place, to, &one.value, kept.0.get(one.to.name));
             }
         }
         self.put(&arrivals, registry);
@@ -97,34 +101,43 @@ impl Session {
         }
     }
 
+    /// What of a material goes, and what is back, when a model is left. A metal whose colour the user has changed stays one,
+    /// since the colour would be that of a body otherwise.
+    pub(super) fn taken_back(
+        &self,
+        who: Traveller,
+        from: &str,
+        material: &Values,
+        registry: &Registry,
+    ) -> Changes {
+        let travels = &self.desk.travels;
+        let mut changes = travels.taken_back(who, from, material);
+        if let Some([fraction, colour]) = registry.model(from).and_then(metal_of)
+            && travels.was_changed(&(who, colour.name.into()), from, material.0.get(colour.name))
+        {
+            changes.remove(fraction.name);
+        }
+        changes
+    }
+
     /// What becomes of an object's material, if the object has another model than `from` now.
     fn arrival(&self, id: PartId, from: &str, registry: &Registry) -> Option<Arrival> {
         let index = self.document.object(id)?;
         let (object, who) = (&self.document.objects[index], Traveller::Object(id));
         let to = Some(self.document.model_of(object)).filter(|to| *to != from)?;
         let before = object.material.clone();
-        let mut material = before.clone();
-        let mut changes = BTreeMap::new();
         // What was carried to the model that is left goes first, so that its origin is carried, and not its copy.
-        material.0.retain(|name, value| {
-            let stays = !self.desk.travels.was_carried(&(who, name.clone()), from, value);
-            if !stays {
-                changes.insert(name.clone(), None);
-            }
-            stays
-        });
+        let changes = self.taken_back(who, from, &before, registry);
+        let mut kept = before.clone();
+        change(&mut kept, &changes);
         let way: Vec<_> = self.desk.travels.way(who, from, to).filter_map(|id| registry.model(id)).collect();
-        let mut journey = registry.model(to).map(|to| journey(&way, to, &material)).unwrap_or_default();
+        let mut journey = registry.model(to).map(|to| journey(&way, to, &kept)).unwrap_or_default();
         if let Some((from, to)) = registry.model(from).zip(registry.model(to)) {
             let gone = |name: &str| changes.contains_key(name);
             journey.left.extend(copies_left(from, to, &object.material, gone));
         }
-        for one in &journey.carried {
-            changes.insert(one.to.name.into(), Some(one.value.clone()));
-        }
-        changes.retain(|name, value| object.material.0.get(name) != value.as_ref());
         let (from, to) = (from.to_owned(), to.to_owned());
-        Some(Arrival { id, index, from, before, to, changes, journey })
+        Some(Arrival { id, index, from, before, kept, to, changes, journey })
     }
 
     /// Copies of a row stay alike: what would differ from copy to copy does not go along.
@@ -134,19 +147,15 @@ impl Session {
         for row in self.document.rows() {
             let all: Vec<usize> = row.range().filter_map(|i| places.get(&i).copied()).collect();
             let Some(first) = all.first() else { continue };
-            let carried = arrivals[*first].journey.carried.clone();
-            let differs = |one: &Carried| {
-                let same = |other: &Carried| other.to.name == one.to.name && other.value == one.value;
-                !all.iter().all(|k| arrivals[*k].journey.carried.iter().any(same))
-            };
-            let stay: Vec<&'static str> =
-                carried.iter().filter(|one| differs(one)).map(|one| one.to.name).collect();
+            let ours = &arrivals[*first].journey.carried;
+            let is_common =
+                |one: &&Carried| all.iter().all(|k| is_same_in(one, ours, &arrivals[*k].journey.carried));
+            let common: Vec<Carried> = ours.iter().filter(is_common).cloned().collect();
             for k in all {
-                let Arrival { changes, journey, .. } = &mut arrivals[k];
-                changes.retain(|name, _| !stay.contains(&&**name));
-                let (gone, carried) = std::mem::take(&mut journey.carried)
+                let Arrival { journey, .. } = &mut arrivals[k];
+                let (carried, gone) = std::mem::take(&mut journey.carried)
                     .into_iter()
-                    .partition(|one: &Carried| stay.contains(&one.to.name));
+                    .partition(|one: &Carried| common.iter().any(|known| alike(known, one)));
                 journey.carried = carried;
                 for p in gone.into_iter().flat_map(|one: Carried| one.from) {
                     if journey.left.iter().all(|known| known.name != p.name) {
@@ -159,24 +168,17 @@ impl Session {
 
     /// Changes the materials, as part of the last step.
     fn put(&mut self, arrivals: &[Arrival], registry: &Registry) {
-        let change = |Values(material): &mut Values, one: &Arrival| {
-            for (name, value) in &one.changes {
-                match value {
-                    Some(value) => drop(material.insert(name.clone(), value.clone())),
-                    None => drop(material.remove(name)),
-                }
-            }
-        };
         let changed: Vec<_> = arrivals.iter().filter(|one| !one.changes.is_empty()).collect();
         let is_single = |o: &Object| !matches!(o.repeat, Repetition::Copy { .. });
         match changed[..] {
             [] => {}
             [one] if is_single(&self.document.objects[one.index]) => {
                 let extent = Extent::Object(one.index);
-                self.document.go_on(extent, |scene| change(&mut scene.objects[one.index].material, one));
+                self.document
+                    .go_on(extent, |scene| change(&mut scene.objects[one.index].material, &one.changes));
             }
             _ => self.document.go_on(Extent::All, |scene| {
-                changed.iter().for_each(|one| change(&mut scene.objects[one.index].material, one));
+                changed.iter().for_each(|one| change(&mut scene.objects[one.index].material, &one.changes));
                 scene.follow_copies(registry);
             }),
         }
@@ -229,6 +231,13 @@ impl Session {
 }
 
 impl Arrival {
+    /// Adds what goes along to what changes, and leaves out what is the same as before.
+    fn settle(&mut self) {
+        let Self { before, changes, journey, .. } = self;
+        changes.extend(journey.carried.iter().map(|one| (one.to.name.into(), Some(one.value.clone()))));
+        changes.retain(|name, value| before.0.get(name) != value.as_ref());
+    }
+
     /// What went along, named as the model that is left shows it.
     fn shown(&self, from: &ModelEntry, to: &ModelEntry) -> Vec<Carried> {
         let all = self.journey.carried.iter().map(|one| as_shown(one, from, to, &self.before));
@@ -253,11 +262,11 @@ fn went<'a>(all: &[&'a Arrival], from: &ModelEntry, to: &ModelEntry) -> Option<(
     let goers: Vec<_> = shown.filter(|(_, carried)| !carried.is_empty()).collect();
     let mut words = Vec::new();
     for (arrival, carried) in &goers {
-        let word = |one: &Carried| match goers.len() {
-            1 => with_values(one, &arrival.before),
-            _ => without_values(one),
+        let word = |all: &[Carried]| match goers.len() {
+            1 => with_values(all, &arrival.before),
+            _ => without_values(all),
         };
-        add_all(&mut words, carried.iter().map(word));
+        add_all(&mut words, carried.chunk_by(is_said_with).map(word));
     }
     (!goers.is_empty()).then(|| (goers.iter().map(|(one, _)| *one).collect(), words.join(", ")))
 }
@@ -301,6 +310,17 @@ pub(super) fn as_shown(one: &Carried, from: &ModelEntry, to: &ModelEntry, before
     Carried { from: there.map_or_else(|| one.from.clone(), |there| there.from), ..one.clone() }
 }
 
+/// True if the same value goes to the same parameter.
+pub(super) fn alike(a: &Carried, b: &Carried) -> bool {
+    a.to.name == b.to.name && a.value == b.value
+}
+
+/// True if one of our values goes along in another journey, too, with all that belongs with it.
+pub(super) fn is_same_in(one: &Carried, ours: &[Carried], theirs: &[Carried]) -> bool {
+    let mut together = ours.iter().filter(|other| alike(one, other) || one.belongs_with(other));
+    together.all(|our| theirs.iter().any(|their| alike(our, their)))
+}
+
 /// False of a value that stays under its name.
 pub(super) fn is_news(one: &Carried) -> bool {
     one.from.iter().all(|p| p.name != one.to.name)
@@ -317,22 +337,33 @@ pub(super) fn copies_left(
     journey(&[from], to, material).left.into_iter().filter(move |p| gone(p.name))
 }
 
-/// "becomes", or "become" for several.
-fn becomes(one: &Carried) -> &'static str {
-    if one.from.len() == 1 { "becomes" } else { "become" }
+/// True of values that follow from the same parameters, which are named once.
+pub(super) fn is_said_with(one: &Carried, next: &Carried) -> bool {
+    let names = |one: &Carried| one.from.iter().map(|p| p.name).collect::<Vec<_>>();
+    !one.limited && !next.limited && names(one) == names(next)
+}
+
+/// "clear coat becomes coat", or "become" for several.
+fn become_of(from: &[impl AsRef<str>], to: &[impl AsRef<str>]) -> String {
+    let verb = if from.len() == 1 { "becomes" } else { "become" };
+    format!("{} {verb} {}", listed(from, "and"), listed(to, "and"))
 }
 
 /// A value as knobs write it.
 fn shown(p: &Parameter, value: &Value) -> String {
-    p.kind.number_of(value).map_or_else(|| value.to_string(), limits::number)
+    // Three numbers are one word in files.
+    p.kind.number_of(value).map_or_else(|| value.to_string().replace(',', ", "), limits::number)
 }
 
-/// "clear coat 0.5 becomes coat 0.125".
-fn with_values(one: &Carried, material: &Values) -> String {
-    let from: Vec<_> =
-        one.from.iter().map(|p| format!("{} {}", p.label, shown(p, &material.get(p)))).collect();
-    let limit = if one.limited { ", the nearest that it allows" } else { "" };
-    format!("{} {} {} {}{limit}", listed(&from, "and"), becomes(one), one.to.label, shown(one.to, &one.value))
+/// "clear coat 0.5 becomes coat 0.125", of values that follow from the same parameters.
+fn with_values(all: &[Carried], material: &Values) -> String {
+    let from = all.first().into_iter().flat_map(|one| &one.from);
+    let from: Vec<_> = from.map(|p| format!("{} {}", p.label, shown(p, &material.get(p)))).collect();
+    let to = all.iter().map(|one| {
+        let limit = if one.limited { ", the nearest that it allows" } else { "" };
+        format!("{} {}{limit}", one.to.label, shown(one.to, &one.value))
+    });
+    become_of(&from, &to.collect::<Vec<_>>())
 }
 
 /// "OpenPBR has no place for subsurface; it comes back with Disney."
@@ -343,10 +374,11 @@ pub(super) fn left_behind(left: &[&Parameter], from: Option<&str>, to: &ModelEnt
     format!("{} has no place for {}{back}.", to.declaration.name, listed(&names, "and"))
 }
 
-/// "clear coat becomes coat".
-pub(super) fn without_values(one: &Carried) -> String {
-    let from: Vec<_> = one.from.iter().map(|p| p.label).collect();
-    format!("{} {} {}", listed(&from, "and"), becomes(one), one.to.label)
+/// "clear coat becomes coat", of values that follow from the same parameters.
+pub(super) fn without_values(all: &[Carried]) -> String {
+    let from: Vec<_> = all.first().into_iter().flat_map(|one| &one.from).map(|p| p.label).collect();
+    let to: Vec<_> = all.iter().map(|one| one.to.label).collect();
+    become_of(&from, &to)
 }
 
 #[cfg(test)]
@@ -604,6 +636,141 @@ mod tests {
             choose(&mut session, &registry, "ward");
             assert_eq!(value(&session, "alpha_x"), carried, "{varied}");
             assert_eq!(session.document.gathered(&registry).objects.len(), 1, "{varied}");
+        }
+    }
+
+    /// What n and k of gold reflect, as codes.
+    const COLOUR_OF_GOLD: Value = Value::Colour([248, 218, 170]);
+
+    /// Gives all objects gold by its n and k.
+    fn gild(session: &mut Session) {
+        let mut scene = session.document.scene().clone();
+        for Values(material) in scene.objects.iter_mut().map(|object| &mut object.material) {
+            material.insert("ior".into(), Value::Triple([0.188_36, 0.543_86, 1.331_85]));
+            material.insert("extinction".into(), Value::Triple([3.4034, 2.2309, 1.8693]));
+            material.insert("fresnel".into(), Value::Choice("conductor".into()));
+        }
+        session.document = Document::new(scene);
+    }
+
+    /// The base colour and the fraction of metal.
+    fn metal(session: &Session) -> (Option<Value>, Option<Value>) {
+        (value(session, "base_colour"), value(session, "metallic"))
+    }
+
+    #[test]
+    fn a_metal_goes_along_and_gives_the_base_colour_back() {
+        for from in ["microfacet", "cook_torrance", "torrance_sparrow"] {
+            for to in ["disney", "openpbr", "metallic_roughness"] {
+                let (mut session, registry) = begin(from, 1, &[]);
+                gild(&mut session);
+                let start = session.document.objects[0].material.clone();
+                choose(&mut session, &registry, to);
+                let gold = (Some(COLOUR_OF_GOLD), Some(number(1.0)));
+                assert_eq!(metal(&session), gold, "{from} → {to}");
+                let missed = last(&session).split("no place for").nth(1).unwrap_or_default();
+                assert!(!missed.contains("index") && !missed.contains("extinction"), "{missed}");
+                let _ = session.apply(Action::Undo, &registry);
+                assert_eq!(session.document.objects[0].material, start, "{from} → {to}");
+                let _ = session.apply(Action::Redo, &registry);
+                assert_eq!(metal(&session), gold, "{from} → {to}");
+                // The next model with a fraction of metal has it, too, and one without any has the colour of the body.
+                choose(&mut session, &registry, "strauss");
+                assert_eq!(metal(&session), gold, "{from} → {to} → strauss");
+                choose(&mut session, &registry, "lambert");
+                assert_eq!(metal(&session), (Some(Value::Colour([200, 100, 50])), None), "{from} → {to}");
+                choose(&mut session, &registry, to);
+                assert_eq!(metal(&session), gold, "lambert → {to}");
+                session.messages.clear();
+                choose(&mut session, &registry, from);
+                assert_eq!(session.document.objects[0].material, start, "{to} → {from}");
+                assert_eq!(last(&session), "", "nothing is missed: {to} → {from}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_metal_without_a_base_colour_goes_back_without_one() {
+        let (mut session, registry) = begin("cook_torrance", 1, &[]);
+        gild(&mut session);
+        let mut scene = session.document.scene().clone();
+        scene.objects[0].material.0.remove("base_colour");
+        session.document = Document::new(scene);
+        choose(&mut session, &registry, "disney");
+        assert_eq!(metal(&session), (Some(COLOUR_OF_GOLD), Some(number(1.0))));
+        choose(&mut session, &registry, "cook_torrance");
+        assert_eq!(metal(&session), (None, None));
+    }
+
+    #[test]
+    fn what_becomes_of_a_metal_is_said() {
+        let index =
+            "refractive index 0.18836, 0.54386, 1.33185 and extinction coefficient 3.4034, 2.2309, 1.8693";
+        let (mut session, registry) = begin("cook_torrance", 1, &[]);
+        gild(&mut session);
+        choose(&mut session, &registry, "disney");
+        let said = format!("Disney for Sphere 1: {index} become base colour 248, 218, 170 and metallic 1.");
+        assert_eq!(last(&session), said);
+        let (mut session, registry) = begin("cook_torrance", 2, &[]);
+        gild(&mut session);
+        choose(&mut session, &registry, "disney");
+        assert_eq!(
+            last(&session),
+            "Disney for 2 objects: refractive index and extinction coefficient become base colour and metallic."
+        );
+    }
+
+    #[test]
+    fn a_metal_that_the_user_has_dyed_stays_one() {
+        let (mut session, registry) = begin("cook_torrance", 1, &[]);
+        gild(&mut session);
+        choose(&mut session, &registry, "disney");
+        let green = Value::Colour([20, 200, 40]);
+        let edit = Edit::material(Part::Object(0), "base_colour", green.clone());
+        let _ = session.apply(Action::Edit(edit), &registry);
+        for id in ["cook_torrance", "disney", "openpbr"] {
+            choose(&mut session, &registry, id);
+            assert_eq!(metal(&session), (Some(green.clone()), Some(number(1.0))), "{id}");
+        }
+    }
+
+    #[test]
+    fn a_base_colour_that_changes_meanwhile_is_the_one_that_is_back() {
+        let (mut session, registry) = begin("cook_torrance", 1, &[]);
+        gild(&mut session);
+        choose(&mut session, &registry, "disney");
+        choose(&mut session, &registry, "cook_torrance");
+        let blue = Value::Colour([20, 40, 200]);
+        let edit = Edit::material(Part::Object(0), "base_colour", blue.clone());
+        let _ = session.apply(Action::Edit(edit), &registry);
+        choose(&mut session, &registry, "disney");
+        assert_eq!(metal(&session), (Some(COLOUR_OF_GOLD), Some(number(1.0))));
+        choose(&mut session, &registry, "cook_torrance");
+        assert_eq!(metal(&session), (Some(blue), None));
+    }
+
+    #[test]
+    fn a_row_of_metal_stays_a_row() {
+        // Where some copies are a body rather than a metal, neither the fraction nor the colour goes along.
+        for (varied, goes) in [("size", true), ("material.specular_weight", false)] {
+            let (mut session, registry) = begin("cook_torrance", 1, &[("specular_weight", 0.6)]);
+            gild(&mut session);
+            let mut scene = session.document.scene().clone();
+            let by =
+                Varied { parameter: varied.to_owned(), from: Some(0.3), to: Some(0.9), ..Varied::default() };
+            let repeat = Repeat { columns: 3, spacing: glam::Vec3::X, vary: vec![by], ..Repeat::default() };
+            scene.objects[0].repeat = Repetition::Entry(Box::new(repeat));
+            session.document = Document::new(scene.expanded(&registry).expect("a row"));
+            let start = session.document.objects.clone();
+            choose(&mut session, &registry, "disney");
+            for object in &session.document.objects {
+                assert_eq!(object.material.0.contains_key("metallic"), goes, "{varied}");
+                let is_gold = object.material.0.get("base_colour") == Some(&COLOUR_OF_GOLD);
+                assert_eq!(is_gold, goes, "{varied}");
+            }
+            assert_eq!(session.document.gathered(&registry).objects.len(), 1, "{varied}");
+            choose(&mut session, &registry, "cook_torrance");
+            assert!(session.document.objects == start, "{varied}");
         }
     }
 

@@ -5,11 +5,15 @@ use std::collections::BTreeMap;
 
 use super::{
     Session, Severity, Traveller,
-    carry::{as_shown, copies_left, is_news, left_behind, with_whose, without_values},
+    carry::{
+        alike, as_shown, copies_left, is_news, is_said_with, is_same_in, left_behind, with_whose,
+        without_values,
+    },
+    travels::change,
 };
 use crate::{
     document::{Edit, Extent},
-    parameter::{Parameter, Values},
+    parameter::Parameter,
     reflection::{
         ModelEntry,
         carry::{Carried, Journey, journey},
@@ -41,7 +45,6 @@ struct Common {
 impl Common {
     /// Adds an object, which had a model.
     fn add(&mut self, found: Journey, from: &str) {
-        let alike = |a: &Carried, b: &Carried| a.to.name == b.to.name && a.value == b.value;
         self.all += 1;
         if !found.left.is_empty() {
             let (count, left) = self.left.entry(from.to_owned()).or_default();
@@ -51,8 +54,8 @@ impl Common {
         let (stays, differs) = match self.carried.take() {
             None => (found.carried, Vec::new()),
             Some(all) => {
-                let is_theirs = |one: &Carried| found.carried.iter().any(|other| alike(one, other));
-                let (same, mut differs): (Vec<_>, Vec<_>) = all.into_iter().partition(is_theirs);
+                let is_theirs = |one: &Carried| is_same_in(one, &all, &found.carried);
+                let (same, mut differs): (Vec<_>, Vec<_>) = all.iter().cloned().partition(is_theirs);
                 let is_ours = |one: &Carried| same.iter().any(|other| alike(one, other));
                 differs.extend(found.carried.iter().filter(|one| !is_ours(one)).cloned());
                 (same, differs)
@@ -87,16 +90,11 @@ impl Session {
         let Some(merged) = self.document.overrides(variant + 1) else { return };
         let travels = &self.desk.travels;
         // What was carried to the model that is left goes first.
-        let own = &self.document.variants[variant].material.0;
-        let gone: Vec<_> = own
-            .iter()
-            .filter(|(name, value)| {
-                from.first().is_some_and(|from| travels.was_carried(&(who, (*name).clone()), from, value))
-            })
-            .map(|(name, _)| name.clone())
-            .collect();
+        let mut own = self.document.variants[variant].material.clone();
+        let mut changes =
+            from.first().map(|from| self.taken_back(who, from, &own, registry)).unwrap_or_default();
         let mut kept = merged.material.clone();
-        gone.iter().for_each(|name| drop(kept.0.remove(name)));
+        [&mut own, &mut kept].into_iter().for_each(|material| change(material, &changes));
         let mut common = Common::default();
         let mut models = None;
         for (object, from) in self.document.objects.iter().zip(&from).filter(|(o, _)| o.visible) {
@@ -110,7 +108,7 @@ impl Session {
             };
             if let Some((from, to)) = registry.model(from).zip(registry.model(to)).filter(|_| from != to) {
                 material.0.extend(merged.material.0.clone());
-                let is_gone = |name: &str| gone.iter().any(|known| known == name);
+                let is_gone = |name: &str| changes.contains_key(name);
                 found.left.extend(copies_left(from, to, &material, is_gone));
                 found.carried.iter_mut().for_each(|one| *one = as_shown(one, from, to, &material));
             }
@@ -124,13 +122,12 @@ impl Session {
         };
         self.desk.travels.leave(who, &from);
         for one in &carried {
-            self.desk.travels.carry((who, one.to.name.into()), &to, &one.value);
+            self.desk.travels.carry((who, one.to.name.into()), &to, &one.value, own.0.get(one.to.name));
         }
-        if !gone.is_empty() || !carried.is_empty() {
+        changes.extend(carried.iter().map(|one| (one.to.name.into(), Some(one.value.clone()))));
+        if !changes.is_empty() {
             self.document.go_on(Extent::Rest, |scene| {
-                let Values(material) = &mut scene.variants[variant].material;
-                gone.iter().for_each(|name| drop(material.remove(name)));
-                material.extend(carried.iter().map(|one| (one.to.name.into(), one.value.clone())));
+                change(&mut scene.variants[variant].material, &changes);
             });
         }
         let Some(to) = registry.model(&to) else { return };
@@ -145,8 +142,8 @@ impl Session {
 /// The message: what went along, and what did not.
 fn words(view: &str, to: &ModelEntry, common: &Common, registry: &Registry) -> String {
     let mut said = Vec::new();
-    let carried: Vec<_> =
-        common.carried.iter().flatten().filter(|one| is_news(one)).map(without_values).collect();
+    let news: Vec<_> = common.carried.iter().flatten().filter(|one| is_news(one)).cloned().collect();
+    let carried: Vec<_> = news.chunk_by(is_said_with).map(without_values).collect();
     if !carried.is_empty() {
         said.push(format!("{} in view {view}: {}.", to.declaration.name, carried.join(", ")));
     }
@@ -170,7 +167,7 @@ mod tests {
     use crate::{
         document::Document,
         panel::state::{Action, CompareCommand},
-        parameter::Value,
+        parameter::{Value, Values},
         scene::{Object, Scene},
     };
 
@@ -262,6 +259,43 @@ mod tests {
         assert!(last(&session).contains("refractive index becomes specular"), "{}", last(&session));
         choose(&mut session, &registry, "metallic_roughness");
         assert!(last(&session).contains("specular becomes reflectance"), "{}", last(&session));
+    }
+
+    /// Gives an object n and k of a metal.
+    fn plate(session: &mut Session, object: usize, k: [f32; 3], registry: &Registry) {
+        let values = [("ior", [0.188_36, 0.543_86, 1.331_85]), ("extinction", k)];
+        for (name, triple) in values {
+            session.edit_here(Edit::material(Part::Object(object), name, Value::Triple(triple)), registry);
+        }
+    }
+
+    #[test]
+    fn a_metal_of_a_view_takes_the_place_of_its_own_base_colour_until_it_is_left() {
+        const GOLD: [f32; 3] = [3.4034, 2.2309, 1.8693];
+        let (mut session, registry) = begin(&[0.5, 0.5]);
+        choose(&mut session, &registry, "cook_torrance");
+        for i in 0..2 {
+            plate(&mut session, i, GOLD, &registry);
+        }
+        let red = Value::Colour([200, 10, 10]);
+        session.edit_here(Edit::material(Part::Variant(0), "base_colour", red.clone()), &registry);
+        let own = session.document.variants[0].material.clone();
+        assert_eq!(own.0.get("base_colour"), Some(&red));
+        let objects = session.document.objects.clone();
+        choose(&mut session, &registry, "openpbr");
+        let get = |session: &Session, name: &str| session.document.variants[0].material.0.get(name).cloned();
+        assert_eq!(get(&session, "base_colour"), Some(Value::Colour([248, 218, 170])));
+        assert_eq!(get(&session, "metallic"), Some(Value::Number(1.0)));
+        assert!(session.document.objects == objects, "view A has what it had");
+        choose(&mut session, &registry, "cook_torrance");
+        assert_eq!(session.document.variants[0].material, own);
+        // Of two metals, none goes along, and not the fraction alone, which would make all white metal.
+        plate(&mut session, 1, [5.0, 4.0, 3.0], &registry);
+        choose(&mut session, &registry, "openpbr");
+        assert_eq!((get(&session, "base_colour"), get(&session, "metallic")), (Some(red), None));
+        let said: Vec<_> = session.messages.iter().map(|note| note.text.as_str()).collect();
+        let expected = "Refractive index and extinction coefficient differ from object to object";
+        assert!(said.iter().any(|text| text.contains(expected)), "{said:?}");
     }
 
     #[test]
