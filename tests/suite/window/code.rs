@@ -248,20 +248,6 @@ fn enter_indents_and_a_bracket_goes_back() {
 }
 
 #[test]
-fn the_cursor_stays_at_its_place_while_the_text_follows_the_scene() {
-    let mut bench = with_scene();
-    bench.key(Key::End, CTRL);
-    let before = open(&bench).text.clone();
-    bench.apply(Action::AddObject("cube".to_owned()));
-    // Once the document rests.
-    (0..6).for_each(|_| bench.settle());
-    let after = open(&bench).text.clone();
-    assert_ne!(after, before);
-    types(&mut bench, "x");
-    assert_eq!(*open(&bench).text, *format!("{after}x"));
-}
-
-#[test]
 fn keys_that_come_in_one_frame_do_what_they_do_one_by_one() {
     let press =
         |key, modifiers| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
