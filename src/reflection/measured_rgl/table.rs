@@ -48,20 +48,11 @@ pub(super) struct Data<'a> {
     at: [usize; 8],
 }
 
-/// The directions among those of a file: indices and their weights.
+/// The directions among those of a file: indices and the weights of the second ones.
 #[derive(Clone, Copy, Debug)]
 struct Neighbours {
     slices: [usize; 4],
     weights: [f32; 4],
-    /// The number of those that count: with one azimuth, the first two.
-    count: usize,
-}
-
-impl Neighbours {
-    /// Those that count, each with its weight.
-    fn pairs(&self) -> impl Iterator<Item = (usize, f32)> {
-        self.slices.into_iter().zip(self.weights).take(self.count)
-    }
 }
 
 fn area([columns, rows]: [usize; 2]) -> usize {
@@ -147,14 +138,13 @@ impl<'a> Data<'a> {
         Neighbours {
             slices: [slice(0, 0), slice(0, 1), slice(1, 0), slice(1, 1)],
             weights: [(1.0 - a) * (1.0 - b), (1.0 - a) * b, a * (1.0 - b), a * b],
-            count: if self.counts[0] == 1 { 2 } else { 4 },
         }
     }
 
     /// A number of an array with one part for each pair of directions, between the neighbours.
     fn mixed(&self, array: usize, size: usize, i: usize, near: &Neighbours) -> f32 {
-        let number = |slice: usize| self.numbers[self.at[array] + slice * size + i];
-        near.pairs().map(|(slice, weight)| weight * number(slice)).sum()
+        let pairs = near.slices.iter().zip(near.weights);
+        pairs.map(|(slice, weight)| weight * self.numbers[self.at[array] + slice * size + i]).sum()
     }
 
     /// The place of a point of the unit square in a grid: column and row, and the fractions beyond them.
@@ -199,9 +189,9 @@ impl<'a> Data<'a> {
             (1.0 - y) * a + y * b
         };
         let [left, right] = [between(4, first + i), between(4, first + i + 1)];
+        let whole = between(5, first + columns - 1);
         let [low, high] =
             [first + columns - 1, first + 2 * columns - 1].map(|i| self.mixed(5, size, i, near));
-        let whole = (1.0 - y) * low + y * high;
         let across = between(5, first + i) + x * (left + 0.5 * x * (right - left));
         let up = self.mixed(6, rows, j, near) + y * (low + 0.5 * y * (high - low));
         [if whole > LEAST { across / whole } else { 0.0 }, up]
@@ -211,12 +201,11 @@ impl<'a> Data<'a> {
     fn value(&self, slice: usize, point: [f32; 2]) -> Vec3 {
         let size = self.sizes[1];
         let ([i, j], [x, y]) = Self::cell(size, point);
-        let row = |j: usize| {
+        let cell = |i: usize, j: usize| {
             let at = self.at[7] + 3 * (slice * area(size) + j * size[0] + i);
-            let all = &self.numbers[at..][..6];
-            Vec3::from_slice(&all[..3]).lerp(Vec3::from_slice(&all[3..]), x)
+            Vec3::new(self.numbers[at], self.numbers[at + 1], self.numbers[at + 2])
         };
-        row(j).lerp(row(j + 1), y)
+        cell(i, j).lerp(cell(i + 1, j), x).lerp(cell(i, j + 1).lerp(cell(i + 1, j + 1), x), y)
     }
 
     /// f_r N·L in sr⁻¹ for directions above the surface in the local frame.
@@ -234,7 +223,7 @@ impl<'a> Data<'a> {
         let near = self.neighbours(phi, theta);
         let place = self.warped(&near, point);
         let mut sum = Vec3::ZERO;
-        for (slice, weight) in near.pairs() {
+        for (slice, weight) in near.slices.into_iter().zip(near.weights) {
             sum += weight * self.value(slice, place);
         }
         if self.numbers[11] == 0.0 {
@@ -274,7 +263,7 @@ impl<'a> Data<'a> {
 
     /// The point of the unit square that is warped to a place, for one pair of directions: by bisection.
     pub(super) fn point(&self, slice: usize, place: [f32; 2]) -> [f32; 2] {
-        let near = Neighbours { slices: [slice; 4], weights: [1.0, 0.0, 0.0, 0.0], count: 1 };
+        let near = Neighbours { slices: [slice; 4], weights: [1.0, 0.0, 0.0, 0.0] };
         let mut point = [0.5, 0.5];
         for axis in [1, 0] {
             let (mut low, mut high) = (0.0, 1.0);
