@@ -77,9 +77,9 @@ async function program() {
             onward.enqueue(unpacker.more(bytes));
         },
         flush() {
-            const whole = unpacker.ended();
+            const ended = unpacker.ended();
             unpacker.free();
-            if (!whole) throw new Error("lab.bin arrived in part");
+            if (!ended) throw new Error("lab.bin arrived in part");
         },
     });
     const [now, later] = response.body.pipeThrough(unpack).tee();
