@@ -1,7 +1,9 @@
 //! Directions at a surface point. All vectors are unit vectors; `l` points from the surface
 //! **to** the light, `v` to the observer.
 
-use glam::{DVec3, Vec2, Vec3};
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
+
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 /// The local frame of a surface point: normal, tangent, bitangent; orthonormal, right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +62,27 @@ impl Frame {
     pub fn to_local(&self, d: Vec3) -> Vec3 {
         Vec3::new(self.t.dot(d), self.b.dot(d), self.n.dot(d))
     }
+}
+
+/// The angles of four points from the x axis in radians, −π to π, to a relative error of 2e-7: faster than [`f32::atan2`].
+/// At the origin 0. The polynomial is the one of its degree with the least relative error up to π/8.
+#[must_use]
+#[inline]
+pub fn polar_angles(x: Vec4, y: Vec4) -> Vec4 {
+    const WIDE: f32 = SQRT_2 - 1.0;
+    const C: [f32; 4] = [-0.333_329_5, 0.199_777_04, -0.138_776_08, 0.080_534_756];
+    let only = |condition, a: Vec4| Vec4::select(condition, a, Vec4::ZERO);
+    let (a, b) = (x.abs(), y.abs());
+    let (least, most) = (a.min(b), a.max(b));
+    // Beyond π/8, the angle from the diagonal.
+    let wide = least.cmpgt(WIDE * most);
+    let t = (least - only(wide, most)) / (most + only(wide, least)).max(Vec4::splat(f32::MIN_POSITIVE));
+    let s = t * t;
+    let angle =
+        t + t * s * (C[0] + C[1] * s + s * s * (C[2] + C[3] * s)) + only(wide, Vec4::splat(FRAC_PI_4));
+    let angle = Vec4::select(a.cmplt(b), FRAC_PI_2 - angle, angle);
+    let angle = Vec4::select(x.cmplt(Vec4::ZERO), PI - angle, angle);
+    angle.copysign(y)
 }
 
 /// The unit vector with these spherical angles in degrees, in the local frame: the normal is +z, the tangent
@@ -170,6 +193,25 @@ mod tests {
         // A zero normal, as for a degenerate polygon: finite.
         let f = Frame::new(Vec3::ZERO, Vec3::X);
         assert!(f.t.is_finite() && f.b.is_finite());
+    }
+
+    #[test]
+    fn polar_angles_are_those_of_the_standard_library_up_to_rounding() {
+        for d in directions() {
+            for size in [1e-30, 1e-6, 1.0, 1e6] {
+                // Directions at all angles, and near the axes and diagonals.
+                let (x, y) =
+                    (size * Vec4::new(d.x, d.x, d.z, d.z + d.x), size * Vec4::new(d.y, 1e-6 * d.z, d.z, d.z));
+                let found = polar_angles(x, y);
+                for k in 0..4 {
+                    let expected = f64::from(y[k]).atan2(f64::from(x[k]));
+                    let error = (f64::from(found[k]) - expected).abs();
+                    assert!(error <= 3e-7 * expected.abs(), "{} {}: {} {expected}", x[k], y[k], found[k]);
+                }
+            }
+        }
+        let axes = polar_angles(Vec4::new(0.0, 1.0, 0.0, -1.0), Vec4::new(0.0, 0.0, 1.0, 0.0));
+        assert_eq!(axes, Vec4::new(0.0, 0.0, FRAC_PI_2, PI));
     }
 
     #[test]

@@ -2,16 +2,18 @@ use glam::Vec3;
 
 use super::{Declaration, ReflectionModel, built_in};
 use crate::{
-    optics::{Frame, Terms, lobes::Lobes},
+    optics::{Frame, TermSelection, Terms, lobes::Lobes, radiometry::Arriving},
     parameter::Parameter,
     parameters,
 };
 
 mod example;
 mod read;
+mod slice;
 mod table;
 #[cfg(test)]
 mod tests;
+mod viewed;
 
 pub use read::{FORMAT, MAX_NUMBERS, is_spectral};
 
@@ -53,6 +55,15 @@ impl MeasuredRgl {
     fn data(&self) -> Option<table::Data<'_>> {
         table::Data::new(&self.rgl_file.numbers)
     }
+
+    /// The light that leaves under these lights.
+    fn leaving(&self, lights: &[Arriving], v: Vec3, frame: &Frame) -> Vec3 {
+        let v = frame.to_local(v);
+        match &self.data() {
+            Some(data) if v.z > 0.0 => viewed::lit_by(data, lights, v, frame),
+            _ => Vec3::ZERO,
+        }
+    }
 }
 
 impl ReflectionModel for MeasuredRgl {
@@ -60,9 +71,12 @@ impl ReflectionModel for MeasuredRgl {
         built_in!("measured_rgl", "Measured (RGL)", Measured).ambient_by_albedo().anisotropic().measured();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
-        let (Some(_), Some(data)) = (frame.cosines(l, v), self.data()) else { return Terms::default() };
-        let value = data.response(frame.to_local(l), frame.to_local(v));
-        Terms::of(Vec3::ZERO, std::f32::consts::PI * value)
+        Terms::of(Vec3::ZERO, self.leaving(&[Arriving { l, light: Vec3::ONE }], v, frame))
+    }
+
+    fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
+        let has_any = matches!(terms, TermSelection::All | TermSelection::Specular);
+        if has_any { self.leaving(lights, v, frame) } else { Vec3::ZERO }
     }
 
     fn lobes(&self) -> Lobes {

@@ -10,10 +10,11 @@ use super::{
 };
 use crate::{
     optics::{
-        Frame, Terms,
+        Frame, TermSelection, Terms,
         albedo::{LobeAlbedo, NamedCurve},
         interior::Interior,
         lobes::Lobes,
+        radiometry::{self, Arriving},
         sharp::Sharps,
     },
     parameter::{ParameterSet, Value, Values},
@@ -72,6 +73,13 @@ pub trait ReflectionModel: ParameterSet + Clone {
     /// [declared](Declaration::transmits) to transmit, also for light on the other side of the surface than the viewer:
     /// then `π f_t(l, v) |cos θ_i|` as [`Terms::through`]. Others give zero there.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
+
+    /// The light that leaves towards `v` under these lights: the sum of the [`response`](Self::response) to each, times its light.
+    /// The default is that loop, of which each model has its own copy, from which the compiler hoists what depends only on the
+    /// object or the view. Worth writing for a model that needs long for the view alone, or is faster with several lights at once.
+    fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
+        radiometry::leaving(lights, terms, |l| self.response(l, v, frame))
+    }
 
     /// The directions from which light reaches the viewer without spreading, by reflection or transmission at a smooth
     /// surface, for models that are [declared](Declaration::sharp) to have any. Only light with extent is seen in them.

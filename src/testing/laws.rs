@@ -1,13 +1,13 @@
 //! Checks the laws of reflection models over random directions and parameters: obeyed if the model declares
 //! them, and violated otherwise.
 
-use std::{convert::Infallible, f32::consts::FRAC_PI_2};
+use std::{array::from_fn, convert::Infallible, f32::consts::FRAC_PI_2};
 
 use glam::Vec3;
 
 use super::Outcome;
 use crate::{
-    optics::{Frame, colour::Encoding},
+    optics::{Frame, TermSelection, colour::Encoding, radiometry::Arriving},
     parameter::Values,
     reflection::{
         ModelEntry, Surface, brdf,
@@ -28,7 +28,8 @@ const PAIRS: usize = 200;
 /// # Errors
 /// Returns the first law that does not hold.
 pub fn all(model: &ModelEntry) -> Outcome {
-    [finite, non_negative, reciprocal, energy_conserving, sampled].iter().try_for_each(|law| law(model))
+    let laws = [finite, non_negative, reciprocal, energy_conserving, sampled, together];
+    laws.iter().try_for_each(|law| law(model))
 }
 
 /// A model with its defaults, with its smallest numbers and with random parameters, in the frame of a random normal.
@@ -172,6 +173,36 @@ pub fn sampled(model: &ModelEntry) -> Outcome {
         }
     }
     Ok(())
+}
+
+/// Checks that several lights at once give the sum of what each gives alone, of all terms and of each.
+///
+/// # Errors
+/// Returns the first sum that is another.
+pub fn together(model: &ModelEntry) -> Outcome {
+    // More than a model calculates at once, and a number that is no multiple of it.
+    const LIGHTS: usize = 11;
+    surfaces(model, 6, |values, surface, frame, random| {
+        for _ in 0..PAIRS / LIGHTS {
+            let v = random.above(frame);
+            let lights: [Arriving; LIGHTS] = from_fn(|i| {
+                let l = if i % 3 == 1 { random.direction() } else { random.above(frame) };
+                Arriving { l, light: Vec3::new(random.unit(), random.unit(), random.unit()) }
+            });
+            for terms in TermSelection::ALL {
+                let found = surface.lit_by(&lights, v, frame, terms);
+                let alone = lights.map(|at| surface.response(at.l, v, frame).select(terms) * at.light);
+                let (sum, size) =
+                    (alone.iter().sum::<Vec3>(), alone.iter().map(|each| each.abs()).sum::<Vec3>());
+                if (found - sum).abs().cmpgt(1e-6 + 1e-5 * size).any() {
+                    return Err(format!(
+                        "{LIGHTS} lights give {found} at once, but {sum} one by one, for {values:?} v {v}; see `lit_by`"
+                    ));
+                }
+            }
+        }
+        Ok(())
+    })
 }
 
 /// Checks that no light is created if declared, and that some is otherwise.

@@ -76,8 +76,8 @@ fn assert_model<M: ReflectionModel>(check: impl FnOnce(&ModelEntry) -> Outcome) 
     assert(M::DECLARATION.id, registered.and_then(|()| check(&ModelEntry::of::<M>())));
 }
 
-/// Asserts that a reflection model returns finite numbers, obeys the laws that it declares, and violates the
-/// others.
+/// Asserts that a reflection model returns finite numbers, obeys the laws that it declares, violates the
+/// others, and gives several lights at once what it gives each alone.
 ///
 /// # Panics
 /// Panics if it does not.

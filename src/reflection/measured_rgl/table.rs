@@ -11,8 +11,10 @@
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
+use arrayvec::ArrayVec;
 use glam::{Vec2, Vec3};
 
+use super::slice::{Grid, Slice, bilinear, value, warped};
 use crate::optics::{
     colour::luminance,
     lobes::{Lobe, Lobes},
@@ -20,8 +22,6 @@ use crate::optics::{
 
 /// The numbers before the azimuths.
 const HEADER: usize = 16;
-/// Minimum density and area, below which a value is 0.
-const LEAST: f32 = 1e-12;
 
 /// The arrays of a file, the last index fastest; values have their colours together.
 #[derive(Clone, Debug, Default)]
@@ -41,18 +41,11 @@ pub(super) struct Arrays {
 /// A table.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Data<'a> {
-    numbers: &'a [f32],
+    pub(super) numbers: &'a [f32],
     counts: [usize; 2],
     sizes: [[usize; 2]; 4],
     /// The first numbers of azimuths, angles, distribution, area, density, both integrals and values.
-    at: [usize; 8],
-}
-
-/// The directions among those of a file: indices and the weights of the second ones.
-#[derive(Clone, Copy, Debug)]
-struct Neighbours {
-    slices: [usize; 4],
-    weights: [f32; 4],
+    pub(super) at: [usize; 8],
 }
 
 fn area([columns, rows]: [usize; 2]) -> usize {
@@ -84,7 +77,7 @@ impl<'a> Data<'a> {
     /// The table in the numbers of a file; `None` if they are none.
     pub(super) fn new(numbers: &'a [f32]) -> Option<Self> {
         let head = numbers.get(..HEADER)?;
-        let size = |i: usize| [head[i] as usize, head[i + 1] as usize];
+        let size = |i: usize| [head[i] as u32 as usize, head[i + 1] as u32 as usize];
         let (counts, sizes) = (size(0), [size(2), size(4), size(6), size(8)]);
         let (at, length) = offsets(counts, sizes);
         let is_whole = numbers.len() == length && area(counts) > 0;
@@ -101,136 +94,79 @@ impl<'a> Data<'a> {
         self.numbers[10] as usize
     }
 
-    /// The azimuth of a direction in radians as the file has it, by its symmetry; `seen` is that of the viewer.
-    fn azimuth(&self, seen: f32, phi: f32) -> f32 {
+    /// True if values are relative to the density.
+    pub(super) fn is_relative(&self) -> bool {
+        self.numbers[11] != 0.0
+    }
+
+    /// What makes an azimuth one as the file has it, by its symmetry: a factor, and what is added. `seen` is that of the
+    /// viewer.
+    pub(super) fn azimuths(&self, seen: f32) -> [f32; 2] {
         match self.reduction() {
-            0 => phi - seen,
-            1 => phi,
-            2 => phi - if seen >= 0.0 { PI } else { 0.0 },
+            0 => [1.0, -seen],
+            1 => [1.0, 0.0],
+            2 => [1.0, if seen >= 0.0 { -PI } else { 0.0 }],
             _ => {
-                let up = if seen >= 0.0 { -phi } else { phi };
+                let up = if seen >= 0.0 { -1.0 } else { 1.0 };
                 // Mirrored where the viewer is on the side of the tangent.
-                if seen.abs() <= FRAC_PI_2 { -PI - up } else { up }
+                if seen.abs() <= FRAC_PI_2 { [-up, -PI] } else { [up, 0.0] }
             }
         }
     }
 
-    /// The place of an angle among ascending ones.
-    fn place(&self, axis: usize, angle: f32) -> f32 {
+    /// The azimuth (0) or angle (1) of the file before one in radians, and the fraction of the way to the next.
+    #[inline]
+    fn place(&self, axis: usize, angle: f32) -> (usize, f32) {
         let all = &self.numbers[self.at[axis]..][..self.counts[axis]];
-        let next = all.partition_point(|known| *known <= angle);
-        if next == 0 || all.len() == 1 {
-            return 0.0;
+        if all.len() == 1 {
+            return (0, 0.0);
         }
-        let first = (next - 1).min(all.len() - 2);
-        first as f32 + ((angle - all[first]) / (all[first + 1] - all[first])).clamp(0.0, 1.0)
+        let first = all.partition_point(|known| *known <= angle).clamp(1, all.len() - 1) - 1;
+        (first, ((angle - all[first]) / (all[first + 1] - all[first])).clamp(0.0, 1.0))
     }
 
-    fn neighbours(&self, phi: f32, theta: f32) -> Neighbours {
-        let [(i, a), (j, b)] = [(0, phi), (1, theta)].map(|(axis, angle)| {
-            let place = self.place(axis, angle);
-            let first = (place as usize).min(self.counts[axis].saturating_sub(2));
-            (first, place - first as f32)
-        });
-        let slice = |di: usize, dj: usize| {
-            (i + di).min(self.counts[0] - 1) * self.counts[1] + (j + dj).min(self.counts[1] - 1)
-        };
-        Neighbours {
-            slices: [slice(0, 0), slice(0, 1), slice(1, 0), slice(1, 1)],
-            weights: [(1.0 - a) * (1.0 - b), (1.0 - a) * b, a * (1.0 - b), a * b],
+    /// The arrays for one of the directions of the viewer.
+    #[inline]
+    fn slice(&self, i: usize, weight: f32) -> Slice {
+        let [density, values] = [area(self.sizes[0]), 3 * area(self.sizes[1])];
+        let [_, _, _, _, first, along, rows, colours] = self.at;
+        Slice {
+            weight,
+            density: first + i * density,
+            along: along + i * density,
+            rows: rows + i * self.sizes[0][1],
+            values: colours + i * values,
         }
     }
 
-    /// A number of an array with one part for each pair of directions, between the neighbours.
-    fn mixed(&self, array: usize, size: usize, i: usize, near: &Neighbours) -> f32 {
-        let pairs = near.slices.iter().zip(near.weights);
-        pairs.map(|(slice, weight)| weight * self.numbers[self.at[array] + slice * size + i]).sum()
+    /// The arrays around a direction: for two angles at each of two azimuths, or at the only one.
+    #[inline]
+    pub(super) fn near(&self, phi: f32, theta: f32) -> ArrayVec<Slice, 4> {
+        let [azimuths, angles] = self.counts;
+        let [(i, x), (j, y)] = [self.place(0, phi), self.place(1, theta)];
+        let next = (j + 1).min(angles - 1);
+        let slice = |i: usize, j: usize, weight: f32| self.slice(i * angles + j, weight);
+        let mut near =
+            ArrayVec::from_iter([slice(i, j, (1.0 - x) * (1.0 - y)), slice(i, next, (1.0 - x) * y)]);
+        if azimuths > 1 {
+            near.extend([slice(i + 1, j, x * (1.0 - y)), slice(i + 1, next, x * y)]);
+        }
+        near
     }
 
-    /// The place of a point of the unit square in a grid: column and row, and the fractions beyond them.
-    fn cell([columns, rows]: [usize; 2], [u, v]: [f32; 2]) -> ([usize; 2], [f32; 2]) {
-        let along = |t: f32, count: usize| {
-            let t = t.clamp(0.0, 1.0) * (count - 1) as f32;
-            let i = (t as usize).min(count - 2);
-            (i, t - i as f32)
-        };
-        let [(i, x), (j, y)] = [along(u, columns), along(v, rows)];
-        ([i, j], [x, y])
-    }
-
-    /// Bilinear interpolation in a grid.
-    fn bilinear(&self, array: usize, size: [usize; 2], point: [f32; 2]) -> f32 {
-        let ([i, j], [x, y]) = Self::cell(size, point);
-        let row = |j: usize| {
-            let at = self.at[array] + j * size[0] + i;
-            (1.0 - x) * self.numbers[at] + x * self.numbers[at + 1]
-        };
-        (1.0 - y) * row(j) + y * row(j + 1)
+    /// One of the grids: of the density, the values, the distribution or the area.
+    pub(super) fn grid(&self, i: usize) -> Grid {
+        Grid::new(self.sizes[i])
     }
 
     /// The distribution of normals, for a normal in the unit square.
     pub(super) fn distribution(&self, point: [f32; 2]) -> f32 {
-        self.bilinear(2, self.sizes[2], point)
+        bilinear(self.numbers, self.at[2], &self.grid(2).cell(point))
     }
 
     /// The projected area of the facets for a viewer in the unit square.
     pub(super) fn projected(&self, point: [f32; 2]) -> f32 {
-        self.bilinear(3, self.sizes[3], point)
-    }
-
-    /// The place of a normal in the unit square by the density of visible normals: first its share of the row, then that
-    /// of the rows before it.
-    fn warped(&self, near: &Neighbours, point: [f32; 2]) -> [f32; 2] {
-        let [columns, rows] = self.sizes[0];
-        let ([i, j], [x, y]) = Self::cell([columns, rows], point);
-        let (size, first) = (columns * rows, j * columns);
-        let between = |array: usize, i: usize| {
-            let [a, b] = [i, i + columns].map(|i| self.mixed(array, size, i, near));
-            (1.0 - y) * a + y * b
-        };
-        let [left, right] = [between(4, first + i), between(4, first + i + 1)];
-        let whole = between(5, first + columns - 1);
-        let [low, high] =
-            [first + columns - 1, first + 2 * columns - 1].map(|i| self.mixed(5, size, i, near));
-        let across = between(5, first + i) + x * (left + 0.5 * x * (right - left));
-        let up = self.mixed(6, rows, j, near) + y * (low + 0.5 * y * (high - low));
-        [if whole > LEAST { across / whole } else { 0.0 }, up]
-    }
-
-    /// The value at a place for one pair of directions.
-    fn value(&self, slice: usize, point: [f32; 2]) -> Vec3 {
-        let size = self.sizes[1];
-        let ([i, j], [x, y]) = Self::cell(size, point);
-        let cell = |i: usize, j: usize| {
-            let at = self.at[7] + 3 * (slice * area(size) + j * size[0] + i);
-            Vec3::new(self.numbers[at], self.numbers[at + 1], self.numbers[at + 2])
-        };
-        cell(i, j).lerp(cell(i + 1, j), x).lerp(cell(i, j + 1).lerp(cell(i + 1, j + 1), x), y)
-    }
-
-    /// f_r N·L in sr⁻¹ for directions above the surface in the local frame.
-    pub(super) fn response(&self, l: Vec3, v: Vec3) -> Vec3 {
-        let m = l + v;
-        let polar = |d: Vec3| d.truncate().length().atan2(d.z);
-        let around = |d: Vec3| if d.truncate().length() < 1e-7 { 0.0 } else { d.y.atan2(d.x) };
-        let seen = around(v);
-        let (phi, theta) = (self.azimuth(seen, seen), polar(v));
-        let turn = |phi: f32| {
-            let t = phi / (2.0 * PI) + 0.5;
-            t - t.floor()
-        };
-        let point = [(polar(m) / FRAC_PI_2).sqrt(), turn(self.azimuth(seen, around(m)))];
-        let near = self.neighbours(phi, theta);
-        let place = self.warped(&near, point);
-        let mut sum = Vec3::ZERO;
-        for (slice, weight) in near.slices.into_iter().zip(near.weights) {
-            sum += weight * self.value(slice, place);
-        }
-        if self.numbers[11] == 0.0 {
-            return sum;
-        }
-        let projected = self.projected([(theta / FRAC_PI_2).sqrt(), turn(phi)]);
-        if projected > LEAST { sum * (self.distribution(point) / (4.0 * projected)) } else { Vec3::ZERO }
+        bilinear(self.numbers, self.at[3], &self.grid(3).cell(point))
     }
 
     /// A quantity of the equation; azimuths are in turns, angles in right angles.
@@ -241,21 +177,27 @@ impl<'a> Data<'a> {
             "n_φ" => Vec3::splat(self.counts[0] as f32),
             "n_θ" => Vec3::splat(self.counts[1] as f32),
             "j" => Vec3::splat(self.numbers[11]),
-            "A" => Vec3::splat(self.azimuth(get(0)? * turns, get(1)? * turns) / turns),
-            "P_φ" => Vec3::splat(self.place(0, get(0)? * turns)),
-            "P_θ" => Vec3::splat(self.place(1, get(0)? * FRAC_PI_2)),
+            "A" => {
+                let [factor, shift] = self.azimuths(get(0)? * turns);
+                Vec3::splat((factor * get(1)? * turns + shift) / turns)
+            }
+            "P_φ" | "P_θ" => {
+                let (axis, unit) = if symbol == "P_φ" { (0, turns) } else { (1, FRAC_PI_2) };
+                let (first, part) = self.place(axis, get(0)? * unit);
+                Vec3::splat(first as f32 + part)
+            }
             "D" => Vec3::splat(self.distribution([get(0)?, get(1)?])),
             "Σ" => Vec3::splat(self.projected([get(0)?, get(1)?])),
             "X" | "Y" => {
-                let near = self.neighbours(get(0)? * turns, get(1)? * FRAC_PI_2);
-                let place = self.warped(&near, [get(2)?, get(3)?]);
+                let near = self.near(get(0)? * turns, get(1)? * FRAC_PI_2);
+                let place = warped(self.numbers, &near, &self.grid(0).cell([get(2)?, get(3)?]));
                 Vec3::splat(if symbol == "X" { place[0] } else { place[1] })
             }
             "ρ" => {
                 let within = |x: f32, count: usize| (x.max(0.0) as usize).min(count - 1);
                 let slice =
                     within(get(0)?, self.counts[0]) * self.counts[1] + within(get(1)?, self.counts[1]);
-                self.value(slice, [get(2)?, get(3)?])
+                value(self.numbers, &[self.slice(slice, 1.0)], &self.grid(1).cell([get(2)?, get(3)?]))
             }
             _ => return None,
         })
@@ -263,13 +205,13 @@ impl<'a> Data<'a> {
 
     /// The point of the unit square that is warped to a place, for one pair of directions: by bisection.
     pub(super) fn point(&self, slice: usize, place: [f32; 2]) -> [f32; 2] {
-        let near = Neighbours { slices: [slice; 4], weights: [1.0, 0.0, 0.0, 0.0] };
+        let near = [self.slice(slice, 1.0)];
         let mut point = [0.5, 0.5];
         for axis in [1, 0] {
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..24 {
                 point[axis] = 0.5 * (low + high);
-                if self.warped(&near, point)[axis] < place[axis] {
+                if warped(self.numbers, &near, &self.grid(0).cell(point))[axis] < place[axis] {
                     low = point[axis];
                 } else {
                     high = point[axis];

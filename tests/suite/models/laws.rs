@@ -4,10 +4,11 @@
 use glam::Vec3;
 use lights_camera_models::{
     optics::{
-        Frame, Terms,
+        Frame, TermSelection, Terms,
         colour::Encoding,
         interface::{Facets, Interface},
         lobes::Lobes,
+        radiometry::{Arriving, leaving},
     },
     parameter::{Parameter, Value, Values},
     parameters,
@@ -197,6 +198,31 @@ fn light_that_passes_may_go_backwards_too_or_that_is_found() {
 #[test]
 fn samples_by_the_lobes_of_a_model_give_its_albedo() {
     hold(testing::laws::sampled);
+}
+
+parameters! {
+    /// The wrong twin of models that answer to all lights: it forgets those after the fourth.
+    pub struct Forgetful {}
+}
+
+impl ReflectionModel for Forgetful {
+    const DECLARATION: reflection::Declaration =
+        reflection::Declaration::new("forgetful", "Forgetful", Source::new("reflection/forgetful.wgsl", ""));
+
+    fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
+        Terms::of(Vec3::splat(frame.n.dot(l).max(0.0)), Vec3::ZERO)
+    }
+
+    fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
+        leaving(&lights[..lights.len().min(4)], terms, |l| ReflectionModel::response(self, l, v, frame))
+    }
+}
+
+#[test]
+fn several_lights_at_once_give_what_each_gives_alone() {
+    hold(testing::laws::together);
+    let said = testing::laws::together(&ModelEntry::of::<Forgetful>()).expect_err("it forgets lights");
+    assert!(said.contains("11 lights give"), "{said}");
 }
 
 #[test]
