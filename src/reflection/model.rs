@@ -77,6 +77,7 @@ pub trait ReflectionModel: ParameterSet + Clone {
     /// The light that leaves towards `v` under these lights: the sum of the [`response`](Self::response) to each, times its light.
     /// The default is that loop, of which each model has its own copy, from which the compiler hoists what depends only on the
     /// object or the view. Worth writing for a model that needs long for the view alone, or is faster with several lights at once.
+    #[inline]
     fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
         radiometry::leaving(lights, terms, |l| self.response(l, v, frame))
     }
