@@ -4,8 +4,6 @@ use std::f64::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{TermSelection, Terms};
-
 /// The guard against division by zero in [`inverse_square`]: squared distances below (1 mm)² count as (1
 /// mm)². Only visible on a surface that touches the light.
 pub const MINIMUM_DISTANCE_SQUARED: f32 = 1e-6;
@@ -70,23 +68,6 @@ pub struct Arriving {
     pub l: Vec3,
     /// The intensity at the point, times the colour.
     pub light: Vec3,
-}
-
-/// The light that leaves a surface under these lights: the sum of the responses, or of one term of them, times the lights.
-#[must_use]
-#[inline]
-pub fn leaving(lights: &[Arriving], terms: TermSelection, respond: impl Fn(Vec3) -> Terms) -> Vec3 {
-    match terms {
-        TermSelection::All => sum(lights, |l| respond(l).select(TermSelection::All)),
-        TermSelection::Ambient => sum(lights, |l| respond(l).ambient),
-        TermSelection::Diffuse => sum(lights, |l| respond(l).diffuse),
-        TermSelection::Specular => sum(lights, |l| respond(l).specular),
-        TermSelection::Transmitted => sum(lights, |l| respond(l).transmitted),
-    }
-}
-
-fn sum(lights: &[Arriving], response: impl Fn(Vec3) -> Vec3) -> Vec3 {
-    lights.iter().fold(Vec3::ZERO, |sum, at| sum + response(at.l) * at.light)
 }
 
 #[cfg(test)]

@@ -74,9 +74,15 @@ impl ReflectionModel for MeasuredRgl {
         Terms::of(Vec3::ZERO, self.leaving(&[Arriving { l, light: Vec3::ONE }], v, frame))
     }
 
-    fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
+    fn lit_together(
+        &self,
+        lights: &[Arriving],
+        v: Vec3,
+        frame: &Frame,
+        terms: TermSelection,
+    ) -> Option<Vec3> {
         let has_any = matches!(terms, TermSelection::All | TermSelection::Specular);
-        if has_any { self.leaving(lights, v, frame) } else { Vec3::ZERO }
+        Some(if has_any { self.leaving(lights, v, frame) } else { Vec3::ZERO })
     }
 
     fn lobes(&self) -> Lobes {

@@ -14,7 +14,7 @@ use crate::{
         albedo::{LobeAlbedo, NamedCurve},
         interior::Interior,
         lobes::Lobes,
-        radiometry::{self, Arriving},
+        radiometry::Arriving,
         sharp::Sharps,
     },
     parameter::{ParameterSet, Value, Values},
@@ -74,12 +74,17 @@ pub trait ReflectionModel: ParameterSet + Clone {
     /// then `π f_t(l, v) |cos θ_i|` as [`Terms::through`]. Others give zero there.
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms;
 
-    /// The light that leaves towards `v` under these lights: the sum of the [`response`](Self::response) to each, times its light.
-    /// The default is that loop, of which each model has its own copy, from which the compiler hoists what depends only on the
-    /// object or the view. Worth writing for a model that needs long for the view alone, or is faster with several lights at once.
-    #[inline]
-    fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
-        radiometry::leaving(lights, terms, |l| self.response(l, v, frame))
+    /// The light that leaves towards `v` under several lights: the sum of the [`response`](Self::response) to each, times its light;
+    /// `None` if it is calculated one by one. Worth writing for a model that needs long for the view alone, or is faster with
+    /// several lights at once.
+    fn lit_together(
+        &self,
+        _lights: &[Arriving],
+        _v: Vec3,
+        _frame: &Frame,
+        _terms: TermSelection,
+    ) -> Option<Vec3> {
+        None
     }
 
     /// The directions from which light reaches the viewer without spreading, by reflection or transmission at a smooth

@@ -12,7 +12,7 @@ use crate::{
         albedo::{self, AlbedoCurve, LobeAlbedo},
         interior::Interior,
         lobes::Lobes,
-        radiometry::{self, Arriving},
+        radiometry::Arriving,
         sharp::Sharps,
     },
 };
@@ -113,10 +113,37 @@ pub trait Surface: Send + Sync {
         }
     }
 
-    /// See [`ReflectionModel::lit_by`].
-    fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
-        radiometry::leaving(lights, terms, |l| self.response(l, v, frame))
+    /// See [`ReflectionModel::lit_together`].
+    fn lit_together(
+        &self,
+        _lights: &[Arriving],
+        _v: Vec3,
+        _frame: &Frame,
+        _terms: TermSelection,
+    ) -> Option<Vec3> {
+        None
     }
+
+    /// The light that leaves towards `v` under these lights: the sum of the responses. Each model has its own
+    /// copy of this loop, from which the compiler hoists everything that depends only on the object or the
+    /// view.
+    fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
+        if let Some(all) = self.lit_together(lights, v, frame, terms) {
+            return all;
+        }
+        let respond = |l: Vec3| self.response(l, v, frame);
+        match terms {
+            TermSelection::All => sum(lights, |l| respond(l).select(TermSelection::All)),
+            TermSelection::Ambient => sum(lights, |l| respond(l).ambient),
+            TermSelection::Diffuse => sum(lights, |l| respond(l).diffuse),
+            TermSelection::Specular => sum(lights, |l| respond(l).specular),
+            TermSelection::Transmitted => sum(lights, |l| respond(l).transmitted),
+        }
+    }
+}
+
+fn sum(lights: &[Arriving], response: impl Fn(Vec3) -> Vec3) -> Vec3 {
+    lights.iter().fold(Vec3::ZERO, |sum, at| sum + response(at.l) * at.light)
 }
 
 /// The part of uniform light that reaches the viewer through the surface or without spreading, from `count` samples of
@@ -146,7 +173,7 @@ impl<M: ReflectionModel> Surface for M {
     forwards! {
         |this| this => ReflectionModel:
         fn response(l: Vec3, v: Vec3, frame: &Frame) -> Terms;
-        fn lit_by(lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3;
+        fn lit_together(lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Option<Vec3>;
         fn sharp(v: Vec3, frame: &Frame) -> Sharps;
         fn spreads() -> bool;
         fn interior() -> Option<Interior>;
@@ -199,7 +226,7 @@ impl<M: ReflectionModel> Surface for Instance<M> {
     forwards! {
         |this| &this.model => ReflectionModel:
         fn response(l: Vec3, v: Vec3, frame: &Frame) -> Terms;
-        fn lit_by(lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3;
+        fn lit_together(lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Option<Vec3>;
         fn sharp(v: Vec3, frame: &Frame) -> Sharps;
         fn spreads() -> bool;
         fn interior() -> Option<Interior>;

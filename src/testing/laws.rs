@@ -196,7 +196,7 @@ pub fn together(model: &ModelEntry) -> Outcome {
                     (alone.iter().sum::<Vec3>(), alone.iter().map(|each| each.abs()).sum::<Vec3>());
                 if (found - sum).abs().cmpgt(1e-6 + 1e-5 * size).any() {
                     return Err(format!(
-                        "{LIGHTS} lights give {found} at once, but {sum} one by one, for {values:?} v {v}; see `lit_by`"
+                        "{LIGHTS} lights give {found} at once, but {sum} one by one, for {values:?} v {v}; see `lit_together`"
                     ));
                 }
             }

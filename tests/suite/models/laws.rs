@@ -8,7 +8,7 @@ use lights_camera_models::{
         colour::Encoding,
         interface::{Facets, Interface},
         lobes::Lobes,
-        radiometry::{Arriving, leaving},
+        radiometry::Arriving,
     },
     parameter::{Parameter, Value, Values},
     parameters,
@@ -213,8 +213,15 @@ impl ReflectionModel for Forgetful {
         Terms::of(Vec3::splat(frame.n.dot(l).max(0.0)), Vec3::ZERO)
     }
 
-    fn lit_by(&self, lights: &[Arriving], v: Vec3, frame: &Frame, terms: TermSelection) -> Vec3 {
-        leaving(&lights[..lights.len().min(4)], terms, |l| ReflectionModel::response(self, l, v, frame))
+    fn lit_together(
+        &self,
+        lights: &[Arriving],
+        v: Vec3,
+        frame: &Frame,
+        terms: TermSelection,
+    ) -> Option<Vec3> {
+        let one = |at: &Arriving| ReflectionModel::response(self, at.l, v, frame).select(terms) * at.light;
+        Some(lights.iter().take(4).map(one).sum())
     }
 }
 
