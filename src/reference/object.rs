@@ -319,8 +319,8 @@ mod tests {
         // A small object in a small picture.
         for i in 0..40 {
             let at = Vec3::new(3.0 + 0.103 * i as f32, 5.0 - 0.017 * i as f32, 4.0);
-            let [some, all] = corners(Vec3::new(5.0, 5.0, 9.9), object(at, 0.05, 128), [64, 36], 4);
-            assert!(some < all / 10, "{i}: {some} of {all}");
+            let [some, all] = corners(Vec3::new(5.0, 5.0, 9.9), object(at, 0.05, 256), [64, 36], 4);
+            assert!(some < all / 5, "{i}: {some} of {all}");
         }
         // Half outside, around the eye, close to it, and large.
         for (at, size, picture) in [

@@ -155,6 +155,8 @@ impl<'a> Boxes<'a> {
     pub(super) fn may_cover(&self, centre: Vec3, half: Vec3) -> bool {
         /// Rounding of a place on the screen, in steps for each pixel.
         const ROUNDED: f32 = 4e-6 * SUBPIXEL as f32;
+        /// Far outside of any picture, in steps.
+        const FAR: f32 = 1e12;
         let ends = self.rows.map(|(factors, sum, error)| {
             let (at, reach) = (factors.dot(centre) + sum, factors.abs().dot(half) + error);
             [at - reach, at + reach]
@@ -169,16 +171,17 @@ impl<'a> Boxes<'a> {
         };
         let ([left, right], [bottom, top]) = (of(x), of(y));
         let Screen { width, height, .. } = *self.screen;
-        let across = [left, right].map(|x| (0.5 + 0.5 * x) * width as f32);
-        let down = [top, bottom].map(|y| (0.5 - 0.5 * y) * height as f32);
         // A step more than to what corners are snapped.
         let wide = |[low, high]: [f32; 2], side: usize| {
             let pad = 2.0 + ROUNDED * low.abs().max(high.abs());
             let [low, high] = [low * SUBPIXEL as f32 - pad, high * SUBPIXEL as f32 + pad];
-            [(low as i64).max(0), (high as i64).min(side as i64 * SUBPIXEL)]
+            let is_outside = high < 0.0 || low > (side as i64 * SUBPIXEL) as f32;
+            (!is_outside).then(|| [low, high].map(|at| at.clamp(-FAR, FAR) as i64))
         };
-        let [[left, right], [top, bottom]] = [wide(across, width), wide(down, height)];
-        left <= right && top <= bottom && self.screen.holds_samples([left, top], [right, bottom])
+        let across = wide([left, right].map(|x| (0.5 + 0.5 * x) * width as f32), width);
+        let down = wide([top, bottom].map(|y| (0.5 - 0.5 * y) * height as f32), height);
+        let (Some([left, right]), Some([top, bottom])) = (across, down) else { return false };
+        self.screen.holds_samples([left, top], [right, bottom])
     }
 }
 
