@@ -162,6 +162,9 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         | MatchError::NoParameter { .. }
         | MatchError::NoNumber { .. }
         | MatchError::Unused { .. } => Failure::Usage(format!("--free: {error}")),
+        MatchError::Cancelled => {
+            invalid(&"the views could not be compared even once in time; more --seconds may be enough")
+        }
         error => invalid(&error),
     })?;
     if found.ended == Ended::Interrupted && !end.interrupt.is_asked() {
