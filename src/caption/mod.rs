@@ -15,7 +15,7 @@ pub use heading::{MODEL_RANK, header, header_parts, view_parts};
 pub(crate) use order::merged;
 pub(crate) use part::closing;
 pub use part::{Part, line};
-pub use rows::{of_copy, of_row, row_labels};
+pub use rows::{label_of, of_copy, of_row, row_labels};
 pub use sampled::{Sampled, sampled};
 pub use strip::{draw, draw_line, line_width, most_rows, type_size};
 pub(crate) use words::{display, exposure, said, single, terms_alone, value};

@@ -1,6 +1,6 @@
 //! The labels of rows: the values in which each copy differs from the others.
 
-use super::{Part, words::said};
+use super::{Part, line, words::said};
 use crate::{
     parameter::Value,
     registry::Registry,
@@ -18,6 +18,14 @@ pub fn row_labels(scene: &Scene, registry: &Registry) -> Vec<(usize, Vec<Part>)>
         labelled.flat_map(|row| row.range().zip(of_row(scene, &row, registry))).collect();
     labels.retain(|(_, parts)| !parts.is_empty());
     labels
+}
+
+/// The label of an object in a row that has labels; `None` for any other object.
+#[must_use]
+pub fn label_of(scene: &Scene, i: usize, registry: &Registry) -> Option<String> {
+    let row = scene.row(i).filter(|row| row.repeat.labels)?;
+    let variables: Vec<_> = row.variables(registry).collect();
+    Some(line(&of_copy(scene, i, &variables, registry))).filter(|label| !label.is_empty())
 }
 
 /// The values in which each copy of a row differs from the others, whether the row has labels or not.
@@ -43,7 +51,7 @@ pub fn of_copy(scene: &Scene, i: usize, variables: &[Variable], registry: &Regis
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{caption::line, scene::Object};
+    use crate::scene::Object;
 
     #[test]
     fn values_are_named_as_people_call_them_not_by_their_paths() {

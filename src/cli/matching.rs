@@ -1,15 +1,19 @@
 //! `lcm match`: the parameters of a view that come closest to view A.
 
-use std::path::PathBuf;
+use std::{
+    path::PathBuf,
+    time::{Duration, Instant},
+};
 
 use clap::{
     Args,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+    value_parser,
 };
 use serde_json::{Value as Json, json};
 
 use super::{
-    Options, Outcome, gauged, gauged_until, outputs, print_json, print_text,
+    Options, Outcome, gauged_until, outputs, print_json, print_text,
     scenes::Source,
     views::find,
     workshop::{Workshop, drawable},
@@ -19,7 +23,7 @@ use crate::{
     export::write::inputs,
     failure::Failure,
     matching::{
-        self, Match, MatchError, Measure, Metric, Request, What, digits,
+        self, Ended, Match, MatchError, Measure, Metric, Request, What, digits,
         each::{Matched, Ranking, candidates, match_each},
         match_view, rounded,
     },
@@ -54,6 +58,10 @@ pub(super) struct Arguments {
     /// The parameters that are free, such as alpha,k_s; by default every number, and beside a measurement every colour too. The fewer, the quicker and the surer
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     free: Vec<String>,
+    /// End after so many seconds with the nearest found until then, as Ctrl+C does: 1 to 600; by default 600, with --each those that all models take.
+    /// Few searches take as long: each also ends by itself, or at its number of comparisons
+    #[arg(long, value_name = "N", value_parser = value_parser!(u64).range(1..=600))]
+    seconds: Option<u64>,
     /// Write the scene with these parameters to this file, another one than the scene's
     #[arg(long, short, value_name = "FILE", value_parser = outputs::place())]
     output: Option<PathBuf>,
@@ -123,7 +131,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     drawable(registry, &scene)?;
     let invalid = |why: &dyn std::fmt::Display| Failure::Invalid(format!("{}: {why}", source.name()));
     if arguments.each {
-        return each(&scene, (measure, arguments.json), options, registry);
+        return each(&scene, (measure, arguments), options, registry);
     }
     let view = view(&scene, &arguments.view, invalid)?;
     let free: Vec<&str> = match arguments.free.as_slice() {
@@ -134,8 +142,14 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         names => names.iter().map(|name| name.trim()).collect(),
     };
     let request = Request { scene: &scene, view, measure, parameters: &free };
-    let found = gauged("matching", options, |progress| match_view(&request, registry, progress));
-    let found = found.map_err(|error| match error {
+    let end = End::new(arguments.seconds);
+    let found = gauged_until("matching", options, &|| end.is_due(), |progress| {
+        match_view(&request, registry, progress)
+    });
+    if found == Err(MatchError::Cancelled) {
+        end.interrupt.end_if_asked();
+    }
+    let mut found = found.map_err(|error| match error {
         MatchError::NothingFree { known } if arguments.free.is_empty() && !known.is_empty() => {
             Failure::Usage(format!(
                 "no parameter of view {} is free by default; name some with --free: {}",
@@ -148,8 +162,14 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         | MatchError::NoParameter { .. }
         | MatchError::NoNumber { .. }
         | MatchError::Unused { .. } => Failure::Usage(format!("--free: {error}")),
+        MatchError::Cancelled => {
+            invalid(&"the views could not be compared even once in time; more --seconds may be enough")
+        }
         error => invalid(&error),
     })?;
+    if found.ended == Ended::Interrupted && !end.interrupt.is_asked() {
+        found.ended = Ended::Time;
+    }
     let before: Vec<Value> = found.values.iter().map(|(name, _)| now(&scene, view, name, registry)).collect();
     if arguments.json {
         print_json(&as_json(&found, view, measure))?;
@@ -163,22 +183,49 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
         save::write(file, &scene, registry, expected).map_err(|error| unwritten(&error))?;
         options.tell(format_args!("wrote {}", file.shown()));
     }
+    end.interrupt.end_if_asked();
     Ok(())
 }
 
-/// `lcm match --each`. Ctrl+C ends it with what was matched until then.
-fn each(scene: &Scene, (measure, json): (Measure, bool), options: Options, registry: &Registry) -> Outcome {
-    // Without it, Ctrl+C ends the program at once.
-    let interrupt = Interrupt::listen(|| (), |_| ()).unwrap_or_default();
-    let ranking = gauged_until("matching", options, &|| interrupt.is_asked(), |progress| {
+/// What ends a search with what it has: Ctrl+C, or the time that it was given.
+struct End {
+    interrupt: Interrupt,
+    begun: Instant,
+    longest: Option<Duration>,
+}
+
+impl End {
+    fn new(seconds: Option<u64>) -> Self {
+        Self {
+            // Without it, Ctrl+C ends the program at once.
+            interrupt: Interrupt::listen(|| (), |_| ()).unwrap_or_default(),
+            begun: Instant::now(),
+            longest: seconds.map(Duration::from_secs),
+        }
+    }
+
+    fn is_due(&self) -> bool {
+        self.interrupt.is_asked() || self.longest.is_some_and(|longest| self.begun.elapsed() >= longest)
+    }
+}
+
+/// `lcm match --each`. Ctrl+C and the end of its time end it with what was matched until then.
+fn each(
+    scene: &Scene,
+    (measure, arguments): (Measure, &Arguments),
+    options: Options,
+    registry: &Registry,
+) -> Outcome {
+    let end = End::new(arguments.seconds);
+    let ranking = gauged_until("matching", options, &|| end.is_due(), |progress| {
         match_each(scene, candidates(registry), measure, registry, progress)
     });
-    if json {
+    if arguments.json {
         print_json(&ranking_as_json(&ranking, measure))?;
     } else {
         print_text(&ranking_in_words(&ranking, measure))?;
     }
-    interrupt.end_if_asked();
+    end.interrupt.end_if_asked();
     if ranking.matched.is_empty() {
         return Err(Failure::Invalid("no model could be matched to view A".to_owned()));
     }
@@ -260,7 +307,11 @@ fn in_words(found: &Match, before: &[Value], view: usize, measure: Measure) -> S
     let letter = LETTERS[view];
     if found.values.is_empty() {
         let (unit, before) = (measure.unit(), digits(found.before));
-        let stays = format!("view {letter} stays as it is: no other values come nearer to view A");
+        let none = match found.ended {
+            Ended::Itself => "no other values come nearer",
+            _ => "until then no other values came nearer",
+        };
+        let stays = format!("view {letter} stays as it is: {none} to view A");
         return format!("{stays}\n{unit}: {before}\n{}", about_the_search(found));
     }
     let mut text = format!("view {letter} matched to view A on the {measure}\n");

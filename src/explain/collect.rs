@@ -9,6 +9,7 @@ use super::{
 use glam::Vec3;
 
 use crate::{
+    caption::label_of,
     light::Incident,
     optics::{TermSelection, colour::Encoding},
     parameter::{Parameter, Value, Values},
@@ -40,6 +41,7 @@ impl Shot<'_> {
         let at_pixel = found.at_pixel.iter().map(|point| spot(Place::Pixel, point));
         Some(Seen {
             object: part(found.object, &object.name, &object.object_type, type_name),
+            label: label_of(self.scene, found.object, self.registry),
             shading: shading.declaration,
             position: found.varying.position,
             polygon: found.polygon,

@@ -104,6 +104,7 @@ impl Seen {
         let spot = |spot: &Spot| spot.to_json(&self.model);
         json!({
             "object": part(&self.object),
+            "label": self.label,
             "polygon": self.polygon,
             "position": triple(self.position),
             "face_normal": triple(self.face_normal),

@@ -177,6 +177,8 @@ pub struct Part {
 pub struct Seen {
     /// The object.
     pub object: Part,
+    /// The label of the object in a picture, if it stands in a row that has labels.
+    pub label: Option<String>,
     /// Reflection model.
     pub model: Model,
     /// Shading model.

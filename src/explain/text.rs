@@ -142,6 +142,9 @@ impl Explanation {
     fn object(&self, out: &mut Writer, seen: &Seen) {
         let part = named("objects", &seen.object);
         say!(out, 0, "{part}, {}, polygon {}", seen.object.type_name, seen.polygon);
+        if let Some(label) = &seen.label {
+            say!(out, 1, "label: {label}");
+        }
         if seen.dark_glass {
             say!(out, 1, "It is smooth glass: {WHY}.");
         }

@@ -123,7 +123,8 @@ fn match_model(
         let free = parameters(&scene, 1, registry);
         let free = free.into_iter().map(|(parameter, _)| parameter).filter(|p| keeps_opaque(model, p));
         let free: Vec<_> = free.map(|parameter| parameter.name).collect();
-        match_view(&Request { scene: &scene, view: 1, measure, parameters: &free }, registry, progress)
+        match_view(&Request { scene: &scene, view: 1, measure, parameters: &free }, registry, progress)?
+            .unless_interrupted()
     };
     let choices: Vec<_> = choices(model).collect();
     let count = 1 + ROUNDS * choices.len();

@@ -105,6 +105,8 @@ pub enum Ended {
     Evaluations,
     /// The maximum duration.
     Time,
+    /// The user, who cancelled it.
+    Interrupted,
 }
 
 impl Ended {
@@ -115,6 +117,7 @@ impl Ended {
             Self::Itself => "search",
             Self::Evaluations => "evaluations",
             Self::Time => "time",
+            Self::Interrupted => "interrupted",
         }
     }
 
@@ -127,8 +130,9 @@ impl Ended {
                 Some("the search ended at its limit of evaluations: fewer free parameters may come nearer")
             }
             Self::Time => Some(
-                "the search ended at its limit of 10 minutes: fewer free parameters may come nearer, and a faster computer may find others",
+                "the search ended at its limit of time: fewer free parameters may come nearer, and a faster computer may find others",
             ),
+            Self::Interrupted => Some("the search was interrupted: this is the nearest until then"),
         }
     }
 }
@@ -169,6 +173,14 @@ pub struct Match {
 }
 
 impl Match {
+    /// The match, if its search came to an end.
+    ///
+    /// # Errors
+    /// Returns [`MatchError::Cancelled`] if the user cancelled it.
+    pub fn unless_interrupted(self) -> Result<Self, MatchError> {
+        if self.ended == Ended::Interrupted { Err(MatchError::Cancelled) } else { Ok(self) }
+    }
+
     /// A sentence about the [ambiguous](Self::ambiguous) parameters, by their names or labels, without a full stop; `None` if there are
     /// none.
     #[must_use]
@@ -349,11 +361,12 @@ fn reason_against(side: &Side, parameter: &Parameter, registry: &Registry) -> Op
     reason
 }
 
-/// Finds the parameters of a view that come nearest to view A.
+/// Finds the parameters of a view that come nearest to view A. The search ends by itself, at a number of evaluations that depends
+/// on what is free, or after ten minutes. If the user cancels, the nearest until then is the result.
 ///
 /// # Errors
 /// Returns an error if there is nothing to compare or search, if a model cannot be evaluated, or if the user
-/// cancels.
+/// cancels before the views were compared once.
 pub fn match_view(request: &Request, registry: &Registry, progress: &Progress) -> Result<Match, MatchError> {
     let scene = request.scene;
     let letter = LETTERS.get(request.view).copied().unwrap_or("?");

@@ -167,7 +167,7 @@ impl<'a, T: Target> Search<'a, T> {
     /// Runs the search.
     ///
     /// # Errors
-    /// Returns [`Cancelled`] if the user cancels.
+    /// Returns [`Cancelled`] if the user cancels before anything was compared. Later, the best so far is the result as it is.
     pub(super) fn run(mut self) -> Result<Found, Cancelled> {
         "comparing the views".clone_into(&mut self.step);
         let none = Point { numbers: self.present(), on: vec![false; self.free.len()] };
@@ -175,9 +175,6 @@ impl<'a, T: Target> Search<'a, T> {
         if before > NONE && !self.free.is_empty() {
             // The end of the evaluations ends the search, and what was found counts.
             let _ = self.find();
-            if self.cancelled {
-                return Err(Cancelled);
-            }
         }
         let (error, best) = std::mem::take(&mut self.best);
         self.last = true;
@@ -185,12 +182,12 @@ impl<'a, T: Target> Search<'a, T> {
             // The present values may be one choice of many.
             let judged = before > NONE && !self.free.is_empty();
             let ambiguous =
-                if judged { self.ambiguous(&none, before).map_err(|Stop| Cancelled)? } else { Vec::new() };
+                if judged { self.ambiguous(&none, before).unwrap_or_default() } else { Vec::new() };
             return Ok(self.found(Vec::new(), ambiguous, [before; 2]));
         };
         let good = (1.0 + GIVEN_UP[0]) * error + GIVEN_UP[1] * before;
-        let (best, after) = self.simplified(best, good, error).map_err(|Stop| Cancelled)?;
-        let ambiguous = self.ambiguous(&best, after).map_err(|Stop| Cancelled)?;
+        let (best, after) = self.simplified(best.clone(), good, error).unwrap_or((best, error));
+        let ambiguous = self.ambiguous(&best, after).unwrap_or_default();
         let values = self.values(&best);
         Ok(self.found(values, ambiguous, [before, after]))
     }
@@ -198,7 +195,8 @@ impl<'a, T: Target> Search<'a, T> {
     fn found(self, values: Given, ambiguous: Vec<&'static str>, [before, after]: [f64; 2]) -> Found {
         let without = self.free.iter().zip(&self.effect).filter(|(_, effect)| **effect == (true, false));
         let without_effect = without.map(|(free, _)| free.parameter.name).collect();
-        let (evaluations, ended) = (self.evaluations, self.ended);
+        let ended = if self.cancelled { Ended::Interrupted } else { self.ended };
+        let evaluations = self.evaluations;
         Found { values, before, after, without_effect, ambiguous, evaluations, ended }
     }
 
@@ -982,8 +980,8 @@ mod tests {
     }
 
     #[test]
-    fn a_search_can_be_cancelled_at_every_step() {
-        for most in [0, 1, 10, 40] {
+    fn a_search_cancelled_at_any_step_gives_the_best_so_far() {
+        let search = |most: usize| {
             let asked = std::cell::Cell::new(0);
             let cancelled = || {
                 asked.set(asked.get() + 1);
@@ -991,8 +989,27 @@ mod tests {
             };
             let progress = Progress { tell: &|_, _| (), cancelled: &cancelled };
             let mut bell = Bell { wanted: [700.0, 0.05], asked: 0 };
-            assert_eq!(Search::new(&mut bell, &frees(), 2000, &progress).run(), Err(Cancelled), "{most}");
-            assert_eq!(bell.asked, most);
+            let found = Search::new(&mut bell, &frees(), 2000, &progress).run();
+            (found, bell.asked)
+        };
+        assert_eq!(search(0), (Err(Cancelled), 0), "there is nothing yet");
+        let (whole, all) = search(usize::MAX);
+        let whole = whole.expect("not cancelled");
+        assert_ne!(whole.ended, Ended::Interrupted);
+        let mut least = f64::INFINITY;
+        for most in [1, 10, 40, all - 1] {
+            let (found, asked) = search(most);
+            let found = found.expect("the best so far");
+            assert_eq!((asked, found.ended), (most, Ended::Interrupted), "nothing is tried after that");
+            assert_eq!(found.before, whole.before);
+            assert!(
+                found.after <= least * (1.0 + GIVEN_UP[0]) + GIVEN_UP[1] * found.before,
+                "{most}: {found:?}"
+            );
+            least = found.after;
+            // The last ones only tell what is ambiguous.
+            let same = (&found.values, found.after) == (&whole.values, whole.after);
+            assert_eq!(same, most == all - 1, "{most}: {found:?}");
         }
     }
 

@@ -290,7 +290,7 @@ fn every_opaque_model_is_matched_and_stays_opaque() {
 
 #[test]
 fn what_ended_a_search_has_a_name_and_a_sentence() {
-    let all = [Ended::Itself, Ended::Evaluations, Ended::Time];
-    assert_eq!(all.map(Ended::id), ["search", "evaluations", "time"]);
-    assert_eq!(all.map(|ended| ended.note().is_some()), [false, true, true]);
+    let all = [Ended::Itself, Ended::Evaluations, Ended::Time, Ended::Interrupted];
+    assert_eq!(all.map(Ended::id), ["search", "evaluations", "time", "interrupted"]);
+    assert_eq!(all.map(|ended| ended.note().is_some()), [false, true, true, true]);
 }

@@ -2,6 +2,7 @@
 
 use std::{
     collections::{HashMap, HashSet},
+    ops::Range,
     sync::{Arc, OnceLock},
 };
 
@@ -15,6 +16,7 @@ use crate::{
     shape::{
         Hierarchy, MeshKey, PolygonMesh, ShapeEntry,
         closed::{self, NotSolid},
+        mesh::Polygon,
     },
 };
 
@@ -25,6 +27,42 @@ const POLYGONS_HELD: usize = 1 << 20;
 const AT_ONCE: usize = 16;
 /// Number of objects among which these are looked for.
 const AHEAD: usize = 1024;
+
+/// Number of neighbouring polygons of a patch: few, so that a patch is small, but enough to save more than its box costs.
+const PATCH: usize = 32;
+
+/// Neighbouring polygons of a mesh, in their box.
+pub(super) struct Patch {
+    polygons: Range<usize>,
+    /// The place of the first triangle among all.
+    first: usize,
+    pub(super) centre: Vec3,
+    /// Half the sides of the box.
+    pub(super) half: Vec3,
+}
+
+impl Patch {
+    pub(super) fn len(&self) -> usize {
+        self.polygons.len()
+    }
+
+    /// All of a mesh.
+    fn all(mesh: &PolygonMesh) -> Vec<Self> {
+        let mut first = 0;
+        let patch = |(i, polygons): (usize, &[Polygon])| {
+            let corners = polygons.iter().flat_map(|polygon| polygon.corners());
+            let [mut low, mut high] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+            for p in corners.map(|i| mesh.positions[*i as usize]) {
+                (low, high) = (low.min(p), high.max(p));
+            }
+            let begin = first;
+            first += polygons.iter().map(|polygon| polygon.triangles().len()).sum::<usize>();
+            let polygons = i * PATCH..i * PATCH + polygons.len();
+            Self { polygons, first: begin, centre: 0.5 * (low + high), half: 0.5 * (high - low) }
+        };
+        mesh.polygons.chunks(PATCH).enumerate().map(patch).collect()
+    }
+}
 
 /// A mesh with its normals, shared by all objects with equal keys.
 pub(crate) struct Prepared {
@@ -38,6 +76,8 @@ pub(crate) struct Prepared {
     body: OnceLock<Result<Hierarchy, NotSolid>>,
     /// Triangles that an earlier one with the same corners hides, by their place among all.
     repeated: Vec<usize>,
+    /// The polygons, some neighbours at a time: of many polygons in few pixels, most cover no sample.
+    pub(super) patches: Vec<Patch>,
     /// Largest distance of a vertex from the origin.
     pub(super) radius: f32,
 }
@@ -51,6 +91,7 @@ impl Prepared {
             tangents: OnceLock::new(),
             body: OnceLock::new(),
             repeated: repeated(&mesh),
+            patches: Patch::all(&mesh),
             radius: mesh.positions.iter().map(|p| p.length()).fold(0.0, f32::max),
             mesh,
         }
@@ -58,8 +99,19 @@ impl Prepared {
 
     /// The triangles that can be seen: a file may have thousands in one place, each of which would be drawn.
     pub(super) fn triangles(&self) -> impl Iterator<Item = (usize, [u32; 3])> {
-        let mut repeated = self.repeated.iter().copied().peekable();
-        let all = self.mesh.triangles().enumerate();
+        self.patches.iter().flat_map(|patch| self.triangles_of(patch))
+    }
+
+    /// Those of a patch.
+    pub(super) fn triangles_of(&self, patch: &Patch) -> impl Iterator<Item = (usize, [u32; 3])> {
+        let repeated = &self.repeated[self.repeated.partition_point(|i| *i < patch.first)..];
+        let mut repeated = repeated.iter().copied().peekable();
+        let polygons = patch.polygons.clone().zip(&self.mesh.polygons[patch.polygons.clone()]);
+        let all = polygons.flat_map(|(i, polygon)| {
+            let corners = polygon.corners();
+            polygon.triangles().iter().map(move |triangle| (i, triangle.map(|c| corners[c])))
+        });
+        let all = (patch.first..).zip(all);
         all.filter(move |(i, _)| repeated.next_if_eq(i).is_none()).map(|(_, triangle)| triangle)
     }
 
@@ -167,7 +219,7 @@ impl<'a> Meshes<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{parameter::Value, shape::mesh::Polygon};
+    use crate::parameter::Value;
 
     #[test]
     fn of_triangles_in_one_place_the_first_is_drawn() {

@@ -40,7 +40,7 @@ impl Matches {
         seen.observer = session.facts.observer(seen.observer);
         self.0.begin(view, wake, broken, move |progress| {
             let request = Request { scene: &seen, view, measure, parameters: &parameters };
-            let outcome = match_view(&request, &registry, progress);
+            let outcome = match_view(&request, &registry, progress).and_then(Match::unless_interrupted);
             (scene, view, measure, Some(outcome))
         });
     }

@@ -2,7 +2,7 @@
 //! functions in integers, the top-left rule, so that triangles sharing an edge leave no gap and hit no sample
 //! twice.
 
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat3, Mat4, Vec3, Vec4};
 
 use crate::shading::Varying;
 
@@ -122,6 +122,66 @@ impl Placed {
             }
             _ => true,
         }
+    }
+}
+
+/// Boxes in the mesh of an object, as they lie on the screen.
+pub(super) struct Boxes<'a> {
+    screen: &'a Screen,
+    /// Clip coordinates x, y and w of a point of the mesh: factors, sum, and the largest error of rounding.
+    rows: [(Vec3, f32, f32); 3],
+}
+
+impl<'a> Boxes<'a> {
+    /// Of an object in its place, all of whose points are nearer to its centre than `reach`.
+    pub(super) fn new(
+        clip_from_room: &Mat4,
+        (turned, position): (Mat3, Vec3),
+        reach: f32,
+        screen: &'a Screen,
+    ) -> Self {
+        /// Several times the rounding of all steps from a point of the mesh to clip space, by any order of them.
+        const ROUNDING: f32 = 4e-6;
+        let rows = [0, 1, 3].map(|row| {
+            let row = clip_from_room.row(row);
+            let factors = row.truncate();
+            let largest = factors.abs().dot(position.abs() + reach) + row.w.abs();
+            (turned.transpose() * factors, factors.dot(position) + row.w, ROUNDING * largest)
+        });
+        Self { screen, rows }
+    }
+
+    /// False if no triangle within a box, given by its centre and half its sides, covers a sample.
+    pub(super) fn may_cover(&self, centre: Vec3, half: Vec3) -> bool {
+        /// Rounding of a place on the screen, in steps for each pixel.
+        const ROUNDED: f32 = 4e-6 * SUBPIXEL as f32;
+        /// Far outside of any picture, in steps.
+        const FAR: f32 = 1e12;
+        let ends = self.rows.map(|(factors, sum, error)| {
+            let (at, reach) = (factors.dot(centre) + sum, factors.abs().dot(half) + error);
+            [at - reach, at + reach]
+        });
+        let [x, y, [near, far]] = ends;
+        // Behind the eye nothing has a place on the screen.
+        if near <= 0.0 || !far.is_finite() {
+            return true;
+        }
+        let of = |[low, high]: [f32; 2]| {
+            [low / if low < 0.0 { near } else { far }, high / if high < 0.0 { far } else { near }]
+        };
+        let ([left, right], [bottom, top]) = (of(x), of(y));
+        let Screen { width, height, .. } = *self.screen;
+        // A step more than to what corners are snapped.
+        let wide = |[low, high]: [f32; 2], side: usize| {
+            let pad = 2.0 + ROUNDED * low.abs().max(high.abs());
+            let [low, high] = [low * SUBPIXEL as f32 - pad, high * SUBPIXEL as f32 + pad];
+            let is_outside = high < 0.0 || low > (side as i64 * SUBPIXEL) as f32;
+            (!is_outside).then(|| [low, high].map(|at| at.clamp(-FAR, FAR) as i64))
+        };
+        let across = wide([left, right].map(|x| (0.5 + 0.5 * x) * width as f32), width);
+        let down = wide([top, bottom].map(|y| (0.5 - 0.5 * y) * height as f32), height);
+        let (Some([left, right]), Some([top, bottom])) = (across, down) else { return false };
+        self.screen.holds_samples([left, top], [right, bottom])
     }
 }
 

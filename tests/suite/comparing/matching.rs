@@ -143,23 +143,74 @@ fn the_metric_of_the_lobes_can_be_chosen_and_is_said() {
     }
 }
 
+/// Runs `lcm match` on a terminal, with Ctrl+C after so many seconds.
+#[cfg(target_os = "linux")]
+fn interrupted(at: &Path, seconds: u32, arguments: &str) -> (Option<i32>, String) {
+    // Whoever runs the tests may ignore some signals, and programs respect that.
+    let command = format!(
+        "timeout --foreground --preserve-status -s INT {seconds} env --default-signal=INT taskset -c 0 {} match {arguments}",
+        env!("CARGO_BIN_EXE_lcm")
+    );
+    let mut script = std::process::Command::new("script");
+    script.args(["-qec", &command, "/dev/null"]).current_dir(at);
+    let output = script.stdin(std::process::Stdio::null()).output().expect("script is a part of every Linux");
+    (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// A scene whose pictures take long to match: four objects of many polygons with all parameters of `disney`, lit by a photometric lamp.
+fn slow(at: &Path) {
+    let mut scene: serde_json::Value =
+        serde_json::from_str(include_str!("../../../scenes/photometric_lamps.json")).expect("JSON");
+    scene["objects"] = (0..4)
+        .map(|i| {
+            json!({
+                "type": "superellipsoid", "position": [1.5 + 2.0 * f64::from(i), 4, 3], "size": 0.8,
+                "tessellation": 256, "material": {},
+            })
+        })
+        .collect();
+    scene["reflection_model"] = json!("blinn_phong");
+    scene["variants"] = json!([{ "reflection_model": "disney" }]);
+    fs::write(at.join("wall_washer.ies"), include_str!("../../../scenes/wall_washer.ies")).expect("writable");
+    fs::write(at.join("slow.json"), scene.to_string()).expect("writable");
+}
+
+/// A search ends with the nearest that it found, at Ctrl+C and at the time that it was given.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_long_search_ends_when_it_should_with_the_best_so_far() {
+    let folder = folder();
+    let at = folder.path();
+    slow(at);
+    let arguments = "slow.json --on picture --free base_colour,metallic,roughness,specular,sheen,clearcoat";
+    let (status, said) = interrupted(at, 4, arguments);
+    assert_eq!(status, Some(130), "{said}");
+    assert!(said.contains("matching, ") && said.contains("; Ctrl+C ends it"), "{said}");
+    assert!(
+        said.contains("view B matched to view A") && said.contains("the search was interrupted"),
+        "{said}"
+    );
+    let all = [
+        &["match"],
+        &*arguments.split(' ').collect::<Vec<_>>(),
+        &["--seconds", "2", "-o", "b.json", "--json"],
+    ];
+    let begun = std::time::Instant::now();
+    let run = lcm_in(at, &all.concat(), b"");
+    assert!(begun.elapsed() < std::time::Duration::from_secs(20), "{:?}", begun.elapsed());
+    assert_eq!((run.status, at.join("b.json").exists()), (Some(0), true), "{}", run.err);
+    let json: serde_json::Value = serde_json::from_str(&run.out).expect("JSON");
+    assert_eq!(json["ended"], "time", "{json:#}");
+    assert!(json["after"].as_f64() < json["before"].as_f64(), "{json:#}");
+    refused(&lcm_in(at, &["match", "a.json", "--seconds", "0"], b""), 2, "--seconds");
+}
+
 /// Ctrl+C ends the work with what it has, as the status says.
 #[test]
 #[cfg(target_os = "linux")]
 fn every_model_is_matched_until_ctrl_c() {
     let folder = folder();
-    let run = |arguments: &str| {
-        // Whoever runs the tests may ignore some signals, and programs respect that.
-        let command = format!(
-            "timeout --foreground --preserve-status -s INT 4 env --default-signal=INT taskset -c 0 {} match a.json --each {arguments}",
-            env!("CARGO_BIN_EXE_lcm")
-        );
-        let mut script = std::process::Command::new("script");
-        script.args(["-qec", &command, "/dev/null"]).current_dir(folder.path());
-        let output =
-            script.stdin(std::process::Stdio::null()).output().expect("script is a part of every Linux");
-        (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
-    };
+    let run = |arguments: &str| interrupted(folder.path(), 4, &format!("a.json --each {arguments}"));
     let (status, said) = run("--metric log");
     assert_eq!(status, Some(130), "{said}");
     assert!(said.contains("RMS difference of ln(1 + f cos θ), f in sr⁻¹\r\n"), "{said}");

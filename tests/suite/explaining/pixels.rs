@@ -4,13 +4,14 @@ use std::{fs, sync::atomic::AtomicBool};
 
 use glam::Vec3;
 use lights_camera_models::{
+    caption,
     explain::{self, ExplainError, Explainer, Explanation, Place, Spot},
     light::Incident,
     optics::{TermSelection, colour::Encoding, tone::ToneMapping},
     reference::{self, LightSamples, Settings},
     registry::Registry,
     scene::{
-        Background, Display, Light, Object, Scene,
+        Background, Display, Light, Object, Repetition, Scene,
         load::{self, Defaults},
     },
     testing::random,
@@ -35,6 +36,31 @@ const MIDDLE: [u32; 2] = [80, 45];
 
 fn near(a: Vec3, b: Vec3, tolerance: f32) -> bool {
     (a - b).abs().max_element() <= tolerance * b.abs().max_element().max(1e-6)
+}
+
+/// Copies of a row are told apart by what a picture writes below them.
+#[test]
+fn a_copy_of_a_row_has_the_label_that_pictures_give_it() {
+    let file = root().join("scenes/five_spheres.json");
+    let mut scene = load::file(&file, &builtin(), Defaults::Refuse).expect("a scene").scene;
+    let labels = caption::row_labels(&scene, &builtin());
+    assert_eq!(labels.len(), 5);
+    let mut found = Vec::new();
+    for x in (0..SMALL.width).step_by(4) {
+        let explained = at(&scene, [x, 45]);
+        let Some(seen) = &explained.seen else { continue };
+        let (_, parts) = &labels[seen.object.index];
+        let label = caption::line(parts);
+        assert_eq!(seen.label.as_ref(), Some(&label), "{x}");
+        assert!(explained.to_text().contains(&format!("\n  label: {label}\n")), "{}", explained.to_text());
+        assert_eq!(explained.to_json()["seen"]["label"], label);
+        found.push(label);
+    }
+    found.dedup();
+    assert_eq!((found.len(), &*found[0]), (5, "r 0.1"), "{found:?}");
+    // Without the row they are objects like others.
+    scene.objects.iter_mut().for_each(|object| object.repeat = Repetition::None);
+    assert_eq!(at(&scene, MIDDLE).seen.expect("the third").label, None);
 }
 
 /// The first error in an explanation; `code` is that of the picture.
