@@ -12,6 +12,9 @@ use bevy::{
 
 use crate::optics::tone::ToneMapping;
 
+/// The size of the picture that Bevy has in place of each table if it was built without them.
+const PLACEHOLDER: UVec2 = UVec2::ONE;
+
 /// Gives Bevy the tables of [`ToneMapping`] where it was built without its own, which are the same: a site would load
 /// them twice.
 pub(super) fn plugin(app: &mut App) {
@@ -24,8 +27,7 @@ pub(super) fn plugin(app: &mut App) {
         (ToneMapping::BlenderFilmic, luts.blender_filmic),
     ];
     let [agx, tony_mc_mapface, blender_filmic] = given.map(|(tone, known)| {
-        // Without tables, Bevy has a single colour.
-        let missing = images.get(&known).is_none_or(|image| image.width() == 1);
+        let missing = images.get(&known).is_none_or(|image| image.size() == PLACEHOLDER);
         match missing.then(|| image(tone)).flatten() {
             Some(image) => images.add(image),
             None => known,

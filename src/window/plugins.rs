@@ -195,25 +195,19 @@ fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
 
 fn log_plugin(options: &ViewOptions) -> LogPlugin {
     // Where Bevy has no tables of tone curves, it has the program's, and does not know.
-    let (level, filter) = if options.verbose {
-        (
-            Level::INFO,
-            "wgpu=error,naga=warn,notify=error,bevy_render::gpu_readback=error,bevy_core_pipeline::tonemapping=off",
-        )
+    let always =
+        "wgpu=error,notify=error,bevy_render::gpu_readback=error,bevy_core_pipeline::tonemapping=off";
+    let (level, also) = if options.verbose {
+        (Level::INFO, "naga=warn")
     } else if options.quiet {
-        (
-            Level::ERROR,
-            "wgpu=error,naga=off,notify=error,bevy_render::gpu_readback=error,bevy_core_pipeline::tonemapping=off",
-        )
+        (Level::ERROR, "naga=off")
     } else {
         // The status line says if the renderer runs on the CPU, and problems of a shader are reported in terms of its
         // file; the other messages silenced here are irrelevant to users.
-        (
-            Level::WARN,
-            "wgpu=error,naga=off,notify=error,bevy_render::renderer=error,bevy_render::gpu_readback=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error,bevy_core_pipeline::tonemapping=off",
-        )
+        let rest = "naga=off,bevy_render::renderer=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error";
+        (Level::WARN, rest)
     };
-    LogPlugin { level, filter: filter.to_owned(), ..LogPlugin::default() }
+    LogPlugin { level, filter: format!("{always},{also}"), ..LogPlugin::default() }
 }
 
 #[cfg(test)]
