@@ -8,6 +8,7 @@
         { "term": "diffuse", "text": "I_d = t (y (1, 1, 0) + β C_b) + (1 − t)(b (0, 0, 1) + α C_b), t = (1 + N·L)/2" },
     ],
     "laws": ["non-negative"],
+    "lit_from_below": true,
     "parameters": [
         "base_colour",
         { "name": "blue", "symbol": "b", "label": "blue in the shade", "default": 0.4, "help": "The amount of blue in the shade." },

@@ -24,8 +24,8 @@ use crate::{
 /// JSON with comments and trailing commas.
 const OPTIONS: ParseOptions = ParseOptions { allow_comments: true, allow_trailing_commas: true, ..STRICT };
 /// The keys of a declaration.
-const MODEL_KEYS: &str = "name author source summary equation laws anisotropic transmits boundary lobe lobes \
-                          curves parameters groups";
+const MODEL_KEYS: &str = "name author source summary equation laws anisotropic transmits lit_from_below boundary lobe \
+                          lobes curves parameters groups";
 /// The keys of a part of the equation.
 const PART_KEYS: &[&str] = &["term", "text"];
 /// The most brackets of a declaration, and so its deepest nesting.
@@ -44,6 +44,7 @@ pub(super) struct Said {
     pub anisotropic: bool,
     /// True if light passes through.
     pub transmits: bool,
+    pub lit_from_below: bool,
     /// True for the boundary of a body with another refractive index.
     pub boundary: bool,
     /// The built-in model whose lobe the model uses.
@@ -114,6 +115,7 @@ impl Reader<'_> {
         let lobe = self.lobe(&fields);
         let taken = lobe.and_then(|id| self.registry.model(id)).map_or(&[][..], ModelEntry::curves);
         let transmits = self.flag(&fields, "transmits", false, "it must be true or false");
+        let lit_from_below = self.flag(&fields, "lit_from_below", false, "it must be true or false");
         let boundary = self.flag(&fields, "boundary", false, "it must be true or false");
         if let Some(value) = fields.get("boundary").filter(|_| boundary && !transmits) {
             self.wrong(value, "light passes through a boundary: it needs \"transmits\": true");
@@ -127,6 +129,7 @@ impl Reader<'_> {
             laws: self.laws(&fields),
             anisotropic: self.flag(&fields, "anisotropic", false, "it must be true or false"),
             transmits,
+            lit_from_below,
             boundary,
             parameters,
             groups: self.groups(&fields, parameters),

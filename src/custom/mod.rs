@@ -161,6 +161,7 @@ fn declared(
         ambient,
         anisotropic: said.anisotropic,
         transmits: said.transmits,
+        lit_from_below: said.lit_from_below,
         boundary: said.boundary,
         sharp,
         ..Declaration::new(intern::text(id), said.name, wgsl)

@@ -158,6 +158,7 @@ pub(super) fn entry(
                 ambient: declaration.ambient,
                 anisotropic: declaration.anisotropic,
                 transmits: declaration.transmits,
+                lit_from_below: declaration.lit_from_below,
                 sharp: declaration.sharp,
                 parameters: flattened(parameters, values, encoding),
                 row: read.as_ref().map_or_else(Vec::new, |(lobe, curves)| {
@@ -241,6 +242,7 @@ struct Interpreted {
     ambient: Ambient,
     anisotropic: bool,
     transmits: bool,
+    lit_from_below: bool,
     sharp: bool,
     parameters: Vec<u32>,
     /// The row as in the shader's table, without the curve; empty if it is not read.
@@ -305,6 +307,10 @@ impl Surface for Interpreted {
 
     fn transmits(&self) -> bool {
         self.transmits
+    }
+
+    fn lit_from_below(&self) -> bool {
+        self.lit_from_below
     }
 
     fn sharp(&self, v: Vec3, frame: &Frame) -> Sharps {

@@ -16,6 +16,8 @@
     "anisotropic": false,
     // True if light also passes through: l may then point below the surface, and that light is the term `transmitted`.
     "transmits": false,
+    // True if the response is not zero for light from below the surface though none passes through.
+    "lit_from_below": false,
     // A name alone is a parameter shared with other models: a surface keeps its value when the model changes.
     // Types are number, integer, colour, triple, choice and flag; missing keys have sensible defaults.
     "parameters": [

@@ -137,6 +137,9 @@ pub fn duplicate(
     if d.transmits {
         let _ = writeln!(out, "    \"transmits\": true,");
     }
+    if d.lit_from_below {
+        let _ = writeln!(out, "    \"lit_from_below\": true,");
+    }
     if d.boundary {
         let _ = writeln!(out, "    \"boundary\": true,");
     }

@@ -2,7 +2,7 @@
 
 use super::{prelude::*, state::LawCheck};
 use crate::{
-    reflection::law_report::{LawReport, Sampling},
+    reflection::law_report::{LawReport, Sampling, UNDECLARED},
     text::capitalised,
 };
 
@@ -64,6 +64,9 @@ fn laws(ui: &mut Ui, report: &LawReport) {
     let how = format!("{}: {}", Sampling::measure(), sampling.error);
     let severity = (!sampling.fits || !report.is_finite()).then_some(Severity::Info);
     line(ui, severity, &format!("lobes for sampling: {}", report.sampling_verdict()), &how, &sampling.at);
+    if !report.from_below.is_empty() {
+        line(ui, Some(Severity::Info), UNDECLARED, "", &report.from_below);
+    }
     if !report.is_finite() {
         let what = format!("NaN or infinite: {} of {} responses", report.not_finite, report.responses);
         line(ui, Some(Severity::Error), &what, "", &report.first_not_finite);

@@ -286,7 +286,7 @@ impl Extended {
         }
         for (group, number) in &self.groups {
             for light in
-                (0..group.count()).filter(|light| at.transmits || group.rises(*light, at.p, at.frame.n))
+                (0..group.count()).filter(|light| at.from_below || group.rises(*light, at.p, at.frame.n))
             {
                 let sent = group.send(light, at.p, &points(number + light as u32 + 1)[..count]);
                 for Sample { l, radiance, pdf } in &sent[..count] {
@@ -318,18 +318,20 @@ struct At {
     v: Vec3,
     frame: Frame,
     seed: u32,
-    transmits: bool,
+    /// True if the model answers to light from below the surface too.
+    from_below: bool,
 }
 
 impl At {
     fn new((surface, lobes): (&dyn Surface, Lobes), p: Vec3, v: Vec3, frame: &Frame, seed: u32) -> Self {
         let frame = if lobes.are_isotropic() { Frame::from_normal(frame.n) } else { *frame };
-        Self { lobes, p, v: frame.to_local(v), frame, seed, transmits: surface.transmits() }
+        let from_below = surface.transmits() || surface.lit_from_below();
+        Self { lobes, p, v: frame.to_local(v), frame, seed, from_below }
     }
 
     /// True if the model answers to light from a direction with this cosine: above the surface, or also below it.
     fn counts(&self, cosine: f32) -> bool {
-        cosine > 0.0 || self.transmits && cosine < 0.0
+        cosine > 0.0 || self.from_below && cosine < 0.0
     }
 }
 
@@ -685,6 +687,27 @@ mod tests {
                 differs += usize::from(off(twin) > 10.0 * MOST);
             }
             assert!(differs >= 2, "{id}: the wrong twin is noticed {differs} times");
+        }
+    }
+
+    #[test]
+    fn a_small_sun_from_below_is_directional_for_models_that_answer_there() {
+        let to_light = Vec3::new(0.9, -0.6, -0.2).normalize();
+        let v = direction(28.0, 150.0);
+        for id in ["mod_lambert", "phong", "blinn_phong"] {
+            let own = Registry::builtin()
+                .model(id)
+                .expect("built in")
+                .instantiate(&Values::default(), Encoding::Srgb);
+            let answer = own.response(to_light, v, &Frame::LOCAL).select(TermSelection::All);
+            let expected = answer.element_sum() / 3.0;
+            let found = |surface: &dyn Surface| {
+                estimates_under(small("sun", "diameter=0.2", -to_light), surface, v, 1 << 10, 3..4)[0]
+            };
+            let off = (found(&*own) / expected - 1.0).abs();
+            assert!(expected > 0.0 && off < 2e-3, "{id}: {} {expected}", found(&*own));
+            // The wrong twin does not say that it answers there.
+            assert_eq!(found(&With(own.clone(), own.lobes())), 0.0, "{id}");
         }
     }
 

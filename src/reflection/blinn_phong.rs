@@ -48,7 +48,7 @@ parameters! {
 }
 
 impl ReflectionModel for BlinnPhong {
-    const DECLARATION: Declaration = built_in!("blinn_phong", "Blinn–Phong", Basic);
+    const DECLARATION: Declaration = built_in!("blinn_phong", "Blinn–Phong", Basic).lit_from_below();
 
     fn response(&self, l: Vec3, v: Vec3, frame: &Frame) -> Terms {
         let cos_i = frame.n.dot(l);

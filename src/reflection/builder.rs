@@ -36,6 +36,7 @@ impl Declaration {
             anisotropic: false,
             matte: false,
             transmits: false,
+            lit_from_below: false,
             boundary: false,
             sharp: false,
             measured: false,
@@ -80,6 +81,9 @@ impl Declaration {
 
         /// Makes it a model that light passes through: it has a transmitted term.
         transmitting() { transmits: true }
+
+        /// Makes it a model that answers to light from below the surface too, though none passes through.
+        lit_from_below() { lit_from_below: true }
 
         /// Makes it a model of the boundary of a body with another refractive index.
         boundary() { boundary: true }

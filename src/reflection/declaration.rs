@@ -35,6 +35,8 @@ pub struct Declaration {
     pub matte: bool,
     /// True for a model of the whole sphere of directions (a BSDF), which light passes through.
     pub transmits: bool,
+    /// True for an opaque model that answers to light from below the surface too, as no real surface does.
+    pub lit_from_below: bool,
     /// True for a model of the boundary of a body, behind which the
     /// [refractive index](super::ReflectionModel::refractive_index) is another one. Others that transmit are sheets, alike
     /// on both sides.

@@ -30,6 +30,9 @@ pub struct LawReport {
     pub first_not_finite: Vec<String>,
     /// The laws.
     pub laws: Vec<LawVerdict>,
+    /// The response to light from below the surface and its location, if the model is opaque and does not declare it.
+    #[serde(default)]
+    pub from_below: Vec<String>,
     /// Quality of sampling with the model's lobes.
     pub sampling: Sampling,
 }
@@ -83,6 +86,9 @@ pub struct LawVerdict {
 
 /// The name of reciprocity of light that passes, which models claim with that of light that is reflected.
 const IN_TRANSMISSION: &str = "reciprocal in transmission";
+/// What a model lacks that answers to light from below.
+pub const UNDECLARED: &str = "light from below the surface: answered, but lights with extent shine there only on models with \
+                              \"lit_from_below\": true";
 /// The verdict on what some values that are not finite may spoil.
 const NOT_JUDGED: &str = "cannot be judged: some values are NaN or infinite";
 
@@ -134,6 +140,11 @@ impl LawReport {
                 .map(|(law, found)| verdict(law, found))
                 .chain(through)
                 .collect(),
+            from_below: if model.declaration.transmits || model.declaration.lit_from_below {
+                Vec::new()
+            } else {
+                place(model, findings.from_below.case.as_ref())
+            },
             sampling: Sampling {
                 fits: findings.sampling.size <= SAMPLING_TOLERANCE,
                 error: number(findings.sampling.size),
@@ -199,6 +210,9 @@ impl fmt::Display for LawReport {
         writeln!(f, "lobes for sampling: {}", self.sampling_verdict())?;
         let Sampling { error, at, .. } = &self.sampling;
         writeln!(f, "  {}: {error}{}", Sampling::measure(), places(at))?;
+        if !self.from_below.is_empty() {
+            writeln!(f, "{UNDECLARED}{}", places(&self.from_below))?;
+        }
         let verdict = if self.is_finite() { "everywhere" } else { "NOT everywhere" };
         writeln!(f, "finite: {verdict}")?;
         writeln!(

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::{Laws, ModelEntry, Surface, brdf_of};
 use crate::{
     optics::{
-        Frame, Terms,
+        Frame, TermSelection, Terms,
         albedo::directional_in_batches,
         colour::Encoding,
         geometry::direction,
@@ -308,6 +308,8 @@ pub struct Findings {
     pub albedo: Extreme,
     /// The smallest number in a response.
     pub smallest: Extreme,
+    /// The largest response to light from below the surface.
+    pub from_below: Extreme,
     /// The largest error of a directional albedo from samples of the model's lobes, see [`sampling_errors`].
     pub sampling: Extreme,
     /// The number of responses.
@@ -442,6 +444,10 @@ fn compare<E>(
         if is_finite(terms) {
             let least = smallest(terms);
             findings.smallest.note(least, least < findings.smallest.size, case);
+            let total = terms.select(TermSelection::All).abs().max_element();
+            if l.z < 0.0 && v.z > 0.0 && total > 0.0 {
+                findings.from_below.note_larger(total, case);
+            }
         } else {
             findings.not_finite += 1;
             findings.first_not_finite.get_or_insert_with(case);

@@ -177,6 +177,7 @@ impl Microfacet {
     }
 
     /// `G / (4 (n·l)(n·v))`, everything in the local frame.
+    #[inline]
     fn visibility(&self, l: Vec3, v: Vec3, h: Vec3) -> f32 {
         let alpha = self.alpha();
         let cos_d = h.dot(l);

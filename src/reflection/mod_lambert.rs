@@ -41,7 +41,8 @@ parameters! {
 }
 
 impl ReflectionModel for ModLambert {
-    const DECLARATION: Declaration = built_in!("mod_lambert", "Modified Lambert", Basic).matte();
+    const DECLARATION: Declaration =
+        built_in!("mod_lambert", "Modified Lambert", Basic).lit_from_below().matte();
 
     fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
         let wrapped = frame.n.dot(l) * self.k_d + (1.0 - self.k_d);

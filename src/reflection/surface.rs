@@ -25,6 +25,10 @@ pub trait Surface: Send + Sync {
     fn transmits(&self) -> bool {
         false
     }
+    /// See [`Declaration::lit_from_below`](super::Declaration::lit_from_below).
+    fn lit_from_below(&self) -> bool {
+        false
+    }
     /// See [`ReflectionModel::sharp`].
     fn sharp(&self, _v: Vec3, _frame: &Frame) -> Sharps {
         Sharps::new()
@@ -193,6 +197,10 @@ impl<M: ReflectionModel> Surface for M {
         self.passage().transmits
     }
 
+    fn lit_from_below(&self) -> bool {
+        M::DECLARATION.lit_from_below
+    }
+
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {
         match M::DECLARATION.ambient {
             Ambient::Formula => ReflectionModel::ambient_response(self, v, frame),
@@ -244,6 +252,10 @@ impl<M: ReflectionModel> Surface for Instance<M> {
 
     fn transmits(&self) -> bool {
         self.model.passage().transmits
+    }
+
+    fn lit_from_below(&self) -> bool {
+        M::DECLARATION.lit_from_below
     }
 
     fn ambient_response(&self, v: Vec3, frame: &Frame) -> Vec3 {

@@ -297,11 +297,15 @@ fn push_body(c: &mut Composer, model: &str, solid: bool, extent: bool) {
     [DISPERSION, ABSORPTION, HIERARCHY, INSIDE, THROUGH].iter().for_each(|source| c.source(source));
 }
 
-/// The parts of the light loop that depend on whether light passes through a surface, and on whether it does so without
-/// spreading.
+/// The parts of the light loop that depend on the sides of a surface on which its model answers, and on whether light passes
+/// through without spreading.
 #[must_use]
-pub(crate) fn sides(passage: Passage, extent: bool) -> String {
-    let side = if passage.transmits { "transmits" } else { "reflects" };
+pub(crate) fn sides(model: &ModelEntry, passage: Passage, extent: bool) -> String {
+    let side = match (passage.transmits, model.declaration.lit_from_below) {
+        (true, _) => "transmits",
+        (false, true) => "from_below",
+        (false, false) => "reflects",
+    };
     let names = match (extent || passage.solid, passage.sharp) {
         (false, _) => side.to_owned(),
         (true, false) if passage.solid => format!("{side} spread radiance"),
@@ -340,7 +344,7 @@ pub fn compose(
     }
     lights.iter().for_each(|light| push_light(&mut c, light));
     c.push("(light types)", &light_dispatch(lights));
-    c.push("(sides of the surface)", &sides(passage, extent));
+    c.push("(sides of the surface)", &sides(model, passage, extent));
     push_body(&mut c, sources.text(&model.declaration.wgsl), solid, extent);
     c.source(&LOOP);
     if extent {

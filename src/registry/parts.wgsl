@@ -110,6 +110,14 @@ fn counts(cosine: f32) -> bool {
 fn on_side(selection: u32, cosine: f32) -> u32 {
     return selection;
 }
+[[from_below]]
+// The model answers to light from below the surface with the same terms, though none passes through.
+fn counts(cosine: f32) -> bool {
+    return cosine != 0.0;
+}
+fn on_side(selection: u32, cosine: f32) -> u32 {
+    return selection;
+}
 [[transmits]]
 fn counts(cosine: f32) -> bool {
     return cosine != 0.0;

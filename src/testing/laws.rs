@@ -28,7 +28,7 @@ const PAIRS: usize = 200;
 /// # Errors
 /// Returns the first law that does not hold.
 pub fn all(model: &ModelEntry) -> Outcome {
-    let laws = [finite, non_negative, reciprocal, energy_conserving, sampled, together];
+    let laws = [finite, non_negative, reciprocal, energy_conserving, sampled, together, from_below];
     laws.iter().try_for_each(|law| law(model))
 }
 
@@ -171,6 +171,33 @@ pub fn sampled(model: &ModelEntry) -> Outcome {
                 "its lobes miss where it reflects most: an albedo by samples is off by {error} for {values:?} v {v}; write `lobes`"
             ));
         }
+    }
+    Ok(())
+}
+
+/// Checks that a model without transmission answers to light from below the surface if it declares so, and not otherwise:
+/// lights with extent ask only those that do.
+///
+/// # Errors
+/// Returns the answer that is not declared, or that none was found.
+pub fn from_below(model: &ModelEntry) -> Outcome {
+    let declared = model.declaration.lit_from_below;
+    let mut found = false;
+    surfaces(model, 7, |values, surface, frame, random| {
+        for _ in 0..if surface.transmits() { 0 } else { PAIRS } {
+            let (l, v) = (-random.above(frame), random.above(frame));
+            let answer = surface.response(l, v, frame).select(TermSelection::All);
+            if answer != Vec3::ZERO && !declared {
+                return Err(format!(
+                    "it answers {answer} to light from below, but does not declare `lit_from_below`, for {values:?} l {l} v {v}"
+                ));
+            }
+            found |= answer != Vec3::ZERO;
+        }
+        Ok(())
+    })?;
+    if declared && !found {
+        return Err("it declares `lit_from_below`, but no light from below is answered".to_owned());
     }
     Ok(())
 }

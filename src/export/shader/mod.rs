@@ -133,7 +133,7 @@ pub fn compose(
         },
         Section {
             heading: "The light that leaves a point: the sum over the lights.".to_owned(),
-            items: items(&(light_loop(sources, lights, passage)? + &dispatch(lights))),
+            items: items(&(light_loop(sources, lights, (model, passage))? + &dispatch(lights))),
         },
     ];
     for entry in &lights.types {
@@ -225,14 +225,18 @@ fn text(sources: &Sources, source: &Source) -> Result<String, ExportError> {
 
 /// The light loop, with a known number of lights and all terms. The built-in one loses the code that the scene does not
 /// need.
-fn light_loop(sources: &Sources, lights: &Lights, passage: Passage) -> Result<String, ExportError> {
+fn light_loop(
+    sources: &Sources,
+    lights: &Lights,
+    (model, passage): (&ModelEntry, Passage),
+) -> Result<String, ExportError> {
     let extent = lights.has_extent();
     let all = if extent { &[LOOP, EXTENDED][..] } else { &[LOOP] };
     let mut joined = String::new();
     for source in all {
         joined.push_str(&text(sources, source)?);
     }
-    joined.push_str(&sides(passage, extent));
+    joined.push_str(&sides(model, passage, extent));
     if !extent {
         joined = joined.replace(" + extended(position, v, frame)", "");
     }
@@ -243,7 +247,7 @@ fn light_loop(sources: &Sources, lights: &Lights, passage: Passage) -> Result<St
     if !lights.uniform {
         joined = joined.replace(EITHER, DIRECTED);
     }
-    if !passage.transmits {
+    if !passage.transmits && !model.declaration.lit_from_below {
         joined = joined.replace("counts(local.z)", "local.z > 0.0");
     }
     if !passage.sharp {

@@ -232,6 +232,31 @@ fn several_lights_at_once_give_what_each_gives_alone() {
     assert!(said.contains("11 lights give"), "{said}");
 }
 
+/// The wrong twin of models that say where light counts: lit all around, without a word.
+#[test]
+fn models_answer_to_light_from_below_if_they_say_so() {
+    hold(testing::laws::from_below);
+    let said = testing::laws::from_below(&ModelEntry::of::<Everywhere>()).expect_err("it does not say so");
+    assert!(said.contains("does not declare `lit_from_below`"), "{said}");
+}
+
+parameters! {
+    /// Lit all around.
+    pub struct Everywhere {}
+}
+
+impl ReflectionModel for Everywhere {
+    const DECLARATION: reflection::Declaration = reflection::Declaration::new(
+        "everywhere",
+        "Everywhere",
+        Source::new("reflection/everywhere.wgsl", ""),
+    );
+
+    fn response(&self, l: Vec3, _v: Vec3, frame: &Frame) -> Terms {
+        Terms::of(Vec3::splat(1.0 + frame.n.dot(l)), Vec3::ZERO)
+    }
+}
+
 #[test]
 fn the_quadrature_of_the_albedo_is_right() {
     // Lambert reflects its base colour in every direction; half of it fails.
