@@ -12,6 +12,8 @@ use crate::{
     text::shortened,
 };
 
+/// The largest absolute value of a number.
+const LARGEST: f32 = 1e20;
 /// The first bytes of a file.
 const MAGIC: &[u8] = b"tensor_file\0";
 /// Maximum number of fields.
@@ -120,7 +122,7 @@ impl Fields<'_> {
         self.0.iter().find(|field| field.name == name.as_bytes())
     }
 
-    /// The shape of a field of 32-bit floats with a number of dimensions, and its numbers, all finite.
+    /// The shape of a field of 32-bit floats with a number of dimensions, and its numbers, each within [`LARGEST`].
     fn floats<const N: usize>(&self, name: &str) -> Result<([usize; N], Vec<f32>), String> {
         let field = self.find(name).ok_or_else(|| format!("it has no field {name}"))?;
         let Some(shape) = <[u64; N]>::try_from(field.shape.as_slice()).ok().filter(|_| field.kind == 10)
@@ -135,8 +137,11 @@ impl Fields<'_> {
             return Err(format!("the field {name} has {} numbers, too many", chunks.len()));
         }
         let numbers: Vec<f32> = chunks.iter().map(|all| f32::from_le_bytes(*all)).collect();
-        if let Some(i) = numbers.iter().position(|x| !x.is_finite() || x.abs() > 1e20) {
-            return Err(format!("number {i} of the field {name} is {}, but must be finite", numbers[i]));
+        if let Some(i) = numbers.iter().position(|x| x.is_nan() || x.abs() > LARGEST) {
+            return Err(format!(
+                "number {i} of the field {name} is {:?}, but must be from {:e} to {LARGEST:e}",
+                numbers[i], -LARGEST
+            ));
         }
         Ok((shape.map(|side| side as usize), numbers))
     }
