@@ -195,25 +195,21 @@ fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
 
 fn log_plugin(options: &ViewOptions) -> LogPlugin {
     // Where Bevy has no tables of tone curves, it has the program's, and does not know.
-    let (level, filter) = if options.verbose {
-        (
-            Level::INFO,
-            "wgpu=error,naga=warn,notify=error,bevy_render::gpu_readback=error,bevy_core_pipeline::tonemapping=off",
-        )
+    const ALWAYS: &str =
+        "wgpu=error,notify=error,bevy_render::gpu_readback=error,bevy_core_pipeline::tonemapping=off";
+    let (level, more) = if options.verbose {
+        (Level::INFO, "naga=warn")
     } else if options.quiet {
-        (
-            Level::ERROR,
-            "wgpu=error,naga=off,notify=error,bevy_render::gpu_readback=error,bevy_core_pipeline::tonemapping=off",
-        )
+        (Level::ERROR, "naga=off")
     } else {
         // The status line says if the renderer runs on the CPU, and problems of a shader are reported in terms of its
         // file; the other messages silenced here are irrelevant to users.
         (
             Level::WARN,
-            "wgpu=error,naga=off,notify=error,bevy_render::renderer=error,bevy_render::gpu_readback=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error,bevy_core_pipeline::tonemapping=off",
+            "naga=off,bevy_render::renderer=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error",
         )
     };
-    LogPlugin { level, filter: filter.to_owned(), ..LogPlugin::default() }
+    LogPlugin { level, filter: format!("{ALWAYS},{more}"), ..LogPlugin::default() }
 }
 
 #[cfg(test)]
