@@ -8,7 +8,7 @@ use super::{
     Options, Outcome,
     engine::engine,
     explain::place,
-    finite, outputs, progress,
+    finite, name_step, outputs, progress,
     scenes::Source,
     sides, views,
     workshop::{Workshop, drawable},
@@ -99,7 +99,7 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
     let bar = progress(100, options);
     let tell = |done: f32, what: &str| {
         bar.set_position((100.0 * done) as u64);
-        bar.set_message(what.to_owned());
+        name_step(&bar, what, "");
         options.detail(format_args!("{what} …"));
     };
     let request = Request {

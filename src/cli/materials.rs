@@ -11,7 +11,7 @@ use super::{
     render::cpu_can_draw,
     workshop::{Workshop, drawable},
 };
-use crate::files::Shown as _;
+use crate::files::{Shown as _, printable_line};
 use crate::{
     caption::Part as Words,
     failure::Failure,
@@ -160,9 +160,10 @@ fn as_json(material: &Material, registry: &Registry) -> Json {
 
 /// Materials as text: those given values that differ from the defaults of the model.
 fn table(materials: &[&Material], registry: &Registry) -> String {
-    let width = materials.iter().map(|m| m.name.chars().count()).max().unwrap_or_default();
+    let names: Vec<_> = materials.iter().map(|m| printable_line(&m.name)).collect();
+    let width = names.iter().map(|name| name.chars().count()).max().unwrap_or_default();
     let (mut text, mut heading) = (String::new(), "");
-    for material in materials {
+    for (material, name) in materials.iter().zip(&names) {
         let next = material.origin.heading();
         if heading != next {
             let gap = if text.is_empty() { "" } else { "\n" };
@@ -179,9 +180,10 @@ fn table(materials: &[&Material], registry: &Registry) -> String {
             .map(|(name, value, _)| format!("{name} {value}"))
             .collect();
         let values = if values.is_empty() { "defaults".to_owned() } else { values.join(", ") };
-        let _ = writeln!(text, "  {:width$}  {model}: {values}", material.name);
+        let _ = writeln!(text, "  {name:width$}  {model}: {values}");
         let about = [&material.description, &material.source].into_iter().flatten();
-        for line in about.cloned().chain(file(material).map(|path| path.shown().to_string())) {
+        let about = about.flat_map(|text| text.lines()).map(str::to_owned);
+        for line in about.chain(file(material).map(|path| path.shown().to_string())) {
             let _ = writeln!(text, "  {:width$}  {line}", "");
         }
     }

@@ -7,7 +7,7 @@
 use crate::{
     export::payload,
     failure::Failure,
-    files::{self, printable, printable_json},
+    files::{self, printable, printable_json, printable_line},
     parameter::Outside,
     platform,
     program::{self, HAS_WINDOW, in_own_words, without_window},
@@ -724,6 +724,11 @@ fn attended<T>(
     })
 }
 
+/// Names a step of some work beside its bar.
+fn name_step(bar: &ProgressBar, work: &str, step: &str) {
+    bar.set_message(printable_line(&named(work, step)).into_owned());
+}
+
 /// Runs some work and, if it takes long, shows its name on a terminal, with a progress bar if the work
 /// reports its progress.
 fn gauged<T>(what: &str, options: Options, work: impl FnOnce(&Progress) -> T) -> T {
@@ -738,10 +743,9 @@ fn gauged_until<T>(
     work: impl FnOnce(&Progress) -> T,
 ) -> T {
     let bar = ProgressBar::with_draw_target(Some(FINE), ProgressDrawTarget::hidden());
-    let what = printable(what);
-    bar.set_message(what.clone().into_owned());
+    name_step(&bar, what, "");
     let tell = |done: f32, step: &str| {
-        bar.set_message(named(&what, step));
+        name_step(&bar, what, step);
         bar.set_position((done * FINE as f32) as u64);
     };
     let watch = |goes_on: &dyn Fn() -> bool| {
@@ -778,6 +782,13 @@ mod tests {
     use clap::CommandFactory as _;
 
     use super::*;
+
+    #[test]
+    fn names_beside_a_bar_obey_no_terminal() {
+        let bar = ProgressBar::hidden();
+        name_step(&bar, "drawing", "Gold\u{1b}[31m\nerror");
+        assert_eq!(bar.message(), r"drawing, Gold\u{1b}[31m\nerror");
+    }
 
     #[test]
     fn the_declaration_of_the_command_line_is_sound() {

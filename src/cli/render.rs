@@ -19,7 +19,7 @@ use super::{
     gauged,
     light_samples::{self, Sampling},
     linear::{self, Kinds},
-    one_of, outputs, progress,
+    name_step, one_of, outputs, progress,
     scenes::Source,
     sides, style,
     views::{self, Part, Plan, word},
@@ -307,10 +307,10 @@ pub(super) fn run(arguments: &Arguments, options: Options, workshop: &mut Worksh
             let what = format!("drawing {}", source.name());
             gauged(&what, options, |progress| painter.draw(&job, registry, progress))?
         } else {
-            let what = printable(&format!("{} of {count}, {}", done + 1, source.name())).into_owned();
+            let what = format!("{} of {count}, {}", done + 1, source.name());
             let begin = done * FINE;
             let tell = |done: f32, step: &str| {
-                bar.set_message(named(&what, step));
+                name_step(&bar, &what, step);
                 bar.set_position(begin + (done * FINE as f32) as u64);
             };
             tell(0.0, "");

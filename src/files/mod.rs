@@ -25,7 +25,7 @@
 //! Reporting:
 //! - [`words()`]: an error of the operating system without its number.
 //! - [`printable`]: a text without characters that a terminal would act on, and [`printable_json`], which
-//!   keeps JSON valid; [`Shown`]: a path on one line.
+//!   keeps JSON valid; [`printable_line`]: on one line; [`Shown`]: a path on one line.
 //!
 //! # How a file is replaced
 //!
@@ -79,7 +79,7 @@ pub use living::give_up;
 pub use output::{
     EXR, HDR, Output, PICTURES, PNG, Refused, Signature, can_begin, may_overwrite, may_replace, spare,
 };
-pub use shown::{OnOneLine, Shown, printable, printable_json};
+pub use shown::{OnOneLine, Shown, printable, printable_json, printable_line};
 pub use stamp::Stamp;
 pub use typed::{meant, without_detours};
 pub use words::words;

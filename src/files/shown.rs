@@ -13,18 +13,28 @@ use crate::text::{is_invisible, shortened};
 /// these.
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
-    escaped(text, |shown, c| write!(shown, "{}", c.escape_default()))
+    escaped(text, is_unfit, |shown, c| write!(shown, "{}", c.escape_default()))
+}
+
+/// Like [`printable`], on one line: line ends and tabs become escapes, too.
+#[must_use]
+pub fn printable_line(text: &str) -> Cow<'_, str> {
+    escaped(text, is_invisible, |shown, c| write!(shown, "{}", c.escape_default()))
 }
 
 /// Like [`printable`], for JSON, whose strings have escapes such as `\u001b` and keep their value.
 #[must_use]
 pub fn printable_json(text: &str) -> Cow<'_, str> {
-    escaped(text, |shown, c| {
+    escaped(text, is_unfit, |shown, c| {
         c.encode_utf16(&mut [0; 2]).iter().try_for_each(|unit| write!(shown, "\\u{unit:04x}"))
     })
 }
 
-fn escaped(text: &str, escape: impl Fn(&mut String, char) -> fmt::Result) -> Cow<'_, str> {
+fn escaped(
+    text: &str,
+    is_unfit: fn(char) -> bool,
+    escape: impl Fn(&mut String, char) -> fmt::Result,
+) -> Cow<'_, str> {
     if !text.contains(is_unfit) {
         return Cow::Borrowed(text);
     }
@@ -64,14 +74,7 @@ impl fmt::Display for OnOneLine<'_> {
         let text = self.0.to_string_lossy();
         let is_endless = self.0.iter().any(|name| name.to_string_lossy().chars().nth(LONGEST).is_some());
         let text: Cow<str> = if is_endless { Cow::Owned(shortened(&text)) } else { text };
-        for c in text.chars() {
-            if is_unfit(c) || matches!(c, '\n' | '\t') {
-                write!(f, "{}", c.escape_default())?;
-            } else {
-                f.write_char(c)?;
-            }
-        }
-        Ok(())
+        f.write_str(&printable_line(&text))
     }
 }
 

@@ -38,6 +38,8 @@ pub struct Meaning {
     pub from: fn(f64) -> f64,
     /// A parameter of the same model that must be 0 for the formula to hold.
     pub without: Option<&'static str>,
+    /// A meaning that makes one material with this one: either alone would be another.
+    pub with: Option<&'static Self>,
 }
 
 /// Meanings are known by their ids.
@@ -67,7 +69,8 @@ impl Meaning {
         source: &'static str,
     ) -> Self {
         const SAME: fn(f64) -> f64 = |v| v;
-        Self { id, quantity, side: Side::Both, formula, source, to: SAME, from: SAME, without: None }
+        let side = Side::Both;
+        Self { id, quantity, side, formula, source, to: SAME, from: SAME, without: None, with: None }
     }
 
     /// Sets the scale: the quantity of a value, and the value of a quantity.
@@ -86,6 +89,32 @@ impl Meaning {
     #[must_use]
     pub const fn without(self, parameter: &'static str) -> Self {
         Self { without: Some(parameter), ..self }
+    }
+
+    /// Declares a meaning that makes one material with this one; one of the two declares it.
+    ///
+    /// ```
+    /// use lights_camera_models::parameter::Meaning;
+    /// const DYE: Meaning = Meaning::of("dye", "colour of the dye", "C", "A. Author (2026), A Title");
+    /// const AMOUNT: Meaning = Meaning::of("dye_amount", "amount of dye", "a", "A. Author (2026), A Title").with(&DYE);
+    /// assert!(AMOUNT.belongs_with(&DYE) && DYE.belongs_with(&AMOUNT) && !DYE.belongs_with(&DYE));
+    /// ```
+    #[must_use]
+    pub const fn with(self, other: &'static Self) -> Self {
+        Self { with: Some(other), ..self }
+    }
+
+    /// True if both have the same quantity, on whatever scale.
+    #[must_use]
+    pub fn corresponds_to(&self, other: &Self) -> bool {
+        self.quantity == other.quantity
+    }
+
+    /// True if one of them is declared to make one material with the other.
+    #[must_use]
+    pub fn belongs_with(&self, other: &Self) -> bool {
+        let declares = |a: &Self, b: &Self| a.with.is_some_and(|with| with.corresponds_to(b));
+        declares(self, other) || declares(other, self)
     }
 
     /// The quantity of a value, for red, green and blue; of a colour, its codes. `None` if the value is no number, or
@@ -202,8 +231,8 @@ meanings! {
         "specular_colour", "specular colour", "C_s",
         "B. T. Phong (1975), Illumination for Computer Generated Pictures",
     );
-    /// The fraction of metal.
-    METAL = Meaning::of("metallic", "fraction of metal", "m", BURLEY);
+    /// The fraction of metal. Without it the base colour is that of a body.
+    METAL = Meaning::of("metallic", "fraction of metal", "m", BURLEY).with(&COLOUR_OF_BASE);
     /// The refractive index of a dielectric.
     INDEX = Meaning::of(
         "refractive_index", F_0, "F_0 = ((n − 1)/(n + 1))²",

@@ -26,14 +26,10 @@ pub struct Carried {
 }
 
 impl Carried {
-    /// True if one of them alone would be another material: the fraction of metal and the base colour, which without it is
-    /// the colour of a body.
+    /// True if one of them alone would be another material, by [what they stand for](Meaning::with).
     #[must_use]
     pub fn belongs_with(&self, other: &Self) -> bool {
-        let is_of_metal = |one: &Self| {
-            [&meaning::METAL, &meaning::COLOUR_OF_BASE].iter().any(|part| stands_for(one.to, part))
-        };
-        is_of_metal(self) && is_of_metal(other)
+        self.to.stands_for.zip(other.to.stands_for).is_some_and(|(a, b)| a.belongs_with(b))
     }
 }
 
@@ -64,7 +60,9 @@ pub struct Journey {
 /// ```
 #[must_use]
 pub fn journey(from: &[&ModelEntry], to: &ModelEntry, material: &Values) -> Journey {
-    let of_metal = metal(from, to, material);
+    let left_metal = from.first().and_then(|model| metal_in(model, material));
+    let earlier_metal = || from.iter().skip(1).find_map(|model| metal_in(model, material));
+    let of_metal = metal(|| left_metal.or_else(earlier_metal), to, material);
     let as_metal =
         |p: &'static Parameter| of_metal.iter().flatten().find(|one| one.to.name == p.name).cloned();
     let by_quantity = |p: &'static Parameter| {
@@ -82,15 +80,13 @@ pub fn journey(from: &[&ModelEntry], to: &ModelEntry, material: &Values) -> Jour
     let carried: Vec<_> = to.parameters.iter().filter_map(carry).collect();
     // A metal that the new model has in its own way is not missed.
     let is_one_anyway = is_metal(to, material);
-    let index = from.first().and_then(|model| metal_in(model, material)).map(|(index, _)| index);
+    let index = left_metal.map(|(index, _)| index);
     let says_metal =
         |p: &Parameter| stands_for(p, &meaning::METAL) || index.iter().flatten().any(|q| q.name == p.name);
     let stays = |p: &&'static Parameter| {
         let goes = || carried.iter().any(|one| one.from.iter().any(|q| q.name == p.name));
         let has_own = || {
-            let alike = |q: &&Parameter| {
-                q.stands_for.zip(p.stands_for).is_some_and(|(a, b)| a.quantity == b.quantity)
-            };
+            let alike = |q: &&Parameter| p.stands_for.is_some_and(|meaning| stands_for(q, meaning));
             to.parameters.iter().filter(alike).any(|q| material.0.contains_key(q.name))
         };
         let matters = material.get(p) != p.default_value();
@@ -116,7 +112,7 @@ fn given<'m>(model: &'m ModelEntry, material: &'m Values) -> impl Iterator<Item 
 }
 
 fn stands_for(p: &Parameter, meaning: &Meaning) -> bool {
-    p.stands_for.is_some_and(|known| known.quantity == meaning.quantity)
+    p.stands_for.is_some_and(|known| known.corresponds_to(meaning))
 }
 
 /// The parameters of a model for the fraction of metal, and for the base colour, which is that of the metal.
@@ -131,12 +127,15 @@ fn complex_index(model: &ModelEntry) -> Option<[&'static Parameter; 2]> {
     Some([model.parameter(IOR.name)?, model.parameter(EXTINCTION.name)?])
 }
 
+/// The parameters for n and k of a metal, and its reflectance at normal incidence.
+type Metal = ([&'static Parameter; 2], Vec3);
+
 /// The parameters by which a material is a metal with n and k in a model, and its reflectance at normal incidence.
 ///
 /// Models that mix it with a matte body have a colour for each, while those with a fraction of metal have one for both. So
 /// the larger part counts, as a whole: half of the surface is enough, which is the default, since less would tint the
 /// body with the colour of the metal.
-fn metal_in(model: &ModelEntry, material: &Values) -> Option<([&'static Parameter; 2], Vec3)> {
+fn metal_in(model: &ModelEntry, material: &Values) -> Option<Metal> {
     let [n, k] = complex_index(model)?;
     let (Value::Triple(index), Value::Triple(extinction)) = (material.get(n), material.get(k)) else {
         return None;
@@ -158,18 +157,19 @@ fn is_metal(model: &ModelEntry, material: &Values) -> bool {
 }
 
 /// A metal with n and k in a model that has a fraction of metal instead: all of it, in the colour of the reflectance at
-/// normal incidence (A. Fresnel 1823), encoded as that of measured metals is.
+/// normal incidence (A. Fresnel 1823), encoded as that of measured metals is. `found` is the metal in the models that the
+/// material came through.
 ///
 /// There is no way back from a colour to n and k. Each reflectance has many pairs, and O. Gulbrandsen (2014), *Artist
 /// Friendly Metallic Fresnel*, chooses one by the colour at the edge, which the materials that would be left do not have;
 /// whoever came from n and k gets their own back.
-fn metal(from: &[&ModelEntry], to: &ModelEntry, material: &Values) -> Option<[Carried; 2]> {
+fn metal(found: impl FnOnce() -> Option<Metal>, to: &ModelEntry, material: &Values) -> Option<[Carried; 2]> {
     let [fraction, colour] = metal_of(to).filter(|_| complex_index(to).is_none())?;
     let has_effect = unused(to.parameters, colour, material).is_none();
     if !has_effect || !has_place(to, fraction, material) {
         return None;
     }
-    let (index, f0) = from.iter().find_map(|model| metal_in(model, material))?;
+    let (index, f0) = found()?;
     let whole = fraction.stands_for?.value_of([1.0; 3], &fraction.kind)?;
     let carried = |to: &'static Parameter, value: Value| {
         to.allows(&value).then(|| Carried { from: index.to_vec(), to, value, limited: false })
@@ -184,7 +184,7 @@ fn quantity(
     material: &Values,
 ) -> Option<(Vec<&'static Parameter>, [f64; 3])> {
     let declared = |side: Side| {
-        let stands = |known: &&Meaning| known.quantity == meaning.quantity && known.side == side;
+        let stands = |known: &&Meaning| known.corresponds_to(meaning) && known.side == side;
         model.parameters.iter().find_map(|p| Some((p, p.stands_for.filter(stands)?)))
     };
     let holds = |known: &Meaning| {
@@ -359,6 +359,25 @@ mod tests {
         assert!(colour.belongs_with(fraction) && fraction.belongs_with(colour));
         let names = |one: &Carried| one.from.iter().map(|p| p.name).collect::<Vec<_>>();
         assert_eq!([colour, fraction].map(names), [["ior", "extinction"]; 2]);
+    }
+
+    #[test]
+    fn other_meanings_may_belong_together() {
+        const DYE: Meaning = Meaning::of("dye", "dye", "d", "A. Author (2026), A Title");
+        const DEPTH: Meaning = Meaning::of("dye_depth", "depth of the dye", "t", DYE.source).with(&DYE);
+        static PARAMETERS: [Parameter; 3] = [
+            Parameter::number("dye", 0.0..=1.0, 0.0).stands_for(&DYE),
+            Parameter::number("depth", 0.0..=1.0, 0.0).stands_for(&DEPTH),
+            Parameter::number("metallic", 0.0..=1.0, 0.0).stands_for(&meaning::METAL),
+        ];
+        let [dye, depth, metal] = PARAMETERS.each_ref().map(|to| Carried {
+            from: vec![to],
+            to,
+            value: number(1.0),
+            limited: false,
+        });
+        assert!(dye.belongs_with(&depth) && depth.belongs_with(&dye));
+        assert!(!dye.belongs_with(&metal) && !metal.belongs_with(&depth));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use bevy::{
     asset::RenderAssetUsages,
-    core_pipeline::tonemapping::TonemappingLuts,
+    core_pipeline::tonemapping::{TonemappingLuts, lut_placeholder},
     image::{
         CompressedImageFormats, ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor,
         ImageType,
@@ -11,9 +11,6 @@ use bevy::{
 };
 
 use crate::optics::tone::ToneMapping;
-
-/// The size of the picture that Bevy has in place of each table if it was built without them.
-const PLACEHOLDER: UVec2 = UVec2::ONE;
 
 /// Gives Bevy the tables of [`ToneMapping`] where it was built without its own, which are the same: a site would load
 /// them twice.
@@ -26,8 +23,9 @@ pub(super) fn plugin(app: &mut App) {
         (ToneMapping::TonyMcMapface, luts.tony_mc_mapface),
         (ToneMapping::BlenderFilmic, luts.blender_filmic),
     ];
+    let placeholder = lut_placeholder();
     let [agx, tony_mc_mapface, blender_filmic] = given.map(|(tone, known)| {
-        let missing = images.get(&known).is_none_or(|image| image.size() == PLACEHOLDER);
+        let missing = images.get(&known).is_none_or(|image| image.data == placeholder.data);
         match missing.then(|| image(tone)).flatten() {
             Some(image) => images.add(image),
             None => known,
@@ -63,17 +61,16 @@ fn image(tone: ToneMapping) -> Option<Image> {
 
 #[cfg(test)]
 mod tests {
-    use bevy::{core_pipeline::tonemapping::lut_placeholder, render::render_resource::TextureFormat};
+    use bevy::render::render_resource::TextureFormat;
 
     use super::*;
 
     #[test]
     fn tables_take_the_place_of_missing_ones_and_of_no_others() {
-        for missing in [true, false] {
+        let other = |side| Image::new_target_texture(side, side, TextureFormat::Rgba8Unorm, None);
+        for (missing, table) in [(true, lut_placeholder()), (false, other(2)), (false, other(1))] {
             let mut app = App::new();
             let mut images = Assets::<Image>::default();
-            let other = Image::new_target_texture(2, 2, TextureFormat::Rgba8Unorm, None);
-            let table = if missing { lut_placeholder() } else { other };
             let size = table.size();
             let known = images.add(table);
             let (agx, tony_mc_mapface, blender_filmic) = (known.clone(), known.clone(), known);

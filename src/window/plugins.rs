@@ -195,19 +195,21 @@ fn bevys(options: &ViewOptions, headless: bool) -> PluginGroupBuilder {
 
 fn log_plugin(options: &ViewOptions) -> LogPlugin {
     // Where Bevy has no tables of tone curves, it has the program's, and does not know.
-    let always =
+    const ALWAYS: &str =
         "wgpu=error,notify=error,bevy_render::gpu_readback=error,bevy_core_pipeline::tonemapping=off";
-    let (level, also) = if options.verbose {
+    let (level, more) = if options.verbose {
         (Level::INFO, "naga=warn")
     } else if options.quiet {
         (Level::ERROR, "naga=off")
     } else {
         // The status line says if the renderer runs on the CPU, and problems of a shader are reported in terms of its
         // file; the other messages silenced here are irrelevant to users.
-        let rest = "naga=off,bevy_render::renderer=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error";
-        (Level::WARN, rest)
+        (
+            Level::WARN,
+            "naga=off,bevy_render::renderer=error,bevy_asset=error,bevy_winit=error,bevy_egui=error,winit=error",
+        )
     };
-    LogPlugin { level, filter: format!("{always},{also}"), ..LogPlugin::default() }
+    LogPlugin { level, filter: format!("{ALWAYS},{more}"), ..LogPlugin::default() }
 }
 
 #[cfg(test)]

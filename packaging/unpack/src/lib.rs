@@ -10,13 +10,23 @@ use wasm_bindgen::prelude::wasm_bindgen;
 /// How far back repetitions are looked for, in bytes. The page needs as much memory for a moment.
 const REACH: u32 = 1 << 25;
 
+/// The largest program in bytes, several times that of the site. Tests have a smaller one, which takes no time.
+const MOST: usize = if cfg!(test) { 1 << 20 } else { 256 << 20 };
+
+fn too_large() -> String {
+    format!("the program is larger than {} MiB", MOST >> 20)
+}
+
 /// Packs a program.
 ///
 /// # Errors
-/// Returns the errors of reading and writing.
-pub fn pack(mut from: impl Read, to: impl Write) -> io::Result<()> {
+/// Returns the errors of reading and writing, and one if the page would refuse the program as too large.
+pub fn pack(from: impl Read, to: impl Write) -> io::Result<()> {
     let mut bytes = Vec::new();
-    from.read_to_end(&mut bytes)?;
+    from.take(MOST as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > MOST {
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, too_large()));
+    }
     // Instructions of WebAssembly have no alignment, and the longer context suits them.
     let options = LzmaOptions { dict_size: REACH, lc: 4, pb: 0, ..LzmaOptions::with_preset(9) };
     let mut packer = LzmaWriter::new_use_header(to, &options, Some(bytes.len() as u64))?;
@@ -28,6 +38,8 @@ pub fn pack(mut from: impl Read, to: impl Write) -> io::Result<()> {
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
 pub struct Unpacker {
     stream: LzmaStream,
+    /// The number of bytes that may still come out.
+    left: usize,
     ended: bool,
 }
 
@@ -37,18 +49,20 @@ impl Unpacker {
     #[must_use]
     pub fn new() -> Self {
         // In KiB. What asks for more is not packed by this.
-        Self { stream: LzmaStream::new_mem_limit(2 * (REACH >> 10), None), ended: false }
+        Self { stream: LzmaStream::new_mem_limit(2 * (REACH >> 10), None), left: MOST, ended: false }
     }
 
     /// What the next bytes of the packed program become.
     ///
     /// # Errors
-    /// Returns an error if the bytes are not those of a packed program.
+    /// Returns an error if the bytes are not those of a packed program, or if it is too large: a few bytes may stand for
+    /// thousands of times as many.
     pub fn more(&mut self, mut packed: &[u8]) -> Result<Vec<u8>, String> {
         let (mut out, mut room) = (Vec::new(), vec![0; 1 << 16]);
         while !self.ended {
             let done = self.stream.process(packed, &mut room, Action::Run);
             let done = done.map_err(|why| format!("the program arrived damaged: {why}"))?;
+            self.left = self.left.checked_sub(done.bytes_produced).ok_or_else(too_large)?;
             packed = packed.get(done.bytes_consumed..).unwrap_or_default();
             out.extend_from_slice(&room[..done.bytes_produced]);
             self.ended = done.status == Status::StreamEnd;
@@ -103,6 +117,24 @@ mod tests {
             assert!(pieces.collect::<Vec<_>>().concat() == program(), "{size}");
             assert!(unpacker.ended(), "{size}");
         }
+    }
+
+    #[test]
+    fn the_largest_program_is_unpacked_and_a_larger_one_refused() {
+        let mut largest = Vec::new();
+        pack(&*vec![0; MOST], &mut largest).expect("packed");
+        let mut unpacker = Unpacker::new();
+        assert_eq!(unpacker.more(&largest).map(|out| out.len()), Ok(MOST));
+        assert!(unpacker.ended());
+        let error = pack(&*vec![0; MOST + 1], io::sink()).expect_err("refused");
+        assert_eq!(error.to_string(), "the program is larger than 1 MiB");
+        // From elsewhere, and without its length at the beginning.
+        let mut packer =
+            LzmaWriter::new_use_header(Vec::new(), &LzmaOptions::with_preset(1), None).expect("begun");
+        packer.write_all(&vec![0; MOST + 1]).expect("packed");
+        let larger = packer.finish().expect("packed");
+        assert!(larger.len() < 1000, "{}", larger.len());
+        assert_eq!(Unpacker::new().more(&larger), Err("the program is larger than 1 MiB".to_owned()));
     }
 
     #[test]

@@ -12,6 +12,8 @@ use crate::{
     text::shortened,
 };
 
+/// The largest absolute value of a number.
+const LARGEST: f32 = 1e20;
 /// The first bytes of a file.
 const MAGIC: &[u8] = b"tensor_file\0";
 /// Maximum number of fields.
@@ -20,8 +22,6 @@ const MAX_FIELDS: u32 = 64;
 const MAX_SIDE: u64 = 4096;
 /// Maximum number of values that the table of a file may have: 64 MiB.
 pub const MAX_NUMBERS: usize = 16 << 20;
-/// Maximum size of a number: products of four are finite in 32 bits only after scaling, single squares always.
-const LARGEST: f32 = 1e20;
 
 /// Measured materials of the RGL database (J. Dupuy, W. Jakob 2018): a tensor file of version 1.0, little-endian. Its fields phi_i
 /// and theta_i are the directions in radians, ndf and sigma grids, vndf a grid for each direction, rgb one for each direction and
@@ -122,7 +122,7 @@ impl Fields<'_> {
         self.0.iter().find(|field| field.name == name.as_bytes())
     }
 
-    /// The shape of a field of 32-bit floats with a number of dimensions, and its numbers, none beyond [`LARGEST`].
+    /// The shape of a field of 32-bit floats with a number of dimensions, and its numbers, each within [`LARGEST`].
     fn floats<const N: usize>(&self, name: &str) -> Result<([usize; N], Vec<f32>), String> {
         let field = self.find(name).ok_or_else(|| format!("it has no field {name}"))?;
         let Some(shape) = <[u64; N]>::try_from(field.shape.as_slice()).ok().filter(|_| field.kind == 10)
@@ -138,8 +138,10 @@ impl Fields<'_> {
         }
         let numbers: Vec<f32> = chunks.iter().map(|all| f32::from_le_bytes(*all)).collect();
         if let Some(i) = numbers.iter().position(|x| x.is_nan() || x.abs() > LARGEST) {
-            let why = format!("must be between -{LARGEST:e} and {LARGEST:e}");
-            return Err(format!("number {i} of the field {name} is {:e}, but {why}", numbers[i]));
+            return Err(format!(
+                "number {i} of the field {name} is {:?}, but must be from {:e} to {LARGEST:e}",
+                numbers[i], -LARGEST
+            ));
         }
         Ok((shape.map(|side| side as usize), numbers))
     }

@@ -218,10 +218,11 @@ fn what_is_no_file_of_the_database_is_refused_with_the_reason() {
     let steep = changed(&|all| all[1].3[12..].copy_from_slice(&2f32.to_le_bytes()));
     assert!(steep.contains("theta_i has 2, but must be from 0 to π/2"), "{steep}");
     assert!(changed(&|all| all[2].3.fill(0)).contains("ndf is nowhere above 0"));
-    assert!(
-        changed(&|all| all[4].3[..4].copy_from_slice(&f32::NAN.to_le_bytes()))
-            .contains("number 0 of the field vndf is NaN")
-    );
+    for (number, shown) in [(f32::NAN, "NaN"), (f32::INFINITY, "inf"), (-1e21, "-1e21")] {
+        let said = changed(&|all| all[4].3[..4].copy_from_slice(&f32::to_le_bytes(number)));
+        let rule = format!("number 0 of the field vndf is {shown}, but must be from -1e20 to 1e20");
+        assert!(said.contains(&rule), "{said}");
+    }
     assert!(changed(&|all| _ = all.pop()).contains("no field wavelengths"));
     assert!(FORMAT.max_bytes > 4 * MAX_NUMBERS as u64);
 }

@@ -64,15 +64,17 @@ pub(super) fn check(tokens: &[Token], limits: &Limits) -> Result<(), Refusal> {
     let steps = Cell::new(STEPS);
     let path = Vec::new();
     let mut search = Search { limits, tokens, declarations, by_name, states, next, path, values, steps };
-    let mut sum = 0_u64;
+    let (mut sum, mut parts) = (0_u64, Vec::new());
     for i in 0..search.declarations.len() {
-        sum = sum.saturating_add(search.declaration(i)?.0);
+        let words = search.declaration(i)?.0;
+        sum = sum.saturating_add(words);
+        parts.push((search.declarations[i].at, words));
         if sum > 4 * limits.expansion {
             let what = format!(
                 "constants and types are expanded where they are used, which makes more than {} words in the composed shader",
                 4 * limits.expansion
             );
-            return Err(Refusal::Whole(what));
+            return Err(Refusal::Sum(parts, what));
         }
     }
     Ok(())
@@ -158,8 +160,7 @@ impl<'a> Search<'a> {
             return Err(self.chain(middle, chain));
         }
         if expands {
-            let what = || format!("this expands to {words} words");
-            at_most(words, self.limits.expansion, at, "", what)?;
+            at_most(words, self.limits.expansion, at, "", || expands_to(words))?;
         }
         self.states[i] = State::Known(words, chain);
         self.path.pop();
@@ -177,14 +178,14 @@ impl<'a> Search<'a> {
     /// The expanded number of words of some tokens, and the longest chain of declarations below them.
     fn words(&mut self, first: usize, end: usize, user: usize) -> Result<(u64, usize), Finding> {
         let tokens = self.tokens;
-        // The enclosing arrays: the end of each, and the product of their numbers of elements.
-        let mut arrays: Vec<(usize, u64)> = Vec::new();
+        // The enclosing arrays: the end and the place of each, and the product of their numbers of elements.
+        let mut arrays: Vec<(usize, usize, u64)> = Vec::new();
         let (mut sum, mut below) = (0_u64, 0);
         for i in first..end.min(tokens.len()) {
-            while arrays.last().is_some_and(|(end, _)| *end <= i) {
+            while arrays.last().is_some_and(|(end, ..)| *end <= i) {
                 arrays.pop();
             }
-            let elements = arrays.last().map_or(1, |(_, elements)| *elements);
+            let elements = arrays.last().map_or(1, |(.., elements)| *elements);
             let token = tokens[i];
             let mut words = 1;
             if token.kind == Kind::Word {
@@ -192,7 +193,7 @@ impl<'a> Search<'a> {
                 let list = next.filter(|n| n.kind == Kind::TemplateOpen).map(|n| n.end);
                 if let Some(list) = list.filter(|_| token.text == "array") {
                     let elements = elements.saturating_mul(self.length(token, i + 2, list)?);
-                    arrays.push((list, elements));
+                    arrays.push((list, token.at, elements));
                 }
                 let member = i > 0 && tokens[i - 1].kind == Kind::Dot;
                 let called = next.is_some_and(|n| n.text == "(");
@@ -209,7 +210,14 @@ impl<'a> Search<'a> {
                     }
                 }
             }
-            sum = sum.saturating_add(elements.saturating_mul(words));
+            let words = elements.saturating_mul(words);
+            // In a function, or as the type of a variable, nothing else limits it before the sum of all. An array
+            // counts by what is in it.
+            if token.text != "array" {
+                let at = arrays.first().map_or(token.at, |(_, at, _)| *at);
+                at_most(words, self.limits.expansion, at, "", || expands_to(words))?;
+            }
+            sum = sum.saturating_add(words);
         }
         Ok((sum, below))
     }
@@ -274,6 +282,10 @@ impl<'a> Search<'a> {
         }
         Some(product)
     }
+}
+
+fn expands_to(words: u64) -> String {
+    format!("this expands to {words} words")
 }
 
 /// An integer in the syntax of WGSL.

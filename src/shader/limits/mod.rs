@@ -9,6 +9,8 @@
 //! recurse at least four times as deep as allowed here (tested by `hostile`); the shipped shaders stay five
 //! times below.
 
+use std::collections::BTreeMap;
+
 use naga::{Module, Span};
 
 use super::{
@@ -36,6 +38,8 @@ enum Refusal {
     At(usize, String),
     /// The size of the whole.
     Whole(String),
+    /// The sum of parts: the byte and the size of each.
+    Sum(Vec<(usize, u64)>, String),
 }
 
 impl From<Finding> for Refusal {
@@ -59,21 +63,35 @@ fn limited(found: usize, most: usize, what: &str) -> Result<(), Refusal> {
 /// Returns anything beyond a limit, in terms of the author's file.
 pub fn check_text(composed: &Composed) -> Result<(), Box<ShaderProblem>> {
     let text = &composed.text;
-    let line_of = |at: usize| text.as_bytes()[..at].iter().filter(|b| **b == b'\n').count() + 1;
+    let ends: Vec<_> = text.match_indices('\n').map(|(end, _)| end).collect();
+    let line_of = |at: usize| ends.partition_point(|end| *end < at) + 1;
+    let file_of = |at: usize| composed.map.locate(line_of(at)).map(|(file, _)| file);
     let binds = |at: usize| {
-        let file = composed.map.locate(line_of(at)).map(|(file, _)| file);
-        file.is_none_or(|file| {
+        file_of(at).is_none_or(|file| {
             [WRAPPER.path, SEEN.path, EVALUATE.path, BODY, FILE, LIGHT_ALONE, SHADING_ALONE].contains(&file)
         })
     };
+    let place_of = |at: usize| {
+        let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
+        (line_of(at), at - start + 1)
+    };
     text::check(text, &LIMITS, binds).map_err(|refusal| match refusal {
-        Refusal::At(at, what) => {
-            let start = text[..at].rfind('\n').map_or(0, |i| i + 1);
-            locate(composed, Some((line_of(at), at - start + 1)), what)
-        }
+        Refusal::At(at, what) => locate(composed, Some(place_of(at)), what),
         // The longest file makes up most of it.
         Refusal::Whole(what) => locate(composed, composed.longest_file().map(|line| (line, 1)), what),
+        Refusal::Sum(parts, what) => locate(composed, greatest(&parts, file_of).map(place_of), what),
     })
+}
+
+/// The greatest part of the file that makes up most of a sum.
+fn greatest<F: Ord>(parts: &[(usize, u64)], file_of: impl Fn(usize) -> F) -> Option<usize> {
+    let mut files: BTreeMap<F, (u64, (u64, usize))> = BTreeMap::new();
+    for (at, size) in parts {
+        let (sum, most) = files.entry(file_of(*at)).or_default();
+        *sum = sum.saturating_add(*size);
+        *most = (*most).max((*size, *at));
+    }
+    files.into_values().max().map(|(_, (_, at))| at)
 }
 
 /// The first thing in a module that exceeds a limit: its position, and the message. The module need not be

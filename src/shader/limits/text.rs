@@ -277,7 +277,7 @@ mod tests {
         match check(text, &small, |_| false) {
             Ok(()) => String::new(),
             Err(Refusal::At(at, what)) => format!("{at}: {what}"),
-            Err(Refusal::Whole(what)) => what,
+            Err(Refusal::Whole(what) | Refusal::Sum(_, what)) => what,
         }
     }
 

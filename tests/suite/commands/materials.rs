@@ -54,6 +54,18 @@ fn the_list_has_names_models_and_values() {
 }
 
 #[test]
+fn names_and_descriptions_forge_no_lines() {
+    let folder = folder();
+    let odd = r#"{"name": "Mira\u001b[31m\nerror: a", "description": "Dark\nerror: b", "reflection_model": "lambert", "material": {}}"#;
+    fs::write(folder.path().join("materials/odd.json"), odd).expect("written");
+    let run = materials(folder.path(), &["error"]);
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    let lines: Vec<_> = run.out.lines().collect();
+    assert!(lines[1].starts_with(r"  Mira\u{1b}[31m\nerror: a  lambert"), "{}", run.out);
+    assert!(lines[1..].iter().all(|line| line.starts_with("  ")), "{}", run.out);
+}
+
+#[test]
 fn a_broken_file_is_named_and_hides_no_other() {
     let folder = folder();
     let at = |name: &str| folder.path().join("materials").join(name);

@@ -186,6 +186,40 @@ fn corpus() -> Vec<Case> {
             "the length of this array cannot be determined",
         ),
         case(
+            "nested_array",
+            model("", "var a: array<array<array<f32, 1000>, 1000>, 1000>;\n    let y = x;"),
+            ":5:12: this expands to 1000000000 words; at most 98304",
+        ),
+        case(
+            "nested_private_array",
+            model("var<private> a: array<array<array<f32, 1000>, 1000>, 1000>;", "let y = x;"),
+            ":2:17: this expands to 1000000000 words; at most 98304",
+        ),
+        case(
+            "nested_alias",
+            model("alias A = array<array<f32, 100>, 20>;", "var b: array<A, 300>;\n    let y = x;"),
+            ":5:12: this expands to",
+        ),
+        case(
+            "nested_arrays",
+            model(
+                "",
+                &format!(
+                    "let y = x;\n{}",
+                    repeated(4, |i| format!("    var a{i}: array<array<f32, 150>, 150>;\n"))
+                ),
+            ),
+            ":3:4: constants and types are expanded where they are used",
+        ),
+        case(
+            "nested_arrays_of_functions",
+            model(
+                &repeated(60, |i| format!("fn g{i}() {{ var a: array<array<f32, 85>, 85>; }}\n")),
+                "let y = x;",
+            ),
+            "constants and types are expanded where they are used",
+        ),
+        case(
             "many_variables",
             model(
                 &format!(
