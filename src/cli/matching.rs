@@ -95,11 +95,6 @@ fn metric() -> impl TypedValueParser<Value = Metric> {
 }
 
 impl Arguments {
-    /// True if every model is matched.
-    pub(super) fn is_of_all(&self) -> bool {
-        self.each
-    }
-
     /// What is compared; lobes alone have a choice of metrics.
     fn measure(&self) -> Result<Measure, Failure> {
         let measure = Measure { what: self.on, metric: self.metric };

@@ -92,11 +92,7 @@ struct Cli {
 impl Cli {
     /// True if the command answers Ctrl+C itself: the window, and work of which a part is worth having.
     fn handles_signals(&self) -> bool {
-        match &self.command {
-            None | Some(Command::View(_) | Command::TryShaders) => true,
-            Some(Command::Match(arguments)) => arguments.own.is_of_all(),
-            Some(_) => false,
-        }
+        matches!(&self.command, None | Some(Command::View(_) | Command::TryShaders | Command::Match(_)))
     }
 }
 
