@@ -122,11 +122,11 @@ mod tests {
     #[test]
     fn the_largest_program_is_unpacked_and_a_larger_one_refused() {
         let mut largest = Vec::new();
-        pack(&*vec![0; MOST], &mut largest).expect("packed");
+        pack(&*vec![0_u8; MOST], &mut largest).expect("packed");
         let mut unpacker = Unpacker::new();
         assert_eq!(unpacker.more(&largest).map(|out| out.len()), Ok(MOST));
         assert!(unpacker.ended());
-        let error = pack(&*vec![0; MOST + 1], io::sink()).expect_err("refused");
+        let error = pack(&*vec![0_u8; MOST + 1], io::sink()).expect_err("refused");
         assert_eq!(error.to_string(), "the program is larger than 1 MiB");
         // From elsewhere, and without its length at the beginning.
         let mut packer =

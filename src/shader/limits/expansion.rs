@@ -211,9 +211,9 @@ impl<'a> Search<'a> {
                 }
             }
             let words = elements.saturating_mul(words);
-            // In a function, or as the type of a variable, nothing else limits it before the sum of all. An array
-            // counts by what is in it.
-            if token.text != "array" {
+            // In a function, or as the type of a variable, nothing else limits it before the sum of all. Nested
+            // arrays count by what is in the innermost.
+            if token.kind == Kind::Word && token.text != "array" {
                 let at = arrays.first().map_or(token.at, |(_, at, _)| *at);
                 at_most(words, self.limits.expansion, at, "", || expands_to(words))?;
             }

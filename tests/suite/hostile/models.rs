@@ -206,7 +206,7 @@ fn corpus() -> Vec<Case> {
                 "",
                 &format!(
                     "let y = x;\n{}",
-                    repeated(4, |i| format!("    var a{i}: array<array<f32, 150>, 150>;\n"))
+                    repeated(8, |i| format!("    var a{i}: array<array<f32, 150>, 150>;\n"))
                 ),
             ),
             ":3:4: constants and types are expanded where they are used",
